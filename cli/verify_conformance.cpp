@@ -40,8 +40,8 @@ std::vector<std::string> arguments_of(const CommonOptions& options, std::span<co
                                       bool is_full, const std::string& json) {
     std::string ids;
     for (const conformance::Case& row : cases) ids += (ids.empty() ? "" : ",") + row.id;
-    std::vector<std::string> words = {"verify", "--suite", "conformance", "--only", ids,
-                                      "--json", json,      "--seed",      std::to_string(options.seed)};
+    std::vector<std::string> words = {
+        "verify", "--suite", "conformance", "--only", ids, "--json", json, "--seed", std::to_string(options.seed)};
     if (!options.device.empty()) words.insert(words.end(), {"--device", options.device});
     if (options.pipelines) words.insert(words.end(), {"--pipelines", options.pipelines->string()});
     if (is_full) words.emplace_back("--full");

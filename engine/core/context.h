@@ -45,7 +45,7 @@ struct Context::State {
     const KernelWatch& watch() const { return watch_; }                 // ContextDesc::watch_kernels
     const DeviceProperties& properties() const { return properties_; }  // what is enabled, not merely supported
     const KernelTuning& tuning() const { return tuning_; }
-    float timestamp_period_ns() const { return timestamp_period_ns_; }  // 0: the queue has no timestamps
+    float timestamp_period_ns() const { return timestamp_period_ns_; }   // 0: the queue has no timestamps
     bool is_validating() const { return messenger_ != VK_NULL_HANDLE; }  // ContextDesc::validation
     std::uint64_t absent() const { return absent_; }                     // Context::absent
 

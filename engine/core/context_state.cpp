@@ -213,7 +213,9 @@ void Context::State::create_own_objects(const AllocatorHooks& allocator, const s
 
 // Each pair of words is the address again, so that what is absent has only absent parts.
 void Context::State::create_absent() {
-    absent_memory_ = allocator_->allocate({"absent", absent_bytes, VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, Memory::upload, 16});
+    absent_memory_ = allocator_->allocate(
+        {"absent", absent_bytes, VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+         Memory::upload, 16});
     VkBufferDeviceAddressInfo address{};
     address.sType = VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO;
     address.buffer = absent_memory_.buffer;

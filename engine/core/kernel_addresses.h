@@ -23,8 +23,8 @@ struct KernelAddress {
 // other pairs of words; hosts never leave those 0.
 std::vector<KernelAddress> kernel_addresses(std::span<const std::uint32_t> spirv);
 
-// Arguments with Context::absent in place of 0. With ContextDesc::validation, and on a CPU, whose addresses are those of
-// the host, an address at which nothing can be read becomes a validation message that names kernel and argument.
+// Arguments with Context::absent in place of 0. With ContextDesc::validation, and on a CPU, whose addresses are those
+// of the host, an address at which nothing can be read becomes a validation message that names kernel and argument.
 std::vector<std::byte> readable_args(Context& context, const std::string& kernel,
                                      std::span<const KernelAddress> addresses, std::span<const std::byte> args);
 

@@ -17,7 +17,7 @@ struct CountFacesArgs
 {
     FaceTable table;
     REF(Hit) hits;
-    Uints groups; // of each face; null: a face is its own group
+    Uints groups; // of each face; absent: a face is its own group
     // One more than groups: the last one counts as odd the pairs of which one ray meets any group.
     REF(GroupCount) counts;
     uint ray_count;

@@ -46,7 +46,7 @@ struct FaceTargetsArgs
     FaceTable table;
     REF(Ray) rays;
     REF(Hit) hits;
-    Uints groups;  // by face; null: each face is its own
+    Uints groups;  // by face; absent: each face is its own
     Uints targets; // written: the group of what each ray meets, or TARGET_*
     uint count;
     uint is_two_sided;

@@ -8,7 +8,7 @@ struct VisibleArgs
 {
     Floats points;  // three each
     Floats vectors; // likewise
-    Floats normals; // of the points, or null
+    Floats normals; // of the points, or absent
     REF(Ray) rays;  // of a tile: by point, then by vector; one that leaves the back of its point ends before it begins
     REF(Hit) hits;
     Uints answers;  // a byte a ray

@@ -25,7 +25,7 @@ struct InstancedMesh
     Rows object_to_world;
     Floats positions;
     Uints indices;
-    Uints vertex_ids;    // of each vertex: those with one id are one; null: each is its own
+    Uints vertex_ids;    // of each vertex: those with one id are one; absent: each is its own
     uint first_triangle; // ascending from one instanced mesh to the next
     uint is_mirrored;    // 1 where the map turns triangles round
 };

@@ -66,7 +66,7 @@ struct QueryArgs
     Address structure; // a top level
     REF(Shot) shots;
     REF(Answer) answers; // written
-    Uints candidates;    // written: `slots` words for each shot, those of its first candidates; null where slots is 0
+    Uints candidates;    // written: `slots` words for each shot, those of its first candidates; absent where slots is 0
     uint count;
     uint slots;
 };

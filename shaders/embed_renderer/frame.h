@@ -10,7 +10,7 @@ const uint BACKGROUND = 0xffffffffu;   // instance in the target of ids
 struct FrameData
 {
     REF(SurfaceInstance) instances;
-    REF(VertexExtras) extras; // null: no mesh has any
+    REF(VertexExtras) extras; // absent: no mesh has any
     REF(SurfaceMaterial) materials;
     TextureTable textures;
     CameraRays camera;

@@ -34,5 +34,6 @@ void main()
 {
     uint i = args.first + global_index();
     if (i >= args.end) return;
-    trace(args.scene, AT(args.rays, i), trace_options(args.mask, args.flags | ALL_NON_OPAQUE, QUERY_CLOSEST, absent_near(args.scene)));
+    uint flags = args.flags | ALL_NON_OPAQUE;
+    trace(args.scene, AT(args.rays, i), trace_options(args.mask, flags, QUERY_CLOSEST, absent_near(args.scene)));
 }

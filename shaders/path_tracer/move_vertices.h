@@ -7,8 +7,8 @@ struct MoveVerticesArgs
 {
     REF(SurfaceVertex) vertices;
     Floats positions; // 3 floats a vertex
-    Floats normals;   // 3; null: the mesh has none
-    Floats tangents;  // 4; null: the mesh has none
+    Floats normals;   // 3; absent: the mesh has none
+    Floats tangents;  // 4; absent: the mesh has none
     uint count;
 };
 #endif

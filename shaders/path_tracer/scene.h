@@ -56,11 +56,11 @@ struct SurfaceInstance
     Rows world_to_object;
     REF(SurfaceVertex) vertices;
     REF(SurfaceTriangle) triangles;
-    Floats emitter_density; // per triangle: probability of being chosen as light / world area; null if none emits
+    Floats emitter_density; // per triangle: probability of being chosen as light / world area; absent if none emits
 };
 BUFFER_OF(SurfaceInstance, 8);
 
-// What vertices of a mesh have beyond SurfaceVertex; null: not these. By Hit::instance_index.
+// What vertices of a mesh have beyond SurfaceVertex; absent: not these. By Hit::instance_index.
 struct VertexExtras
 {
     Vec2s second_uvs;
@@ -222,10 +222,10 @@ struct Environment
 struct SceneData
 {
     REF(SurfaceInstance) instances;
-    REF(VertexExtras) extras; // null: no mesh has any
+    REF(VertexExtras) extras; // absent: no mesh has any
     REF(SurfaceMaterial) materials;
-    REF(LayeredMaterial) layered; // null: no material has layers
-    Uints material_kinds; // of the materials; null where all are of one
+    REF(LayeredMaterial) layered; // absent: no material has layers
+    Uints material_kinds; // of the materials; absent where all are of one
     TextureTable textures; // of the materials; empty: none has any
     LocalLightsView lights;
     REF(SetKey) light_keys; // those that may be chosen

@@ -69,17 +69,17 @@ struct WaveData
     PathQueue paths;
     REF(Ray) next_rays;
     PathQueue next_paths;
-    Uints media;                      // of the paths: 1 + the material of the volume that it is in, 0: none; null
+    Uints media;                      // of the paths: 1 + the material of the volume that it is in, 0: none; absent
     Uints next_media;                 // without PT_HAS_MEDIA
     REF(Ray) shadow_rays;
     ShadowQueue shadows;
     REF(Ray) next_shadow_rays;
     ShadowQueue next_shadows;
-    REF(KindQueue) kinds;             // null where all materials are of one kind
+    REF(KindQueue) kinds;             // absent where all materials are of one kind
     Uints queues;                     // for each kind, `capacity` indices of rays
     REF(Counters) counters;
     REF(Radiance) sums;
-    REF(FirstSurface) first_surfaces; // one per pixel; null without PT_HAS_AOVS
+    REF(FirstSurface) first_surfaces; // one per pixel; absent without PT_HAS_AOVS
     FilmWindow window;
     uint capacity;                    // of the arrays
 };

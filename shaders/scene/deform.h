@@ -6,13 +6,13 @@
 struct DeformArgs
 {
     Floats positions; // 3 floats a vertex
-    Floats normals;   // 3; null: none
-    Floats tangents;  // 4; null: none
+    Floats normals;   // 3; absent: none
+    Floats tangents;  // 4; absent: none
     Floats moved_positions;
     Floats moved_normals;
     Floats moved_tangents;
     Floats target_positions; // 3 floats a vertex, target after target
-    Floats target_normals;   // likewise; null: none
+    Floats target_normals;   // likewise; absent: none
     Floats target_tangents;  // likewise
     Floats target_weights;
     Uints joints;         // `influences` a vertex

@@ -26,8 +26,8 @@ struct BuildTree
 {
     uint first;
     uint count;
-    Floats positions;              // 3 floats a vertex of triangles, 6 a box; null: instances
-    Uints indices;                 // 3 a triangle; null: boxes
+    Floats positions;              // 3 floats a vertex of triangles, 6 a box; absent: instances
+    Uints indices;                 // 3 a triangle; absent: boxes
     REF(Bvh) bvh;
     REF(BvhNode) nodes;            // of the scratch where there are records
     REF(BvhTriangle) triangles;    // of layout bvh2
@@ -70,7 +70,7 @@ struct BuildArgs
     REF(CentroidBounds) centroids; // one per tree
     Uints codes;        // Morton codes by leaf; from the sort on in order
     Uints low_codes;    // by leaf: the lower halves of 60-bit Morton codes
-    Uints tree_of;      // by leaf; null: a single tree
+    Uints tree_of;      // by leaf; absent: a single tree
     Uints duplicates;   // by tree, counted until they are enough: see needs_low_codes
     REF(DuplicateCodes) duplicate_codes;
     Uints order;        // the leaves in order

@@ -113,7 +113,7 @@ struct Bvh
 {
     vec3 lo; // around all active leaves; lo > hi: there are none
     vec3 hi;
-    REF(BvhNode) nodes; // of layout bvh2, else null
+    REF(BvhNode) nodes; // of layout bvh2, else absent
     uint root;
     uint leaf_count;
 };
@@ -123,8 +123,8 @@ BUFFER_OF(Bvh, 8);
 struct SwGeometry
 {
     Bvh bvh;
-    REF(BvhTriangle) triangles;    // of layout bvh2, else null
-    REF(CompressedRecord) records; // of all other layouts, else null
+    REF(BvhTriangle) triangles;    // of layout bvh2, else absent
+    REF(CompressedRecord) records; // of all other layouts, else absent
     uint kind; // GEOMETRY_*
     uint reserved;
 };

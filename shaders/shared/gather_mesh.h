@@ -14,7 +14,7 @@ struct GatherMeshArgs
 {
     Address positions;
     Address indices;
-    Uints count_on_device; // null: triangle_count
+    Uints count_on_device; // absent: triangle_count
     Floats to_positions;
     Uints to_indices;
     Uints faulty; // counts triangles with an index out of range

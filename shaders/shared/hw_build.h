@@ -8,9 +8,9 @@
 struct HwGatherArgs
 {
     REF(InstanceRecord) records;
-    Uints order;                // null: the order that `instances` has already
+    Uints order;                // absent: the order that `instances` has already
     REF(InstanceRecord) driver_records;
-    REF(HwInstance) instances;  // null: the records keep their order
+    REF(HwInstance) instances;  // absent: the records keep their order
     REF(AreaItem) areas;        // the boxes in the world, in build order
     uint count;
     uint reserved;
@@ -24,8 +24,8 @@ struct HwTrianglesArgs
     REF(HwGeometry) geometry; // its box: written by triangle_bound, read by the others
     REF(WorldBoundBits) bits;
     Uints keys;               // Morton codes, written by triangle_codes
-    Uints order;              // position -> triangle of the mesh; null: the order that `table` has already
-    Uints table;              // the same, kept for the trace kernels; null: the mesh's order
+    Uints order;              // position -> triangle of the mesh; absent: the order that `table` has already
+    Uints table;              // the same, kept for the trace kernels; absent: the mesh's order
     Floats vertices;           // 9 a triangle, by position
     REF(AreaItem) areas;      // their boxes
     uint count;

@@ -10,7 +10,7 @@ struct HwGeometry
     vec3 lo;
     vec3 hi;
     Address blas;    // device address of the bottom-level structure; 0: nothing can be hit
-    Uints triangles;  // primitive of the built geometry -> the user's; null: the same
+    Uints triangles;  // primitive of the built geometry -> the user's; absent: the same
     uint kind;        // GEOMETRY_*
     uint reserved;
 };
@@ -29,7 +29,7 @@ struct HwTlasHeader
 {
     AccelHeader accel;
     Address tlas;              // device address of the top-level acceleration structure
-    REF(HwInstance) instances;  // by InstanceId; null without FEATURE_REMAP
+    REF(HwInstance) instances;  // by InstanceId; absent without FEATURE_REMAP
 };
 BUFFER_OF(HwTlasHeader, 8);
 

@@ -10,7 +10,7 @@ struct GivenMesh
 {
     Rows object_to_world;
     Floats positions; // 3 a vertex
-    Uints indices;    // 3 a triangle, in the user's numbering; null: boxes
+    Uints indices;    // 3 a triangle, in the user's numbering; absent: boxes
 };
 
 // An instance of what was built.

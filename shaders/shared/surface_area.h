@@ -31,7 +31,7 @@ struct JoinAreasArgs
     REF(AreaItem) joined;     // one a group
     REF(GeometryBox) root;
     REF(TreeCost) kept;       // at_build, from the last build on
-    REF(TreeCost) result;     // null but in the last step
+    REF(TreeCost) result;     // absent but in the last step
     uint count;
     uint is_build;
 };
@@ -40,7 +40,7 @@ struct JoinAreasArgs
 struct NodeAreasArgs
 {
     REF(Bvh) tree;
-    REF(CompressedRecord) records; // null: binary nodes
+    REF(CompressedRecord) records; // absent: binary nodes
     REF(AreaItem) items;
     uint count;
     uint reserved;

@@ -45,9 +45,9 @@ struct TraceArgs
     Address scene; // AccelView::scene
     REF(Ray) rays;
     REF(Hit) hits;
-    Uints indirect_count; // null, or where a smaller count may stand
+    Uints indirect_count; // absent, or where a smaller count may stand
     Address user_data;
-    Uints order; // null, or which ray each invocation traces
+    Uints order; // absent, or which ray each invocation traces
     uint count; // where the rays of this launch end
     uint mask;
     uint flags;

@@ -55,8 +55,7 @@ TEST_F(CpuVectors, AreWidenedWhereThatIsPreferredAndCodeHasAFolder) {
 TEST_F(CpuVectors, AreSetInTheEnvironmentWithTheFolder) {
     setenv("XDG_CACHE_HOME", (caches_ / "").c_str(), 1);
     widen_cpu_vectors();
-    const bool is_preferred =
-        prefers_512_bit_vectors() && std::ranges::any_of(list_devices(), takes_any_vector_width);
+    const bool is_preferred = prefers_512_bit_vectors() && std::ranges::any_of(list_devices(), takes_any_vector_width);
     EXPECT_EQ(variable("LP_NATIVE_VECTOR_WIDTH"), is_preferred ? Text("512") : std::nullopt);
     EXPECT_EQ(variable("MESA_SHADER_CACHE_DIR"), is_preferred ? Text(caches_ / "twinray" / "mesa-512") : std::nullopt);
 }

@@ -179,8 +179,7 @@ TEST_F(HostAllocator, MemoryForTheHostMustBeMapped) {
 }
 
 TEST_F(HostAllocator, TheAddressMustBeAligned) {
-    const std::string failure =
-        failure_of({.name = "b", .bytes = 8, .alignment = 1 << 16}, &HostMemory::misplaces);
+    const std::string failure = failure_of({.name = "b", .bytes = 8, .alignment = 1 << 16}, &HostMemory::misplaces);
     EXPECT_NE(failure.find("it must be a multiple of 65536 and not 0"), std::string::npos) << failure;
 }
 

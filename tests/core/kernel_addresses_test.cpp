@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// No kernel gets an address that cannot be read. Every test of a VulkanTest checks it for each dispatch that it makes, by
-// a validation message; here it is seen that the message comes.
+// No kernel gets an address that cannot be read. Every test of a VulkanTest checks it for each dispatch that it makes,
+// by a validation message; here it is seen that the message comes.
 #include "engine/core/kernel_addresses.h"
 
 #include <gtest/gtest.h>
@@ -33,8 +33,8 @@ TEST(KernelAddresses, AreFoundInAModule) {
 }
 
 TraceArgs readable(Context& context, const TraceArgs& args) {
-    const std::vector<std::byte> bytes = readable_args(context, "a kernel", kernel_addresses(swtlas_trace_spirv),
-                                                       std::as_bytes(std::span(&args, 1)));
+    const std::vector<std::byte> bytes =
+        readable_args(context, "a kernel", kernel_addresses(swtlas_trace_spirv), std::as_bytes(std::span(&args, 1)));
     TraceArgs result;
     std::memcpy(&result, bytes.data(), sizeof(result));
     return result;

@@ -6,6 +6,7 @@ lavapipe changes much from one Mesa to the next: README.md and the pages of docs
 Looked at are paragraphs, single items of lists and single rows of tables in which lavapipe and a figure with a unit
 stand. A page whose first paragraph names a Mesa says it for all of the page.
 """
+
 import re
 import sys
 from pathlib import Path

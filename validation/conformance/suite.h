@@ -74,11 +74,12 @@ struct Settings {
 };
 
 // Runs all cases and the control of each, by ray query (backend "hw") and by ray tracing pipeline ("hw-pipeline"). A
-// record a case, each case by both ways before the next, and one with the variant "control: ..." for its control, which passes where it shows faults. Of
-// records that did not pass, fault_of is the driver's, or ours where a control shows nothing or a case could not be
-// carried out. results has "topic", "demand", "what" and "kind". On a device without one of the ways its cases are
-// recorded as not run. `on_record` follows each. A case in which the device is lost or hangs (see
-// ContextDesc::most_wait_seconds) is the driver's fault, and the cases after it are not run: nothing of the context is.
+// record a case, each case by both ways before the next, and one with the variant "control: ..." for its control, which
+// passes where it shows faults. Of records that did not pass, fault_of is the driver's, or ours where a control shows
+// nothing or a case could not be carried out. results has "topic", "demand", "what" and "kind". On a device without one
+// of the ways its cases are recorded as not run. `on_record` follows each. A case in which the device is lost or hangs
+// (see ContextDesc::most_wait_seconds) is the driver's fault, and the cases after it are not run: nothing of the
+// context is.
 void run(Context& context, const Settings& settings, Recorder& recorder, bool quiet,
          const std::function<void(const Record&)>& on_record = {});
 

@@ -39,8 +39,8 @@ layout(constant_id = 105) const bool FUSED_FMA = false;
 // An integer of 64 bits that is no address, likewise two words.
 #define Uint64 uvec2
 const Address NULL_ADDRESS = Address(0u);
-// Kernels get no address that cannot be read, since a driver may read through one before it knows that the branch around
-// the read is not taken. What is absent has an odd address (Context::absent): everything else begins at a multiple of 4.
+// Kernels get no address that cannot be read, since a driver may read through one before it knows that the branch
+// around the read is not taken. What is absent has an odd address (Context::absent); all else has one that 4 divides.
 bool is_absent(Address address) { return (address.x & 1u) != 0u; }
 // The address of something absent, made of that of anything present.
 Address absent_near(Address present) { return Address(present.x | 1u, present.y); }

@@ -26,7 +26,7 @@ BUFFER_OF(GeometryBox, 8);
 // are built in units of `scale`, a power of two near their size, so that neither tiny nor huge ones leave the range of
 // float32; the unit is put back into the map to world space.
 struct GeometrySource {
-    Floats positions;  // of the mesh, in units of scale; null unless level refined needs them
+    Floats positions;  // of the mesh, in units of scale; absent unless level refined needs them
     Uints indices;
     float scale;
     uint reserved;

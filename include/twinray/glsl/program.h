@@ -11,7 +11,8 @@ struct Candidate {
     uint primitive_index;  // box or triangle of the geometry, in the user's numbering
     uint instance_index;
     uint custom_index;
-    Address user_data;  // TraceDesc::user_data, or what a kernel gave closest_hit or any_hit; is_absent() where it gave none
+    Address user_data;  // TraceDesc::user_data, or what a kernel gave closest_hit or any_hit; is_absent() where it gave
+                        // none
 };
 
 #ifdef TWINRAY_PROGRAM

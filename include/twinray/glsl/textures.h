@@ -36,7 +36,7 @@ struct TextureRecord {
 };
 BUFFER_OF(TextureRecord, 8);
 
-// All textures of a store; `records` is null where they are images, which kernels reach through descriptors.
+// All textures of a store; `records` is absent where they are images, which kernels reach through descriptors.
 struct TextureTable {
     REF(TextureRecord) records;
     uint count;
