@@ -30,11 +30,16 @@ bool drivers_here_take_any_width() {
 
 }  // namespace
 
-bool takes_any_vector_width(const DeviceProperties& device) {
+int lavapipe_release(const DeviceProperties& device) {
     constexpr std::string_view mesa = "Mesa ";
     const std::size_t at = device.driver.find(mesa);
-    if (!device.name.starts_with("llvmpipe") || at == std::string::npos) return false;
-    return std::atoi(device.driver.c_str() + at + mesa.size()) < first_mesa_of_one_width;
+    if (!device.name.starts_with("llvmpipe") || at == std::string::npos) return 0;
+    return std::atoi(device.driver.c_str() + at + mesa.size());
+}
+
+bool takes_any_vector_width(const DeviceProperties& device) {
+    const int release = lavapipe_release(device);
+    return release != 0 && release < first_mesa_of_one_width;
 }
 
 bool prefers_512_bit_vectors() {
