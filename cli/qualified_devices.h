@@ -19,7 +19,7 @@ struct QualifiedDevice {
 };
 
 // A pure function of what the loader has, of whether the CPU has vectors of 512 bits, and of a manifest of SwiftShader
-// ("": none). lavapipe is checked with each width of its vectors.
+// ("": none). lavapipe below Mesa 26 is checked with each width of its vectors.
 std::vector<QualifiedDevice> devices_to_qualify(std::span<const DeviceProperties> devices, bool has_512_bit_vectors,
                                                 const std::filesystem::path& swiftshader);
 std::vector<QualifiedDevice> devices_to_qualify();  // of this machine

@@ -107,9 +107,8 @@ Command qualify_command() {
         "Devices",
         {{.name = "--devices",
           .value = choice(options->devices, {"one", "all"}),
-          .help =
-              "all: every device of the loader, lavapipe with vectors of 128, 256 and 512 bits, and SwiftShader where "
-              "a browser brought it; each in a process of its own"},
+          .help = "all: every device of the loader, lavapipe below Mesa 26 with vectors of 128, 256 and 512 bits, and "
+                  "SwiftShader where a browser brought it; each in a process of its own"},
          {.name = "--budget",
           .value = number(options->budget, {.least = 1}),
           .help = "seconds for each device; 60 if not given"}}};

@@ -60,7 +60,7 @@ std::vector<conformance::Case> cases_left(const std::vector<std::string>& only, 
     return left;
 }
 
-// What that process does: appends the records to options.json, prints nothing.
+// Runs in that process: appends the records to options.json, prints nothing.
 int run_conformance_here(const CommonOptions& options, const std::vector<std::string>& only, bool is_full) {
     Context context(watched_context_desc(options, most_conformance_seconds));
     Recorder recorder({utc_now(), twinray_version, probed_device(context)});
@@ -86,10 +86,10 @@ void run_conformance(const CommonOptions& options, const std::vector<std::string
     for (std::vector<conformance::Case> left = cases_left(only, all); !left.empty(); left = cases_left(only, all)) {
         const TemporaryFile file;
         const int status = run_twinray(arguments_of(options, left, is_full, file.path()), {{here_variable, "1"}});
-        if (status != 0 && status < 128) fail("the cases of conformance could not be run: see above");
         const std::vector<Record> records = read_json_lines(file.path()).records;
         for (const Record& record : records) take(record);
         if (status == 0) return;
+        if (status < 128) fail("the cases of conformance could not be run: see above");
         const std::string how = text("the driver ended the process: ", strsignal(status - 128));
         for (const conformance::Case& row : left) {
             const std::vector<Record> ended =

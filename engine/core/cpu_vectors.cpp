@@ -5,6 +5,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <csignal>
 #include <cstdlib>
 
 #include "engine/core/pipeline_store.h"
@@ -13,19 +15,26 @@ namespace twinray {
 namespace {
 
 constexpr int first_mesa_of_one_width = 26;
+constexpr unsigned most_seconds_to_look = 10;
 
 // In a process of its own, since a driver that was loaded keeps the width that it found.
 bool drivers_here_take_any_width() {
     const pid_t child = fork();
     if (child == 0) {
+        // Another thread of this process may have held a lock that loading a driver wants.
+        std::signal(SIGALRM, SIG_DFL);
+        alarm(most_seconds_to_look);
         try {
             _exit(std::ranges::any_of(list_devices(), takes_any_vector_width) ? EXIT_SUCCESS : EXIT_FAILURE);
-        } catch (const std::exception&) {
+        } catch (...) {
             _exit(EXIT_FAILURE);
         }
     }
     int status = 0;
-    return child > 0 && waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == EXIT_SUCCESS;
+    pid_t ended = 0;
+    do ended = waitpid(child, &status, 0);
+    while (ended < 0 && errno == EINTR);
+    return child > 0 && ended == child && WIFEXITED(status) && WEXITSTATUS(status) == EXIT_SUCCESS;
 }
 
 }  // namespace

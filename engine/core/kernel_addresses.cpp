@@ -37,9 +37,10 @@ struct Member {
 class Declarations {
   public:
     explicit Declarations(Words spirv) {
-        for (std::size_t at = header_words; at < spirv.size(); at += spirv[at] >> 16) {
-            if ((spirv[at] & 0xffffu) == Function) return;
-            take(spirv.subspan(at, spirv[at] >> 16));
+        for (std::size_t at = header_words, words = 0; at < spirv.size(); at += words) {
+            words = spirv[at] >> 16;
+            if ((spirv[at] & 0xffffu) == Function || words == 0 || words > spirv.size() - at) return;
+            take(spirv.subspan(at, words));
         }
     }
     std::vector<KernelAddress> addresses() const {
@@ -104,6 +105,9 @@ std::vector<std::byte> readable_args(Context& context, const std::string& kernel
     const std::uint64_t absent = context.absent();
     const bool is_checked = context.state().is_validating() && context.properties().kind == DeviceKind::cpu;
     for (const KernelAddress& member : addresses) {
+        if (member.offset + sizeof(std::uint64_t) > readable.size())
+            fail("kernel '", kernel, "': its arguments have ", readable.size(), " bytes, and the module reads '",
+                 member.name, "' at ", member.offset);
         std::byte* const at = readable.data() + member.offset;
         std::uint64_t address = 0;
         std::memcpy(&address, at, sizeof(address));

@@ -19,12 +19,13 @@ struct KernelAddress {
     std::uint32_t offset = 0;
 };
 
-// All members of type REF(T), by the names that glslang leaves in a module. Members of type Address are not told from
-// other pairs of words; hosts never leave those 0.
+// All members of type REF(T), by the names that glslang leaves in a module, but not those in arrays. Members of type
+// Address are not told from other pairs of words; hosts never leave those 0.
 std::vector<KernelAddress> kernel_addresses(std::span<const std::uint32_t> spirv);
 
 // Arguments with Context::absent in place of 0. With ContextDesc::validation, and on a CPU, whose addresses are those
 // of the host, an address at which nothing can be read becomes a validation message that names kernel and argument.
+// Throws Error for arguments that are shorter than the module's.
 std::vector<std::byte> readable_args(Context& context, const std::string& kernel,
                                      std::span<const KernelAddress> addresses, std::span<const std::byte> args);
 

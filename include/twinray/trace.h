@@ -122,7 +122,8 @@ struct TraceDesc {
     // Needed where the scene has boxes or non-opaque instances; made by AbstractAccel::make_program of the same
     // accelerator, and kept alive until the GPU is done.
     const TraceProgram* program = nullptr;
-    std::uint64_t user_data = 0;  // for the program: most often the device address of what its primitives are
+    // For the program: most often the device address of what its primitives are. In place of 0 it gets Context::absent.
+    std::uint64_t user_data = 0;
 };
 
 // What twinray_add_trace_program() of CMake makes of a GLSL file with intersect_primitive and accept_hit (see

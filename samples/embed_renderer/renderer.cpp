@@ -113,7 +113,7 @@ FrameData Renderer::frame_data(const Stage& stage, const Options& options) const
     data.height = options.height;
     data.shadow_rays = options.shadow_rays;
     data.ao_rays = options.ao_rays;
-    context_.fill_absent(data.instances, data.extras, data.materials);
+    context_.fill_absent(data.instances, data.extras, data.materials, data.textures.records, data.textures.faults);
     return data;
 }
 

@@ -11,7 +11,7 @@ SceneBuffers::SceneBuffers(const Device& device, Context& context, const Scene& 
     : device_(device), textures_(context, "textures", TextureStorage::buffers) {
     path_tracer::TextureList list;
     instances_ = add_instances(scene);
-    extras_ = add_extras(scene);
+    extras_ = add_extras(context, scene);
     materials_ = add(path_tracer::material_records(scene, list));
     path_tracer::push_textures(textures_, scene, list);
     textures_.sync();
@@ -53,13 +53,16 @@ Ref<SurfaceInstance> SceneBuffers::add_instances(const Scene& scene) {
     return add(records);
 }
 
-// Null where no mesh has any.
-Ref<VertexExtras> SceneBuffers::add_extras(const Scene& scene) {
+// Absent where no mesh has any.
+Ref<VertexExtras> SceneBuffers::add_extras(const Context& context, const Scene& scene) {
     const auto has_any = [](const Mesh& mesh) { return !mesh.colors.empty() || !mesh.second_uvs.empty(); };
     if (std::ranges::none_of(scene.meshes, has_any)) return {};
     std::vector<VertexExtras> of_meshes, records;
-    for (const Mesh& mesh : scene.meshes)
-        of_meshes.push_back({{add(mesh.second_uvs).address}, {add(mesh.colors).address}});
+    for (const Mesh& mesh : scene.meshes) {
+        VertexExtras& extras = of_meshes.emplace_back();
+        extras = {{add(mesh.second_uvs).address}, {add(mesh.colors).address}};
+        context.fill_absent(extras.second_uvs, extras.colors);
+    }
     for (const Instance& instance : scene.instances) records.push_back(of_meshes[instance.mesh]);
     return add(records);
 }

@@ -30,7 +30,7 @@ class SceneBuffers {
     template <class T>
     Ref<T> add(const std::vector<T>& values);
     Ref<SurfaceInstance> add_instances(const Scene& scene);
-    Ref<VertexExtras> add_extras(const Scene& scene);
+    Ref<VertexExtras> add_extras(const Context& context, const Scene& scene);
 
     const Device& device_;
     std::vector<HostBuffer> buffers_;

@@ -21,7 +21,7 @@ uint code_of(InstanceRecord record)
     precise vec3 middle = box.lo * 0.5f + box.hi * 0.5f; // halved first: their sum might not be finite
     vec3 center = transform_point(to_world, middle);
     WorldBound bound = AT(args.bound, 0);
-    return morton_code(center, bound.lo, bound.hi);
+    return min(morton_code(center, bound.lo, bound.hi), LAST - 1u);
 }
 
 void main()

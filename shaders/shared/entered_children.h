@@ -43,7 +43,7 @@ FUNC SwTree top_tree(SwTlasHeader scene)
 {
     SwTree tree;
     tree.nodes = scene.bvh.nodes;
-    tree.triangles = REF(BvhTriangle)(scene.instances.address) /* has none */;
+    tree.triangles = REF(BvhTriangle)(scene.instances.address); // read of no leaf: they are instances
     tree.records = scene.records;
     tree.root = scene.bvh.root;
     return tree;

@@ -123,8 +123,9 @@ FUNC LeafBox box_of_instance(SwGeometry geometry, Rows to_world, Rows to_object)
     return world;
 }
 
-// `record`: in built units. `box`: in world space, empty where nothing of the instance is hit.
-FUNC SwInstance place_instance(InstanceRecord record, INOUT(LeafBox) box)
+// `record`: in built units. `absent`: the address of a tree where there is none. `box`: in world space, empty where
+// nothing of the instance is hit.
+FUNC SwInstance place_instance(InstanceRecord record, Address absent, INOUT(LeafBox) box)
 {
     Rows to_world = to_world_of(record);
     Rows to_object = inverse_of(to_world);
@@ -132,6 +133,9 @@ FUNC SwInstance place_instance(InstanceRecord record, INOUT(LeafBox) box)
     instance.world_to_object = to_object;
     instance.custom_index_mask = record.custom_index_mask;
     instance.flags = flags_of(record);
+    instance.nodes = REF(BvhNode)(absent);
+    instance.triangles = REF(BvhTriangle)(absent);
+    instance.records = REF(CompressedRecord)(absent);
     instance.kind = GEOMETRY_TRIANGLES;
     instance.root = NOTHING;
     instance.extent = 0.0f;

@@ -17,7 +17,8 @@ void main()
     {
         uint index = chunk.first + i;
         LeafBox box = empty_box();
-        AT(args.instances, index) = place_instance(in_built_units(AT(args.records, index)), box);
+        InstanceRecord record = in_built_units(AT(args.records, index));
+        AT(args.instances, index) = place_instance(record, absent_near(args.records.address), box);
         store_box(args.boxes, index, box);
         add_center(centers, box);
     }

@@ -35,6 +35,8 @@ Record blank(const Case& row, Way way, const Settings& settings) {
     return record;
 }
 
+std::string control_variant(const Case& row) { return text("control: a driver that ", name_of(row.control)); }
+
 void fill(Record& record, const Tally& tally, double seconds) {
     record.n = tally.n;
     record.faults = tally.faults;
@@ -92,7 +94,7 @@ class Runner {
         Record record = blank(row, way_, settings_);
         guarded(record, [&] { run_case(row, record); });
         Record control = blank(row, way_, settings_);
-        control.variant = text("control: a driver that ", name_of(row.control));
+        control.variant = control_variant(row);
         control.criterion = "control: must show faults, which proves that the case sees them";
         guarded(control, [&] { run_control(row, control); });
     }
@@ -218,11 +220,14 @@ std::vector<Record> records_of_ended(const Case& row, std::span<const Record> fi
                                      const std::string& how) {
     std::vector<Record> records;
     for (const Way way : {Way::query, Way::pipeline}) {
-        const auto is_of_it = [&](const Record& record) {
-            return record.case_id == row.id && record.backend == name_of(way);
+        const auto has = [&](const auto& wanted) {
+            return std::ranges::any_of(finished, [&](const Record& record) {
+                return record.case_id == row.id && record.backend == name_of(way) && wanted(record);
+            });
         };
-        if (std::ranges::any_of(finished, is_of_it)) continue;
+        if (has([](const Record& record) { return is_control(record) || !record.was_run; })) continue;
         Record record = blank(row, way, settings);
+        if (has([](const Record&) { return true; })) record.variant = control_variant(row);
         record.reason = how;
         record.was_run = records.empty();
         if (record.was_run) {

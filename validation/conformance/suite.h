@@ -83,8 +83,9 @@ struct Settings {
 void run(Context& context, const Settings& settings, Recorder& recorder, bool quiet,
          const std::function<void(const Record&)>& on_record = {});
 
-// Records of a case that was begun in a process which the driver ended, beside those that it left: a fault of the
-// driver, `how` it ended, and what was not run for it. None where `finished` has all of the case.
+// Records of a case that was begun in a process which the driver ended, beside those that it left: the first that is
+// missing is a fault of the driver, `how` it ended, and the others were not run for it. None where `finished` has all
+// of the case: of each way one that was not run, or its control.
 std::vector<Record> records_of_ended(const Case& row, std::span<const Record> finished, const Settings& settings,
                                      const std::string& how);
 

@@ -80,7 +80,7 @@ std::vector<LeafBox> leaves_instances(std::span<const InstanceRecord> records, s
     instances.clear();
     for (const InstanceRecord& record : records) {
         LeafBox box;
-        instances.push_back(place_instance(record, box));
+        instances.push_back(place_instance(record, NULL_ADDRESS, box));
         boxes.push_back(box);
     }
     return boxes;

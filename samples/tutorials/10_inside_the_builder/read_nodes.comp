@@ -8,8 +8,8 @@ layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push
 {
     Address accel;
-    REF(BvhNode) nodes;            // of layout bvh2, or null
-    REF(CompressedRecord) records; // of layout compressed4, or null
+    REF(BvhNode) nodes;            // of layout bvh2, or absent
+    REF(CompressedRecord) records; // of layout compressed4, or absent
     Uints primitives;              // with the nodes: by position in the order
     uint count;
 } push;

@@ -52,5 +52,41 @@ TEST(ConformanceRecords, OnlyWhatVulkanDemandsFails) {
     EXPECT_FALSE(has_fault_of_ours(std::vector{record(false, "driver", "must")}));
 }
 
+// A process that the driver ended leaves the first records of a case, in this order.
+TEST(ConformanceEnded, CasesAreAFaultOfTheDriverWhereTheyWereBegun) {
+    const Case row = catalogue()[3];
+    std::vector<Record> all;
+    for (const char* backend : {"hw", "hw-pipeline"})
+        for (const char* variant : {"", "control: a driver that errs"}) {
+            Record record;
+            record.case_id = row.id;
+            record.backend = backend;
+            record.variant = variant;
+            all.push_back(record);
+        }
+    const auto missing = [&](std::size_t finished) {
+        return records_of_ended(row, std::span(all).first(finished), {}, "the driver ended the process");
+    };
+    const std::vector<Record> none = missing(0);
+    ASSERT_EQ(none.size(), 2u);
+    EXPECT_EQ(none[0].backend, "hw");
+    EXPECT_EQ(none[0].variant, "");
+    EXPECT_EQ(none[0].pass, false);
+    EXPECT_EQ(none[0].fault_of, "driver");
+    EXPECT_EQ(none[0].reason, "the driver ended the process");
+    EXPECT_FALSE(none[1].was_run);
+    ASSERT_EQ(missing(1).size(), 2u) << "it died in the control";
+    EXPECT_TRUE(missing(1)[0].variant.starts_with("control"));
+    ASSERT_EQ(missing(2).size(), 1u);
+    EXPECT_EQ(missing(2)[0].backend, "hw-pipeline");
+    EXPECT_EQ(missing(2)[0].pass, false);
+    ASSERT_EQ(missing(3).size(), 1u);
+    EXPECT_TRUE(missing(3)[0].variant.starts_with("control"));
+    EXPECT_TRUE(missing(4).empty());
+    all[0].was_run = all[2].was_run = false;
+    EXPECT_TRUE(records_of_ended(row, std::vector{all[0], all[2]}, {}, "").empty())
+        << "what is left out has no control";
+}
+
 }  // namespace
 }  // namespace twinray::conformance
