@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "engine/core/error.h"
+#include "engine/core/kernel_addresses.h"
 
 namespace twinray {
 namespace {

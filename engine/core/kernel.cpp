@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "engine/core/error.h"
+#include "engine/core/kernel_addresses.h"
 
 namespace twinray {
 namespace {

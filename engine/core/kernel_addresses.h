@@ -9,15 +9,9 @@
 #include <string>
 #include <vector>
 
-#include <twinray/context.h>
+#include "engine/core/pipeline_table.h"
 
 namespace twinray {
-
-// An address in the push constants of a kernel.
-struct KernelAddress {
-    std::string name;  // of the member, as "mesh.indices"
-    std::uint32_t offset = 0;
-};
 
 // All members of type REF(T), by the names that glslang leaves in a module, but not those in arrays. Members of type
 // Address are not told from other pairs of words; hosts never leave those 0.

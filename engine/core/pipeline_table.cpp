@@ -3,6 +3,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/kernel.h"
+#include "engine/core/kernel_addresses.h"
 
 namespace twinray {
 namespace {

@@ -7,14 +7,20 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <vector>
 
-#include "engine/core/kernel_addresses.h"
 #include "engine/core/vulkan_functions.h"
 
 namespace twinray {
 
 class Context;
 struct KernelDesc;
+
+// An address in the push constants of a kernel: see engine/core/kernel_addresses.h.
+struct KernelAddress {
+    std::string name;  // of the member, as "mesh.indices"
+    std::uint32_t offset = 0;
+};
 
 // Destroys what it holds when the last who shares it lets go: not before the GPU is done with it.
 struct CompiledKernel {
