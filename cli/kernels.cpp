@@ -73,10 +73,13 @@ int run(const KernelsOptions& options) {
     return compile_families(options);
 }
 
-std::vector<std::string> family_names() {
+// Their names are too many for the line that names the option.
+Value families(std::vector<std::string>& target) {
     std::vector<std::string> names;
     for (const kernels::Family& family : kernels::all_families()) names.emplace_back(family.name);
-    return names;
+    Value value = choices(target, names);
+    value.metavar = "FAMILY,...";
+    return value;
 }
 
 }  // namespace
@@ -95,26 +98,27 @@ Command kernels_command() {
             "does not tell is empty. Then what builds of the software accelerator record, and the bytes a triangle "
             "that they move at least. Nothing runs: with --family, Mesa's drivers compile for GPUs that are not there, "
             "over the shims of Debian's package mesa-drm-shim.",
-        .sections = {{"Which",
-                      {{.name = "--device",
-                        .value = word(options->device, "DEVICE"),
-                        .help = "index or a part of the name, as `twinray devices` shows them; the fastest if not "
-                                "given",
-                        .excludes = {"--family"}},
-                       {.name = "--family",
-                        .value = choices(options->families, family_names()),
-                        .help = "GPUs that need not be there: of AMD (navi10 to gfx1201: RDNA 1 to 4), NVIDIA and "
-                                "Qualcomm"},
-                       {.name = "--filter",
-                        .value = word(options->filter, "TEXT"),
-                        .help = "only kernels with this in their name or specialisation"}}},
-                     {"Output",
-                      {{.name = "--against",
-                        .value = file(options->against),
-                        .help = "what --json wrote earlier: says which kernels take more registers, scratch, shared "
-                                "memory or spills, or 2 % more instructions, and which are new; figures of another "
-                                "release of Mesa are not compared, and that is a fault"},
-                       json_option(options->json)}}},
+        .sections =
+            {{"Which",
+              {{.name = "--device",
+                .value = word(options->device, "DEVICE"),
+                .help = "index or a part of the name, as `twinray devices` shows them; the fastest if not "
+                        "given",
+                .excludes = {"--family"}},
+               {.name = "--family",
+                .value = families(options->families),
+                .help = "GPUs that need not be there: of AMD (navi10, navi21, navi31, gfx1201: RDNA 1 to 4), NVIDIA "
+                        "(turing, ampere, ada, blackwell) and Qualcomm (adreno740)"},
+               {.name = "--filter",
+                .value = word(options->filter, "TEXT"),
+                .help = "only kernels with this in their name or specialisation"}}},
+             {"Output",
+              {{.name = "--against",
+                .value = file(options->against),
+                .help = "what --json wrote earlier: says which kernels take more registers, scratch, shared "
+                        "memory or spills, or 2 % more instructions, and which are new; figures of another "
+                        "release of Mesa are not compared, and that is a fault"},
+               json_option(options->json)}}},
         .examples = {{"twinray kernels --family navi31,ampere,adreno740", "three vendors, without any GPU"},
                      {"twinray kernels --filter \"swtlas_trace closest\"", "what traces on this device"}},
         .fault = "a kernel grew past its limit, or has none that can be compared",
