@@ -111,7 +111,7 @@ TEST(ConformanceOfAHungDevice, TellsTheCaseAndEnds) {
     EXPECT_NE(hung.find("it has ended none of its submissions for 0.01 s"), std::string::npos) << hung;
     for (const Record& record : std::span(recorder.records()).subspan(9)) {
         EXPECT_FALSE(record.was_run);
-        EXPECT_EQ(record.reason, "the device was lost in K05");
+        EXPECT_EQ(record.reason, "the device was lost in K03");
     }
     driver.heal();
 }
