@@ -59,7 +59,8 @@ TEST_F(KernelAddressesOnDevice, ThatAreAbsentCanBeRead) {
 TEST(KernelAddressesOfACpu, ThatCannotBeReadAreNamed) {
     const std::unique_ptr<Context> context = test::make_context({.log = [](std::string_view) {}});
     if (!context) return;
-    if (context->properties().kind != DeviceKind::cpu) GTEST_SKIP() << "needs a device with addresses of the host";
+    if (context->properties().kind != DeviceKind::cpu)
+        TWINRAY_LACKS("host_addresses", "needs a device with addresses of the host");
     TraceArgs args{};
     args.order.address = 64;
     readable(*context, args);
@@ -70,7 +71,8 @@ TEST(KernelAddressesOfACpu, ThatCannotBeReadAreNamed) {
 }
 
 TEST_F(KernelAddressesOnDevice, OfWhatIsAbsentLeadBackToIt) {
-    if (context().properties().kind != DeviceKind::cpu) GTEST_SKIP() << "needs a device with addresses of the host";
+    if (context().properties().kind != DeviceKind::cpu)
+        TWINRAY_LACKS("host_addresses", "needs a device with addresses of the host");
     std::uint64_t part = 0;
     for (const std::uint64_t offset : {0, 8, 64, 1024}) {
         std::memcpy(&part, reinterpret_cast<const void*>(context().absent() + offset), sizeof(part));
