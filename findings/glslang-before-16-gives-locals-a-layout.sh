@@ -8,6 +8,7 @@
 # same bytes, pass from both; so does the array without the function.
 # Seen with glslang-tools 15.1.0+1.4.309.0-1 (it calls itself 15.2.0), 16.6.0-1 and spirv-tools 2026.4~rc2-1 on
 # 2026-11-27.
+folder=$(mktemp -d)
 # shellcheck source=findings/room.sh
 . "$(dirname "${BASH_SOURCE[0]}")/room.sh"
 make_room sid
@@ -38,7 +39,7 @@ shader array 'vec4 rows[3]' 'items_at(items)'
 shader vectors 'vec4 row0, row1, row2' 'items_at(items)'
 shader direct 'vec4 rows[3]' 'Items(items)'
 
-verdict() { # glslangValidator, shader: "valid" or the rule that it breaks
+result() { # glslangValidator, shader: "valid" or the rule that it breaks
     local said
     in_room "$1" --quiet --target-env vulkan1.2 -o "$2.spv" "$2.comp"
     if said=$(in_room spirv-val --target-env vulkan1.2 --scalar-block-layout "$2.spv" 2>&1); then echo valid; else
@@ -49,9 +50,9 @@ old=/opt/glslang-tools/$older/usr/bin/glslangValidator
 new=/usr/bin/glslangValidator
 in_room spirv-val --version | head -n 1
 for validator in "$old" "$new"; do in_room "$validator" --version | sed -n 's/^Glslang Version: /glslang /p'; done
-same "glslang $older, array through a function" "$(verdict "$old" array)" VUID-StandaloneSpirv-None-10684
-same "glslang 16.6.0-1, array through a function" "$(verdict "$new" array)" valid
-same "glslang $older, three vec4 through a function" "$(verdict "$old" vectors)" valid
-same "glslang 16.6.0-1, three vec4 through a function" "$(verdict "$new" vectors)" valid
-same "glslang $older, array without the function" "$(verdict "$old" direct)" valid
+same "glslang $older, array through a function" "$(result "$old" array)" VUID-StandaloneSpirv-None-10684
+same "glslang 16.6.0-1, array through a function" "$(result "$new" array)" valid
+same "glslang $older, three vec4 through a function" "$(result "$old" vectors)" valid
+same "glslang 16.6.0-1, three vec4 through a function" "$(result "$new" vectors)" valid
+same "glslang $older, array without the function" "$(result "$old" direct)" valid
 conclude

@@ -8,6 +8,9 @@
 # float trick by literals tests the compiler.
 # Seen with glslang-tools 15.1.0+1.4.309.0-1 (it calls itself 15.2.0) and 25.0.7-2+deb13u1 and 26.1.6-1~bpo13+1 of
 # mesa-vulkan-drivers on 2026-11-27; by hand, the constants also with glslang 12.0 and 16.6.
+folder=$(mktemp -d)
+mesa_25=25.0.7-2+deb13u1
+mesa_26=26.1.6-1~bpo13+1
 # shellcheck source=findings/room.sh
 . "$(dirname "${BASH_SOURCE[0]}")/room.sh"
 make_lavapipe_room

@@ -3,9 +3,11 @@
 # A good guess: what vkGetPipelineCacheData gives begins with a header of 32 bytes, as Vulkan says
 # (VkPipelineCacheHeaderVersionOne), even for an empty cache, so that a program may read its UUID.
 # Seen: lavapipe of Mesa 26.2.6 gives 20 bytes, of which the first four say that the header has 32: the UUID is cut
-# off after four bytes. A program that checks such data before it hands them back finds them broken, at each start.
+# off after four bytes. A program that checks such data before it gives them back finds them broken, at each start.
 # Mesa 26.1.6 gives 32.
 # Seen with 26.2.6-1 (sid) and 26.1.6-1~bpo13+1 of mesa-vulkan-drivers on 2026-11-27.
+folder=$(mktemp -d)
+mesa_26=26.1.6-1~bpo13+1
 # shellcheck source=findings/room.sh
 . "$(dirname "${BASH_SOURCE[0]}")/room.sh"
 mesa_sid=26.2.6-1

@@ -5,6 +5,9 @@
 # Seen: it is 0 on lavapipe, for floats and for doubles: fma() is a product, rounded, and a sum, rounded. Vulkan
 # allows it: the precision of Fma is that of a product followed by a sum. Both releases do so.
 # Seen with 25.0.7-2+deb13u1 and 26.1.6-1~bpo13+1 of mesa-vulkan-drivers on 2026-11-27, on a CPU with FMA.
+folder=$(mktemp -d)
+mesa_25=25.0.7-2+deb13u1
+mesa_26=26.1.6-1~bpo13+1
 # shellcheck source=findings/room.sh
 . "$(dirname "${BASH_SOURCE[0]}")/room.sh"
 make_lavapipe_room

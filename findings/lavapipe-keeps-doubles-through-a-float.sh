@@ -6,6 +6,9 @@
 # the remainder is 0. glslang's module has both conversions, so the driver drops them. A float that goes through its
 # bits is rounded. Both releases do so.
 # Seen with 25.0.7-2+deb13u1 and 26.1.6-1~bpo13+1 of mesa-vulkan-drivers on 2026-11-27.
+folder=$(mktemp -d)
+mesa_25=25.0.7-2+deb13u1
+mesa_26=26.1.6-1~bpo13+1
 # shellcheck source=findings/room.sh
 . "$(dirname "${BASH_SOURCE[0]}")/room.sh"
 make_lavapipe_room

@@ -6,6 +6,9 @@
 # is the first half of a structure's header, is the text of the package's version, cut after 16 bytes. So saved
 # structures end with any update of the package. Each build takes its own.
 # Seen with 25.0.7-2+deb13u1 and 25.0.7-2~bpo12+1 of mesa-vulkan-drivers on 2026-11-27.
+folder=$(mktemp -d)
+mesa_25=25.0.7-2+deb13u1
+mesa_26=26.1.6-1~bpo13+1
 # shellcheck source=findings/room.sh
 . "$(dirname "${BASH_SOURCE[0]}")/room.sh"
 make_lavapipe_room

@@ -6,6 +6,9 @@
 # it names instead is in Debian's package mesa-drm-shim: libraries to preload that answer as a kernel's driver would.
 # With them RADV, NVK (NVIDIA), Turnip (Qualcomm) and Honeykrisp (Apple) list a GPU on a machine without any.
 # Seen with 25.0.7-2+deb13u1 and 26.1.6-1~bpo13+1 of mesa-vulkan-drivers and mesa-drm-shim on 2026-11-27.
+folder=$(mktemp -d)
+mesa_25=25.0.7-2+deb13u1
+mesa_26=26.1.6-1~bpo13+1
 # shellcheck source=findings/room.sh
 . "$(dirname "${BASH_SOURCE[0]}")/room.sh"
 make_room trixie

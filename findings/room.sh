@@ -1,14 +1,12 @@
 # shellcheck shell=bash
 # SPDX-License-Identifier: MIT
-# What the scripts of this folder share. They source it. It makes a room (a minimal Debian in a temp folder, gone at
-# exit), puts pinned packages into it, and makes and runs C programs and compute kernels there.
+# The scripts of this folder source it. It makes a room (a minimal Debian in the script's temp $folder), puts packages of
+# pinned versions ($mesa_25 and $mesa_26 for lavapipes) into it, and runs C programs and compute kernels there.
 #   ROOMS=FOLDER     keeps rooms in FOLDER for the next script, one script at a time (remove FOLDER when done)
 #   MIRROR=ADDRESS   takes packages from there, not from the Debian archive that this machine uses; it may be an old one
 # Needs root, debootstrap, an x86-64 machine with AVX2 and 2 GB on the disk.
 set -euo pipefail
 
-mesa_25=25.0.7-2+deb13u1 # Debian 13, trixie
-mesa_26=26.1.6-1~bpo13+1 # its backports
 differs=0
 
 fail() {
@@ -34,7 +32,7 @@ conclude() { exit "$differs"; }
 # shellcheck disable=SC2317,SC2329
 leave() {
     if mountpoint -q "$room/proc"; then umount "$room/proc"; fi
-    if [[ -z ${ROOMS-} ]]; then rm -rf --one-file-system "$room"; fi
+    if [[ -z ${ROOMS-} ]]; then rm -rf --one-file-system "$room"; else rm -rf "$folder"; fi
 }
 
 proxies=()
@@ -55,7 +53,7 @@ make_room() { # trixie or sid
         exec {lock}>"$room.lock"
         flock "$lock"
     else
-        room=$(mktemp -d)
+        room=$folder
     fi
     trap leave EXIT
     probe=$room/probe
@@ -136,8 +134,8 @@ on_driver() { # version, command...
 make_lavapipe_room() {
     make_room trixie
     install gcc libc6-dev libvulkan-dev glslang-tools
-    driver "$mesa_25"
-    driver "$mesa_26"
+    driver "${mesa_25:?}"
+    driver "${mesa_26:?}"
     write_vk_h
 }
 kernel() { in_room glslangValidator --quiet --target-env vulkan1.3 -o "$1.spv" "$1.comp"; } # reads NAME.comp

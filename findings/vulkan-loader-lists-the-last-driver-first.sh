@@ -4,6 +4,9 @@
 # Seen: with two lavapipes, which differ in version alone, device 0 is that of B and device 1 that of A, in either
 # order. A program that takes the first device therefore runs on the last driver that it was given.
 # Seen with libvulkan1 1.4.309.0-1 and 25.0.7-2+deb13u1 and 26.1.6-1~bpo13+1 of mesa-vulkan-drivers on 2026-11-27.
+folder=$(mktemp -d)
+mesa_25=25.0.7-2+deb13u1
+mesa_26=26.1.6-1~bpo13+1
 # shellcheck source=findings/room.sh
 . "$(dirname "${BASH_SOURCE[0]}")/room.sh"
 make_lavapipe_room
