@@ -9,7 +9,8 @@ linker=$1 nm=$2 objcopy=$3 output=$4
 shift 4
 merged=$output.merged exports=$output.exports
 if [[ $("$linker" --help 2>&1) != *--force-group-allocation* ]]; then
-    echo "merge_objects: $linker knows no --force-group-allocation: set CMAKE_LINKER to GNU ld, or to LLD 19 or newer" >&2
+    echo "merge_objects: $linker knows no --force-group-allocation:" \
+        "set CMAKE_LINKER to GNU ld, or to LLD 19 or newer" >&2
     exit 1
 fi
 # Groups go: a linker drops a group that a host's object has too, and our local names would point into nothing.

@@ -14,8 +14,8 @@ target_compile_options(
     twinray_options
     INTERFACE $<$<COMPILE_LANG_AND_ID:CXX,Clang>:-Wno-sign-conversion -Wno-missing-braces>
 )
-# Where files are compiled together, GCC takes what a source file declares for a header's, and to Clang a local name of
-# one file shadows what another declares.
+# Unity builds compile files together: GCC takes what a source file declares for a header's, and to Clang a local name
+# of one file shadows what another declares.
 if(CMAKE_UNITY_BUILD)
     target_compile_options(twinray_options INTERFACE $<$<COMPILE_LANG_AND_ID:CXX,Clang>:-Wno-shadow>)
     target_compile_options(twinray_options INTERFACE $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-subobject-linkage>)

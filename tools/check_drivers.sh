@@ -4,8 +4,8 @@
 # Debian with nothing else (tools/room.sh). A table ends it; exit status 1: something failed on one of them; 77: a room
 # could not be made, and it says why.
 #   tools/check_drivers.sh [--quick] [--build FOLDER] [--rooms FOLDER] [NAME...]
-#     NAME       mesa-25.0 (backports of Debian 12), mesa-26.1 (of Debian 13), mesa-26.2 (sid), swiftshader (chromium-common
-#                of Debian 12): all of them unless given; newest: what sid has. The table has the version that it was.
+#     NAME       mesa-25.0 (backports of Debian 12), mesa-26.1 (of Debian 13), mesa-26.2 (sid), swiftshader
+#                (chromium-common of Debian 12): all of them unless given; newest: what sid has. The table has the version that it was.
 #     --quick    the contract, verify, leaks and the conformance suite: minutes
 #     --build    build/release unless given
 #     --rooms    build/rooms unless given; they stay there. Without its folder a room is made anew, in two minutes.
@@ -70,7 +70,9 @@ lend() { # room
     while read -r library; do
         if [[ $present != *$'\t'"${library##*/} "* ]]; then cp -L "$library" "$1/lent"; fi
     done < <(find "$build/bin" -type f -exec ldd {} + 2>/dev/null | awk '$3 ~ /^\// { print $3 }' | sort -u)
-    if [[ ! -e $1$python ]]; then install -D /dev/stdin -m 755 "$1$python" <<<$'#!/bin/sh\nexec /usr/bin/python3 "$@"'; fi
+    if [[ ! -e $1$python ]]; then
+        install -D /dev/stdin -m 755 "$1$python" <<<$'#!/bin/sh\nexec /usr/bin/python3 "$@"'
+    fi
 }
 
 # Runs a line in a room with the build; its output goes to a file, and here if it fails.
@@ -106,7 +108,8 @@ check() { # name
     start=$SECONDS
     rm -f "$log/tests.xml"
     on_driver "$room" "$log/tests.txt" \
-        "ctest --test-dir $build -j 2 -L '$labels' --output-on-failure --no-tests=error --output-junit /output/tests.xml" || good=0
+        "ctest --test-dir $build -j 2 -L '$labels' --output-on-failure --no-tests=error \
+            --output-junit /output/tests.xml" || good=0
     counts=$(tools/count_tests.py "$log/tests.xml" 2>/dev/null) || counts='- - -'
     on_driver "$room" "$log/conformance.txt" "twinray verify --suite conformance" || good=0
     conformance=$(sed -nE 's/^([0-9]+ of [0-9]+) cases pass.*/\1/p' "$log/conformance.txt")

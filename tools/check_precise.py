@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Checks in SPIR-V that the compiler may not contract what watertightness rests on: in every function that comes from
-HEADERS, each sum, difference, product and quotient of floats is NoContraction. In the modules that COUNTS names each of its
-functions has as many of them as there, by any compiler: one that renamed or inlined them would leave nothing to check.
-Usage: check_precise.py ROOT MODULE.spv...; prints each function with an operation that is not, and exits with 1; else how
-many operations it has seen in which functions."""
+HEADERS, each sum, difference, product and quotient of floats is NoContraction. In the modules that COUNTS names, each
+function has as many of them as there, by any compiler: one that renamed or inlined them would leave nothing to check.
+Usage: check_precise.py ROOT MODULE.spv...; prints each function with an operation that is not, and exits with 1; else
+how many operations it has seen in which functions."""
 import pathlib
 import re
 import sys
@@ -25,7 +25,9 @@ EXEMPT = {
     "is_finite_point": "a bound that nothing is near to",
     "intersect_in_world": "divisions that give u and v",
 }
-COUNTS = {"swtlas_trace": {"sheared": 5, "edge_function": 3, "accurate_edge_function": 1, "exact_side": 2, "crossing": 11}}
+COUNTS = {
+    "swtlas_trace": {"sheared": 5, "edge_function": 3, "accurate_edge_function": 1, "exact_side": 2, "crossing": 11},
+}
 NAME, FUNCTION, FUNCTION_END, DECORATE = 5, 54, 56, 71
 ARITHMETIC = {129: "FAdd", 131: "FSub", 133: "FMul", 136: "FDiv", 142: "VectorTimesScalar", 148: "Dot"}
 NO_CONTRACTION = 42
@@ -64,8 +66,9 @@ for module in modules:
         if bare:
             found.append(f"{module.name}: {function}: {len(bare)} of {every} operations may be contracted: {', '.join(bare)}")
     for function, wanted_count in COUNTS.get(module.stem, {}).items():
-        if counts.get(function, [0])[0] != wanted_count:
-            found.append(f"{module.name}: {function}: {counts.get(function, [0])[0]} operations are NoContraction, not {wanted_count}")
+        count = counts.get(function, [0])[0]
+        if count != wanted_count:
+            found.append(f"{module.name}: {function}: {count} operations are NoContraction, not {wanted_count}")
 if not seen:
     found.append("check_precise: no module has any of the functions")
 print("\n".join(found) or f"check_precise: {total} operations of {len(modules)} modules are NoContraction, in {', '.join(sorted(seen))}")

@@ -3,7 +3,8 @@
 # Builds this checkout with the oldest and the newest compilers and libraries that it is for, warnings being errors, and
 # runs what `tools/test.sh quick` runs; each in a room (tools/room.sh). A table ends it; exit status 1: one failed.
 #   tools/check_toolchains.sh [--rooms FOLDER] [NAME...]
-#     NAME       gcc-oldest, clang-oldest (Debian 12's), gcc-newest, clang-newest (the newest that sid has): all unless given
+#     NAME       gcc-oldest, clang-oldest (Debian 12's), gcc-newest, clang-newest (the newest that sid has): all of them
+#                unless given
 #     --rooms    build/rooms unless given; they and what is built in them stay there. Remove one to have it made anew.
 # Needs root, debootstrap and 12 GB.
 set -euo pipefail
@@ -17,7 +18,8 @@ names=("$@")
 if ((${#names[@]} == 0)); then names=(gcc-oldest clang-oldest gcc-newest clang-newest); fi
 for name in "${names[@]}"; do
     if [[ ! $name =~ ^(gcc|clang)-(oldest|newest)$ ]]; then
-        echo "usage: tools/check_toolchains.sh [--rooms FOLDER] [gcc-oldest|clang-oldest|gcc-newest|clang-newest]..." >&2
+        echo "usage: tools/check_toolchains.sh [--rooms FOLDER]" \
+            "[gcc-oldest|clang-oldest|gcc-newest|clang-newest]..." >&2
         exit 2
     fi
 done

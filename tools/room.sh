@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # shellcheck shell=bash
-# Rooms: folders with a minimal Debian of their own, in which scripts run commands by chroot. Sourced by scripts that run
-# as root; needs debootstrap.
+# Rooms: folders with a minimal Debian of their own, in which scripts run commands by chroot. Scripts that run as root
+# source it; it needs debootstrap.
 
 # Says why there can be no rooms here, and fails, if so.
 can_make_rooms() {

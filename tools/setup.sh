@@ -26,7 +26,7 @@ packages=(
 )
 if [[ $(uname -m) == x86_64 ]]; then packages+=(libembree-dev); fi # twinray bench measures it, too
 oldest_mesa=24 # the first whose lavapipe has acceleration structures and ray queries
-# What is lost without a package that some release lacks; CMake names the others when it misses them.
+# This is lost without a package that some release lacks; CMake names the others when it misses them.
 declare -A without=(
     [libembree-dev]="twinray bench does not measure Embree" [chromium-common]="no tests on SwiftShader"
     [libglfw3-dev]="twinray view opens no window" [libimgui-dev]="twinray view opens no window"
@@ -76,7 +76,7 @@ leave_out_what_is_not_served() {
     done
 }
 
-# What is missing, but for what apt's indexes, where there are any, do not serve.
+# Prints what is missing and apt's indexes, where there are any, serve.
 left_to_install() {
     if ((!is_bookworm)) && [[ -n $(apt_sources) ]]; then leave_out_what_is_not_served >/dev/null; fi
     missing_packages

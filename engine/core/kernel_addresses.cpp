@@ -33,7 +33,7 @@ struct Member {
     std::uint32_t type = 0, offset = 0;
 };
 
-// What a module declares before its functions.
+// The declarations of a module, which stand before its functions.
 class Declarations {
   public:
     explicit Declarations(Words spirv) {
@@ -69,7 +69,7 @@ class Declarations {
         }
     }
 
-    // As REFERENCE of twinray/glsl/common.glsl declares it.
+    // REFERENCE of twinray/glsl/common.glsl declares such structs.
     static bool is_ref(const std::map<std::uint32_t, Member>& members) {
         return members.size() == 1 && members.begin()->second.name == "address";
     }
@@ -87,7 +87,7 @@ class Declarations {
     std::uint32_t pushed_ = 0;
 };
 
-// Whether the host has memory there.
+// True where the host has memory.
 bool is_mapped(std::uint64_t address) {
     const auto page = static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
     return msync(reinterpret_cast<void*>(address / page * page), 1, MS_ASYNC) == 0;

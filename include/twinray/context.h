@@ -267,9 +267,9 @@ class Context {
     std::uint32_t queue_family() const;          // of the one queue
     const DeviceProperties& properties() const;  // what is enabled, not merely supported
     std::uint64_t allocated_bytes() const;       // of the buffers and images made with it
-    // What kernels get as the address of something that is absent: an odd one, at which there is memory all the same,
-    // since some drivers read before they know that they need not. is_absent() of twinray/glsl/common.glsl tells it.
-    // Kernel<Args> puts it in place of 0; structs that a host uploads want it in the members that kernels ask for.
+    // The address that kernels get for something absent. It is odd, and there is memory at it, since some drivers read
+    // before they know that they need not. is_absent() of twinray/glsl/common.glsl tells it in a kernel. Kernel<Args>
+    // puts it in place of 0; a struct that a host uploads needs it in each member that kernels ask for.
     std::uint64_t absent() const;
     // Puts it into those of the addresses that are 0.
     template <class... T>

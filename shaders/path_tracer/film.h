@@ -12,7 +12,7 @@
 const uint FILM_DIGIT_BITS = 40u; // 2^23 numbers fit into a sum of 64 bits with a sign
 const uint FILM_SQUARES = 3u;     // the number of their sum, behind red, green and blue
 
-// Of the sums of a block's red, green and blue, and of its luminance squared.
+// One digit of four sums of a block: red, green, blue, and the luminance squared.
 struct FilmDigits
 {
     uvec2 red;

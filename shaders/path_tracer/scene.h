@@ -60,7 +60,7 @@ struct SurfaceInstance
 };
 BUFFER_OF(SurfaceInstance, 8);
 
-// What vertices of a mesh have beyond SurfaceVertex; absent: not these. By Hit::instance_index.
+// Attributes of vertices beyond SurfaceVertex, absent where the mesh has none. By Hit::instance_index.
 struct VertexExtras
 {
     Vec2s second_uvs;

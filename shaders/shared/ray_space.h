@@ -27,7 +27,7 @@ struct RaySpace
     float shear_z;
 };
 
-// What tests of boxes take from it. Made from it at each node: carried through the loop it would hold 13 registers.
+// Tests of boxes take this from a RaySpace. Made at each node: carried through the loop it holds 13 registers.
 struct BoxRay
 {
     vec3 near_origin;

@@ -21,8 +21,8 @@ struct KernelRow {
 };
 
 nlohmann::json to_json(const KernelRow& row);
-// Of what `twinray kernels --json` wrote; other lines are passed over, but for the driver of each device. Throws Error
-// naming the file and the line.
+// Reads rows that `twinray kernels --json` wrote; it passes over other lines but for the driver of each device. Throws
+// Error naming the file and the line.
 std::vector<KernelRow> read_rows(const std::filesystem::path& file);
 
 // Mesa's release, "26.2" of "NVK Mesa 26.2.6-1": the next one compiles otherwise. Empty: it is none of Mesa's drivers.

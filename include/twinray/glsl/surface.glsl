@@ -69,7 +69,7 @@ uint face_metadata(Address accel, Hit hit)
     Uints of_faces = surface_geometry(table, hit.instance_index).face_metadata;
     return custom_index != 0u || is_absent(of_faces) ? custom_index : AT(of_faces, hit.primitive_index);
 }
-// Where MeshView::metadata of the geometry lies: AT(REF(T)(geometry_metadata(accel, hit)), 0). Absent: it has none.
+// The address of MeshView::metadata: AT(REF(T)(geometry_metadata(accel, hit)), 0); absent where there is none.
 Address geometry_metadata(Address accel, Hit hit)
 {
     return surface_geometry(surfaces_of(accel), hit.instance_index).metadata;

@@ -22,7 +22,7 @@ TEST(KernelStatistics, RadvsWordsAreMapped) {
     EXPECT_EQ(figures_of(told), expected);
 }
 
-// As Mesa 26.1 and 26.2 tell them.
+// Mesa 26.1 and 26.2 tell them so.
 TEST(KernelStatistics, NvksWordsAreMapped) {
     const std::vector<Statistic> told = {{"Instruction count", u(1657)}, {"Static cycle count", u(158327)},
                                          {"Max warps/SM", u(16)},        {"Spills to memory", u(2)},
