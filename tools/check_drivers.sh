@@ -87,21 +87,21 @@ on_driver() { # room, file, line
 
 check() { # name
     local room=$rooms/${suites[$1]} start=$SECONDS counts version labels='quick|vulkan' log conformance='' report='-'
-    local environment='TWINRAY_REQUIRE=vulkan,ray_tracing,descriptor_indexing'
+    local package=mesa-vulkan-drivers environment='TWINRAY_REQUIRE=vulkan,ray_tracing,descriptor_indexing'
     section "$1"
     if ! { furnish "$room" "${suites[$1]}" "$1" && lend "$room"; }; then
         rows+=("$(row "$1" 'no room' - - - - $((SECONDS - start)) 'not tried')")
         return 77
     fi
     echo "its room took $((SECONDS - start)) s"
-    version=$(in_room "$room" "dpkg-query -W -f '\${Version}' mesa-vulkan-drivers 2>/dev/null ||
-        dpkg-query -W -f '\${Version}' chromium-common")
     if [[ $1 == swiftshader ]]; then
+        package=chromium-common
         environment='TWINRAY_REQUIRE=vulkan VK_DRIVER_FILES=/usr/lib/chromium/vk_swiftshader_icd.json'
         labels=swiftshader # suites that it can carry out: docs/requirements.md
     elif ((quick)); then
         labels=quick
     fi
+    version=$(in_room "$room" "dpkg-query -W -f '\${Version}' $package")
     log=$room/output
     mkdir -p "$log"
     local good=1

@@ -7,6 +7,7 @@
 
 #include "engine/collide/pair_classifier.h"
 #include "engine/collide/triangle_set.h"
+#include "engine/core/float64.h"
 
 namespace twinray {
 namespace {
@@ -24,7 +25,11 @@ std::size_t Contacts::count(PairClass pair_class) const {
 
 struct NarrowPhase::State {
     explicit State(Context& device)
-        : context(device), triangles(device), tree(device), search(device), classifier(device) {}
+        : context(with_float64(device, "collide: classes of triangles")),
+          triangles(device),
+          tree(device),
+          search(device),
+          classifier(device) {}
 
     std::vector<uint> taking_part(std::span<const MeshView> meshes, std::span<const MeshInstance> instances, bool self);
     DevicePairs candidates(bool self);

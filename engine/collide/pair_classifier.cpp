@@ -7,7 +7,6 @@
 #include "collide_classify.spv.h"
 #include "engine/collide/exact_sign.h"
 #include "engine/core/error.h"
-#include "engine/core/float64.h"
 
 namespace twinray {
 namespace {
@@ -28,7 +27,7 @@ std::uint64_t offset_after(std::uint64_t offset, std::uint64_t count) {
 }  // namespace
 
 PairClassifier::PairClassifier(Context& context)
-    : context_(with_float64(context, "collide: classes of triangles")),
+    : context_(context),
       kernel_(context, {.name = "collide_classify", .spirv = collide_classify_spirv}),
       total_(context, {.name = "collide contact total", .bytes = sizeof(ListTotal)}),
       pace_(context) {}

@@ -7,6 +7,7 @@
 #include "engine/core/context.h"
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
+#include <twinray/queries.h>
 #include <twinray/tlas.h>
 #include "tests/core/host_device.h"
 
@@ -102,6 +103,24 @@ TEST_F(AdoptedDeviceTest, SoftwareAloneTracesWithoutTheExtensions) {
     ASSERT_TRUE(host_.create());
     EXPECT_FALSE(missing_for_hardware(host_.device.enabled).empty());
     expect_both_trace(host_.device);
+}
+
+// Before it makes a kernel: SwiftShader ends the process where one computes in float64.
+TEST_F(AdoptedDeviceTest, DistancesAndContactsNeedFloat64) {
+    host_.wants_float64 = false;
+    ASSERT_TRUE(host_.create());
+    Context context(host_.device);
+    const auto error_of = [](auto make) -> std::string {
+        try {
+            make();
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return "made";
+    };
+    const std::string need = "need float64 (shaderFloat64), which device";
+    EXPECT_NE(error_of([&] { PointQuery query(context); }).find(need), std::string::npos);
+    EXPECT_NE(error_of([&] { NarrowPhase phase(context); }).find(need), std::string::npos);
 }
 
 // A host that tells what the driver supports instead of what it enabled.

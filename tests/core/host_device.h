@@ -23,7 +23,8 @@ struct Host {
     int locked = 0, submissions = 0;
 
     DeviceProperties supported;
-    bool wants_hardware = true;                            // false: without the ray tracing extensions
+    bool wants_hardware = true;  // false: without the ray tracing extensions
+    bool wants_float64 = true;
     std::function<void(VkDeviceCreateInfo&)> extend = {};  // with what the host wants for itself
 
     Host() = default;
@@ -87,6 +88,7 @@ inline bool Host::create() {
     supported = query_device_properties(vkGetInstanceProcAddr, instance, physical);
     DeviceProperties wanted = supported;
     if (!wants_hardware) wanted.acceleration_structure = wanted.ray_query = wanted.ray_tracing_pipeline = false;
+    wanted.shader_float64 &= wants_float64;
     DeviceRequirements requirements(wanted);
     if (!create_device(physical, requirements)) return false;
     volkLoadDevice(device.device);

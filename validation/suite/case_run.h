@@ -25,6 +25,11 @@ struct Measured {
     std::vector<ReferenceHit> references;  // one of each ray
 };
 
+// Thrown by a case that the device cannot answer: it becomes a record that says why.
+struct NotRun {
+    std::string reason;
+};
+
 // A case while it runs: what it may use, and where its results go.
 class CaseRun {
   public:

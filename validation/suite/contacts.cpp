@@ -68,7 +68,7 @@ std::vector<WorldTriangle> permutations(const WorldTriangle& t) {
 void ask_classes(CaseRun& run, const std::vector<KnownPair>& pairs, const std::string& reference) {
     std::vector<TrianglePair> asked;
     for (const KnownPair& pair : pairs) asked.push_back({pair.a, pair.b});
-    NarrowPhase narrow_phase(run.devices().context(query_backend));
+    NarrowPhase narrow_phase(query_context(run));
     const std::vector<PairClass> found = narrow_phase.classify(asked);
     std::uint64_t wrong = 0;
     std::string first;
@@ -84,7 +84,7 @@ void ask_classes(CaseRun& run, const std::vector<KnownPair>& pairs, const std::s
 void measure_lattice(CaseRun& run, const std::string& lattice, const std::vector<TrianglePair>& pairs) {
     std::vector<PairClass> known;
     for (const TrianglePair& pair : pairs) known.push_back(exact_class(pair.a, pair.b));
-    NarrowPhase narrow_phase(run.devices().context(query_backend));
+    NarrowPhase narrow_phase(query_context(run));
     std::vector<double> times;
     std::vector<PairClass> found;
     for (int rep = 0; rep < 5; ++rep)
@@ -106,7 +106,7 @@ void measure_lattice(CaseRun& run, const std::string& lattice, const std::vector
 void ask_contacts(CaseRun& run, const std::string& what, const std::vector<MeshView>& meshes,
                   const std::vector<MeshInstance>& instances, const ContactCounts& known, const std::string& reference,
                   bool self) {
-    NarrowPhase narrow_phase(run.devices().context(query_backend));
+    NarrowPhase narrow_phase(query_context(run));
     const Contacts contacts = narrow_phase.find(meshes, instances, {.self = self});
     ContactCounts found;
     for (const TriangleContact& contact : contacts.list) ++found[contact.pair_class];
@@ -134,7 +134,7 @@ ContactCounts wall_to_wall() {
 
 void ask_same_contacts(CaseRun& run, const std::vector<MeshView>& meshes, const std::vector<MeshInstance>& some,
                        const std::vector<MeshInstance>& others) {
-    NarrowPhase narrow_phase(run.devices().context(query_backend));
+    NarrowPhase narrow_phase(query_context(run));
     const std::vector<TriangleContact> a = narrow_phase.find(meshes, some).list,
                                        b = narrow_phase.find(meshes, others).list;
     std::vector<TriangleContact> only;

@@ -39,7 +39,7 @@ double nearest_of_all(const Mesh& mesh, const dvec3& point) {
 
 // Relative errors may be as large as what some roundings of the coordinates do to a distance.
 void measure_nearest(CaseRun& run, const Mesh& mesh, const std::vector<dvec3>& points, const Values& params) {
-    PointQuery query(run.devices().context(query_backend));
+    PointQuery query(query_context(run));
     query.set(std::vector<MeshView>{mesh}, std::vector<MeshInstance>{{0, {}}});
     std::vector<ClosestPoint> found;
     std::vector<double> times;
@@ -89,7 +89,7 @@ void on_the_surface(CaseRun& run) {
     std::vector<dvec3> points(ball.positions.begin(), ball.positions.end());
     const std::size_t vertices = points.size();
     for (const uvec3& t : ball.triangles) points.push_back((points[t.x] + points[t.y]) * 0.5);
-    PointQuery query(run.devices().context(query_backend));
+    PointQuery query(query_context(run));
     query.set(std::vector<MeshView>{ball}, std::vector<MeshInstance>{{0, {}}});
     const std::vector<ClosestPoint> found = query.closest(points);
     std::uint64_t wrong = 0;
@@ -104,7 +104,7 @@ void scaled(CaseRun& run) {
     Mesh soup = make_soup(500, static_cast<uint>(run.seed()), 0.2f);
     for (vec3& p : soup.positions) p = (p + 16.0f) - 16.0f;  // so that denormals hold them, scaled
     const std::vector<dvec3> points = random_points(run.amount(1'000, 100'000), 2, run.seed());
-    PointQuery query(run.devices().context(query_backend));
+    PointQuery query(query_context(run));
     const std::vector<MeshInstance> instance = {{0, {}}};
     query.set(std::vector<MeshView>{soup}, instance);
     const std::vector<ClosestPoint> of_one = query.closest(points);
@@ -130,7 +130,7 @@ void scaled(CaseRun& run) {
 void radius(CaseRun& run) {
     const Mesh ball = make_icosphere(3);
     const std::vector<dvec3> points = random_points(run.amount(300, 10'000), 1.5, run.seed());
-    PointQuery query(run.devices().context(query_backend));
+    PointQuery query(query_context(run));
     query.set(std::vector<MeshView>{ball}, std::vector<MeshInstance>{{0, {}}});
     const std::vector<NearTriangle> near = query.within(points, 0.4);
     std::size_t next = 0;
@@ -161,7 +161,7 @@ void sides(CaseRun& run) {
         points.push_back(
             (dvec3(i % (2 * n + 1), i / (2 * n + 1) % (2 * n + 1), i / ((2 * n + 1) * (2 * n + 1))) - double(n)) *
             (3.0 / n));
-    PointQuery query(run.devices().context(query_backend));
+    PointQuery query(query_context(run));
     const std::vector<MeshInstance> twice = {{0, {}}, {0, Transform::translation(vec3(1, 0, 0))}};
     query.set(std::vector<MeshView>{box}, twice);
     const std::vector<int> found = query.winding_numbers(points);

@@ -4,6 +4,17 @@
 #include <chrono>
 
 namespace twinray::suite {
+namespace {
+
+constexpr Backend query_backend = Backend::software;  // whose context answers
+
+}  // namespace
+
+Context& query_context(CaseRun& run) {
+    Context& context = run.devices().context(query_backend);
+    if (!context.properties().shader_float64) throw NotRun{"needs float64 in shaders (shaderFloat64)"};
+    return context;
+}
 
 Record query_record(CaseRun& run, const std::string& reference, const std::string& variant) {
     Record record = run.record({query_backend, Level::watertight});

@@ -8,7 +8,8 @@
 
 namespace twinray::suite {
 
-inline constexpr Backend query_backend = Backend::software;  // whose context they use
+// The device that answers. Throws NotRun where it has no float64.
+Context& query_context(CaseRun& run);
 
 // A record without a backend and a level.
 Record query_record(CaseRun& run, const std::string& reference, const std::string& variant = {});

@@ -103,6 +103,8 @@ class SuiteRun {
         CaseRun here(row, settings, devices_, recorder_);
         try {
             row.run(here);
+        } catch (const NotRun& not_run) {
+            here.add_not_run(not_run.reason);
         } catch (const DeviceLost& lost) {
             here.add_failure(lost.what());
             lost_in_ = row.id;
