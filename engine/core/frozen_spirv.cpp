@@ -5,28 +5,13 @@
 #include <optional>
 #include <set>
 
+#include "engine/core/spirv_words.h"
+
 namespace twinray {
 namespace {
 
-using Words = std::span<const std::uint32_t>;
-
-constexpr std::size_t header_words = 5;
-
-// Of the SPIR-V specification.
-enum Op : std::uint32_t {
-    TypeBool = 20,
-    ConstantTrue = 41,
-    ConstantFalse = 42,
-    Constant = 43,
-    ConstantComposite = 44,
-    SpecConstantTrue = 48,
-    SpecConstantFalse = 49,
-    SpecConstant = 50,
-    SpecConstantComposite = 51,
-    SpecConstantOp = 52,
-    Decorate = 71,
-};
-constexpr std::uint32_t decoration_spec_id = 1;
+using spirv::Op, spirv::Words;
+using spirv::op_of, spirv::words_of, spirv::first_word;
 
 // Of operands that are whole numbers of 32 bits or booleans. Nothing: not one of those that GLSL makes.
 std::optional<std::uint32_t> evaluate(std::uint32_t op, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
@@ -67,19 +52,20 @@ std::optional<std::uint32_t> evaluate(std::uint32_t op, std::uint32_t a, std::ui
 
 class Freezer {
   public:
-    Freezer(Words spirv, std::span<const SpecializationConstant> constants) {
+    Freezer(Words module, std::span<const SpecializationConstant> constants) {
         for (const SpecializationConstant& constant : constants) given_[constant.id] = constant.value;
-        frozen_.assign(spirv.begin(), spirv.begin() + header_words);
-        for (std::size_t at = header_words; at < spirv.size(); at += spirv[at] >> 16)
-            take(spirv.subspan(at, spirv[at] >> 16));
+        frozen_.assign(module.begin(), module.begin() + spirv::header_words);
+        for (std::size_t at = spirv::header_words; at < module.size(); at += words_of(module[at]))
+            take(module.subspan(at, words_of(module[at])));
     }
     std::vector<std::uint32_t> frozen() && { return std::move(frozen_); }
 
   private:
     void take(Words instruction) {
-        switch (instruction[0] & 0xffffu) {
+        using enum Op;
+        switch (op_of(instruction[0])) {
             case Decorate:
-                if (instruction[2] != decoration_spec_id) return keep(instruction);
+                if (instruction[2] != spirv::decoration_spec_id) return keep(instruction);
                 spec_ids_[instruction[1]] = instruction[3];
                 return;
             case TypeBool: booleans_.insert(instruction[1]); return keep(instruction);
@@ -92,7 +78,7 @@ class Freezer {
                 if (instruction.size() != 4) return keep(instruction);  // of 64 bits
                 return define(instruction, value_or(instruction[2], instruction[3]));
             case SpecConstantComposite:
-                frozen_.push_back(static_cast<std::uint32_t>(instruction.size()) << 16 | ConstantComposite);
+                frozen_.push_back(first_word(ConstantComposite, instruction.size()));
                 frozen_.insert(frozen_.end(), instruction.begin() + 1, instruction.end());
                 return;
             case SpecConstantOp: return fold(instruction);
@@ -114,9 +100,9 @@ class Freezer {
         const std::uint32_t type = instruction[1], id = instruction[2];
         known_[id] = value;
         if (booleans_.contains(type))
-            frozen_.insert(frozen_.end(), {3u << 16 | (value ? ConstantTrue : ConstantFalse), type, id});
+            frozen_.insert(frozen_.end(), {first_word(value ? Op::ConstantTrue : Op::ConstantFalse, 3), type, id});
         else
-            frozen_.insert(frozen_.end(), {4u << 16 | Constant, type, id, value});
+            frozen_.insert(frozen_.end(), {first_word(Op::Constant, 4), type, id, value});
     }
 
     void fold(Words instruction) {

@@ -9,24 +9,13 @@
 
 #include "engine/core/context.h"
 #include "engine/core/error.h"
+#include "engine/core/spirv_words.h"
 
 namespace twinray {
 namespace {
 
-using Words = std::span<const std::uint32_t>;
-
-// Numbers of the SPIR-V specification.
-enum Op : std::uint32_t {
-    Name = 5,
-    MemberName = 6,
-    TypeStruct = 30,
-    TypePointer = 32,
-    Function = 54,
-    Variable = 59,
-    MemberDecorate = 72,
-};
-constexpr std::uint32_t decoration_offset = 35, storage_push_constant = 9;
-constexpr std::size_t header_words = 5;
+using spirv::Op, spirv::Words;
+using spirv::op_of, spirv::words_of;
 
 struct Member {
     std::string name;
@@ -36,11 +25,11 @@ struct Member {
 // The declarations of a module, which stand before its functions.
 class Declarations {
   public:
-    explicit Declarations(Words spirv) {
-        for (std::size_t at = header_words, words = 0; at < spirv.size(); at += words) {
-            words = spirv[at] >> 16;
-            if ((spirv[at] & 0xffffu) == Function || words == 0 || words > spirv.size() - at) return;
-            take(spirv.subspan(at, words));
+    explicit Declarations(Words module) {
+        for (std::size_t at = spirv::header_words, words = 0; at < module.size(); at += words) {
+            words = words_of(module[at]);
+            if (op_of(module[at]) == Op::Function || words == 0 || words > module.size() - at) return;
+            take(module.subspan(at, words));
         }
     }
     std::vector<KernelAddress> addresses() const {
@@ -51,19 +40,20 @@ class Declarations {
 
   private:
     void take(Words words) {
-        switch (words[0] & 0xffffu) {
+        using enum Op;
+        switch (op_of(words[0])) {
             case MemberName:
                 structs_[words[1]][words[2]].name = reinterpret_cast<const char*>(words.data() + 3);
                 return;
             case MemberDecorate:
-                if (words[3] == decoration_offset) structs_[words[1]][words[2]].offset = words[4];
+                if (words[3] == spirv::decoration_offset) structs_[words[1]][words[2]].offset = words[4];
                 return;
             case TypeStruct:
                 for (std::uint32_t i = 2; i < words.size(); ++i) structs_[words[1]][i - 2].type = words[i];
                 return;
             case TypePointer: pointees_[words[1]] = words[3]; return;
             case Variable:
-                if (words[3] == storage_push_constant) pushed_ = pointees_[words[1]];
+                if (words[3] == spirv::storage_push_constant) pushed_ = pointees_[words[1]];
                 return;
             default: return;
         }

@@ -5,49 +5,24 @@
 #include <vector>
 
 #include "engine/core/error.h"
+#include "engine/core/spirv_words.h"
 
 namespace twinray {
 namespace {
 
-using Words = std::span<const std::uint32_t>;
+using spirv::Op, spirv::Words;
+using spirv::op_of, spirv::words_of;
 using Id = std::uint32_t;
 
-constexpr std::size_t header_words = 5;
-
-// Of the SPIR-V specification.
-enum class Op : std::uint32_t {
-    Extension = 10,
-    ExecutionMode = 16,
-    Capability = 17,
-    TypeBool = 20,
-    TypeInt = 21,
-    TypeFloat = 22,
-    TypeVector = 23,
-    TypeMatrix = 24,
-    TypeArray = 28,
-    TypeStruct = 30,
-    TypePointer = 32,
-    Constant = 43,
-    ConstantComposite = 44,
-    SpecConstant = 50,
-    SpecConstantComposite = 51,
-    SpecConstantOp = 52,
-    Variable = 59,
-    Decorate = 71,
-    MemberDecorate = 72,
-};
-constexpr std::uint32_t mode_local_size = 17, workgroup = 4, push_constant = 9;
-constexpr std::uint32_t decoration_spec_id = 1, decoration_builtin = 11, decoration_offset = 35, workgroup_size = 25;
-
-Op op_of(Words words) { return static_cast<Op>(words[0] & 0xffffu); }
+constexpr std::uint32_t mode_local_size = 17, workgroup_size = 25;
 
 class Reader {
   public:
-    Reader(Words spirv, const std::map<std::uint32_t, std::uint32_t>& constants) : constants_(constants) {
-        if (spirv.size() < header_words || spirv[0] != 0x07230203u) fail("no SPIR-V module");
-        needs_.version = spirv[1];
-        for (std::size_t at = header_words; at < spirv.size(); at += spirv[at] >> 16)
-            take(spirv.subspan(at, spirv[at] >> 16));
+    Reader(Words module, const std::map<std::uint32_t, std::uint32_t>& constants) : constants_(constants) {
+        if (module.size() < spirv::header_words || module[0] != 0x07230203u) fail("no SPIR-V module");
+        needs_.version = module[1];
+        for (std::size_t at = spirv::header_words; at < module.size(); at += words_of(module[at]))
+            take(module.subspan(at, words_of(module[at])));
         for (const Words& variable : variables_) add(variable);
         if (group_size_) needs_.group_invocations = product(group_size_);
     }
@@ -56,7 +31,7 @@ class Reader {
   private:
     void take(Words words) {
         using enum Op;
-        switch (op_of(words)) {
+        switch (op_of(words[0])) {
             case Capability: needs_.capabilities.insert(words[1]); return;
             case Extension: needs_.extensions.insert(reinterpret_cast<const char*>(&words[1])); return;
             case ExecutionMode:
@@ -64,11 +39,11 @@ class Reader {
                     needs_.group_invocations = std::uint64_t{words[3]} * words[4] * words[5];
                 return;
             case Decorate:
-                if (words[2] == decoration_spec_id) spec_ids_[words[1]] = words[3];
-                if (words[2] == decoration_builtin && words[3] == workgroup_size) group_size_ = words[1];
+                if (words[2] == spirv::decoration_spec_id) spec_ids_[words[1]] = words[3];
+                if (words[2] == spirv::decoration_builtin && words[3] == workgroup_size) group_size_ = words[1];
                 return;
             case MemberDecorate:
-                if (words[3] == decoration_offset) offsets_[{words[1], words[2]}] = words[4];
+                if (words[3] == spirv::decoration_offset) offsets_[{words[1], words[2]}] = words[4];
                 return;
             case TypeBool:
             case TypeInt:
@@ -95,9 +70,9 @@ class Reader {
     }
 
     void add(Words variable) {
-        if (variable[3] != workgroup && variable[3] != push_constant) return;
+        if (variable[3] != spirv::storage_workgroup && variable[3] != spirv::storage_push_constant) return;
         const Id type = definition(variable[1])[3];
-        if (variable[3] == workgroup)
+        if (variable[3] == spirv::storage_workgroup)
             needs_.shared_bytes += round_up(size_of(type), 16);
         else
             needs_.push_constant_bytes = std::max(needs_.push_constant_bytes, size_of(type));
@@ -109,7 +84,7 @@ class Reader {
     std::uint64_t size_of(Id type) const {
         using enum Op;
         const Words words = definition(type);
-        switch (op_of(words)) {
+        switch (op_of(words[0])) {
             case TypeBool: return 4;
             case TypeInt:
             case TypeFloat: return words[2] / 8;
@@ -137,7 +112,7 @@ class Reader {
     std::uint32_t value_of(Id id) const {
         using enum Op;
         const Words words = definition(id);
-        switch (op_of(words)) {
+        switch (op_of(words[0])) {
             case Constant: return words[3];
             case SpecConstant: {
                 const auto spec_id = spec_ids_.find(id);

@@ -8,6 +8,7 @@
 #include "engine/core/buffer.h"
 #include "engine/core/commands.h"
 #include "engine/core/error.h"
+#include "engine/core/spirv_words.h"
 #include "validation/kernels/kernel_statistics.h"
 #include "kernel_modules.h"
 #include "tests/support/device.h"
@@ -15,11 +16,11 @@
 namespace twinray::kernels {
 namespace {
 
-constexpr std::uint32_t op_entry_point = 15, gl_compute = 5, header_words = 5;
+constexpr std::uint32_t gl_compute = 5;
 
-bool is_compute(std::span<const std::uint32_t> spirv) {
-    for (std::size_t at = header_words; at < spirv.size(); at += spirv[at] >> 16)
-        if ((spirv[at] & 0xffff) == op_entry_point) return spirv[at + 1] == gl_compute;
+bool is_compute(spirv::Words module) {
+    for (std::size_t at = spirv::header_words; at < module.size(); at += spirv::words_of(module[at]))
+        if (spirv::op_of(module[at]) == spirv::Op::EntryPoint) return module[at + 1] == gl_compute;
     return false;
 }
 
