@@ -12,8 +12,6 @@
 namespace twinray {
 namespace {
 
-constexpr std::uint32_t morton_bits = 30;
-
 KernelDesc kernel(const char* name, std::span<const std::uint32_t> spirv) {
     return {.name = name, .spirv = spirv, .group_size = WORLD_BOUND_GROUP};
 }

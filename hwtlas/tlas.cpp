@@ -19,7 +19,6 @@ static_assert(offsetof(VkAccelerationStructureInstanceKHR, accelerationStructure
 
 constexpr std::uint64_t record_alignment = 16;  // of the device address of an array of instances
 constexpr std::uint32_t group_size = 256;       // of both kernels
-constexpr std::uint32_t morton_bits = 30;
 
 StructureBuild build_of(std::uint64_t driver_records, std::size_t count, bool can_update) {
     StructureBuild build{};

@@ -27,8 +27,6 @@
 namespace twinray {
 namespace {
 
-constexpr uint morton_bits = 30;
-
 // `is_needed`: else it is compiled only should it be used after all.
 KernelDesc stage(const char* name, std::span<const std::uint32_t> spirv, bool is_needed,
                  uint group_size = BUILD_GROUP) {

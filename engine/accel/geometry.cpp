@@ -15,7 +15,7 @@ void check_count(std::string_view name, std::size_t count, const char* what) {
         fail("mesh '", name, "': ", count, " ", what, "; at most ", Geometry::max_primitives, " fit in one geometry");
 }
 
-std::string joined(vec3 v) { return text(v.x, ", ", v.y, ", ", v.z); }
+std::string coordinates_of(vec3 v) { return text(v.x, ", ", v.y, ", ", v.z); }
 
 std::span<const uvec3> checked(const MeshView& mesh) {
     check_count(mesh.name, mesh.triangles.size(), "triangles");
@@ -27,8 +27,8 @@ std::span<const Bounds> checked(const BoxesView& view) {
     check_count(view.name, view.boxes.size(), "boxes");
     for (std::size_t i = 0; i < view.boxes.size(); ++i)
         if (const Bounds& box = view.boxes[i]; box.is_empty() || !is_finite(box.lo) || !is_finite(box.hi))
-            fail("boxes '", view.name, "': box ", i, " from (", joined(box.lo), ") to (", joined(box.hi),
-                 ") must be finite and not empty");
+            fail("boxes '", view.name, "': box ", i, " from (", coordinates_of(box.lo), ") to (",
+                 coordinates_of(box.hi), ") must be finite and not empty");
     return view.boxes;
 }
 

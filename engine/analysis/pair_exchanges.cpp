@@ -9,8 +9,6 @@
 namespace twinray {
 namespace {
 
-constexpr std::uint64_t first_rays = 1024;  // before the first look at errors
-
 // The rays of a pair of groups so far.
 struct Sampling {
     const PlannedPair* pair;

@@ -10,7 +10,7 @@
 namespace twinray {
 namespace {
 
-constexpr std::size_t batch_chunks = 1 << 13;
+constexpr std::size_t pair_chunks_of_batch = 1 << 13;
 
 }  // namespace
 
@@ -23,10 +23,11 @@ PairSampler::PairSampler(AbstractAccel& accel, const Faces& faces, Sides sides, 
       make_rays_(accel.context(), {.name = "analysis_pair_rays", .spirv = analysis_pair_rays_spirv}),
       mark_blocked_(accel.context(), {.name = "analysis_pair_weights", .spirv = analysis_pair_weights_spirv}),
       pace_(accel.context()) {
-    constexpr std::uint64_t rays = batch_chunks * CHUNK;
+    constexpr std::uint64_t rays = pair_chunks_of_batch * CHUNK;
     Context& context = accel.context();
-    chunks_ = Buffer(context,
-                     {.name = "chunks of pairs", .bytes = batch_chunks * sizeof(PairChunk), .memory = Memory::upload});
+    chunks_ = Buffer(
+        context,
+        {.name = "chunks of pairs", .bytes = pair_chunks_of_batch * sizeof(PairChunk), .memory = Memory::upload});
     rays_ = Buffer(context, {.name = "rays of pairs", .bytes = rays * sizeof(Ray)});
     hits_ = Buffer(context, {.name = "hits of pairs", .bytes = rays * sizeof(Hit)});
     weights_ = Buffer(context, {.name = "weights", .bytes = rays * sizeof(float), .memory = Memory::readback});
@@ -55,7 +56,7 @@ void PairSampler::sample(std::span<const Pair> pairs) {
             chunks.push_back({faces.a, faces.b, static_cast<uint>(chunk * SAMPLES_OF_CHUNK),
                               static_cast<float>(faces.distance), faces.part_a, faces.part_b});
             owners.push_back(&pair);
-            if (chunks.size() == batch_chunks) flush();
+            if (chunks.size() == pair_chunks_of_batch) flush();
         }
     flush();
 }

@@ -12,4 +12,6 @@ namespace twinray {
 #include "twinray/glsl/cpp_end.h"
 static_assert(REPLICATES == replicate_count && CHUNK == REPLICATES * SAMPLES_OF_CHUNK);
 
+constexpr std::uint64_t first_rays = 1024;  // before the first look at errors
+
 }  // namespace twinray

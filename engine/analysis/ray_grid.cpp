@@ -8,14 +8,12 @@
 #include "analysis_grid_rays.spv.h"
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
+#include "engine/scene/local_origin.h"
 
 namespace twinray {
 namespace {
 
-constexpr std::uint64_t batch_size = 1 << 20;
 constexpr uint largest_side = 65535;
-
-bool is_finite(dvec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 std::string text_of(dvec3 v) { return text("(", v.x, ", ", v.y, ", ", v.z, ")"); }
 
@@ -119,8 +117,9 @@ RayGridPlan plan_ray_grid(const Scene& scene, const RayGridDesc& desc) {
 
 std::vector<RayBatch> ray_batches(std::uint64_t ray_count) {
     std::vector<RayBatch> batches;
-    for (std::uint64_t first = 0; first < ray_count; first += batch_size)
-        batches.push_back({static_cast<uint>(first), static_cast<uint>(std::min(batch_size, ray_count - first))});
+    for (std::uint64_t first = 0; first < ray_count; first += rays_of_batch)
+        batches.push_back(
+            {static_cast<uint>(first), static_cast<uint>(std::min<std::uint64_t>(rays_of_batch, ray_count - first))});
     return batches;
 }
 
@@ -129,7 +128,7 @@ RayGridTrace::RayGridTrace(AbstractAccel& accel, const RayGridPlan& plan)
       grid_(plan.grid),
       kernel_(accel.context(), {.name = "analysis_grid_rays", .spirv = analysis_grid_rays_spirv}),
       pace_(accel.context()) {
-    const std::uint64_t most = std::min(batch_size, plan.ray_count);
+    const std::uint64_t most = std::min<std::uint64_t>(rays_of_batch, plan.ray_count);
     rays_ = Buffer(accel.context(), {.name = "grid rays", .bytes = most * sizeof(Ray)});
     hits_ = Buffer(accel.context(), {.name = "grid hits", .bytes = most * sizeof(Hit)});
     accel.sync();

@@ -26,11 +26,14 @@ struct RayGridPlan {
 // for `side`, and for scenes that rays in float32 cannot start in front of.
 RayGridPlan plan_ray_grid(const Scene& scene, const RayGridDesc& desc);
 
+// At most, in a submission of rays of a grid or of faces: 64 MiB on the device with their hits.
+constexpr uint rays_of_batch = 1 << 20;
+
 // A run of rays of a plan. It begins with an even number.
 struct RayBatch {
     uint first = 0, count = 0;
 };
-// Of at most 2^20 rays, which take 64 MiB on the device with their hits.
+// Of at most rays_of_batch.
 std::vector<RayBatch> ray_batches(std::uint64_t ray_count);
 
 // As long as 1; throws Error for a direction that is 0 or not finite.

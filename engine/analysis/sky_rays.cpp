@@ -9,12 +9,10 @@
 namespace twinray {
 namespace {
 
-constexpr uint batch_size = 1 << 20;
-
 uint faces_of_batch(uint samples, std::size_t faces) {
-    if (samples < 1 || samples > batch_size)
-        fail("rays from faces: ", samples, " of each; 1 to ", batch_size, " can be");
-    return static_cast<uint>(std::min<std::size_t>(batch_size / samples, faces));
+    if (samples < 1 || samples > rays_of_batch)
+        fail("rays from faces: ", samples, " of each; 1 to ", rays_of_batch, " can be");
+    return static_cast<uint>(std::min<std::size_t>(rays_of_batch / samples, faces));
 }
 
 }  // namespace

@@ -16,8 +16,7 @@
 namespace twinray {
 namespace {
 
-constexpr std::size_t batch_chunks = 1 << 14;
-constexpr std::uint64_t first_rays = 1024;  // before the first look at errors
+constexpr std::size_t ray_chunks_of_batch = 1 << 14;
 constexpr std::uint64_t most_rays = 1ull << 31;
 
 void check(const ViewFactorOptions& options) {
@@ -137,10 +136,10 @@ ViewFactors::State::State(AbstractAccel& accel_of_faces, const Faces& all_faces,
       known(factors_of(known_exchanges, areas)),
       groups(groups_on_device(accel.context(), faces, options.grouping)),
       pace(accel.context()) {
-    constexpr std::uint64_t most = batch_chunks * CHUNK;
+    constexpr std::uint64_t most = ray_chunks_of_batch * CHUNK;
     Context& context = accel.context();
-    chunks =
-        Buffer(context, {.name = "chunks of rays", .bytes = batch_chunks * sizeof(RayChunk), .memory = Memory::upload});
+    chunks = Buffer(
+        context, {.name = "chunks of rays", .bytes = ray_chunks_of_batch * sizeof(RayChunk), .memory = Memory::upload});
     rays = Buffer(context, {.name = "rays of faces", .bytes = most * sizeof(Ray)});
     hits = Buffer(context, {.name = "hits of faces", .bytes = most * sizeof(Hit)});
     targets = Buffer(context, {.name = "targets", .bytes = most * sizeof(uint), .memory = Memory::readback});
@@ -160,7 +159,8 @@ const std::vector<double>& ViewFactors::areas() const { return state_->areas; }
 
 std::size_t ViewFactors::batch_size() const {
     const ViewFactorOptions& options = state_->options;
-    return std::clamp<std::size_t>(batch_chunks / chunks_of(options.target_error ? first_rays : options.rays), 1, 4096);
+    return std::clamp<std::size_t>(ray_chunks_of_batch / chunks_of(options.target_error ? first_rays : options.rays), 1,
+                                   4096);
 }
 
 // How often the first round's rays are to have been taken after the next one: doubles while errors are above the
@@ -230,7 +230,7 @@ void ViewFactors::State::trace(std::vector<Row*>& rows) {
             for (std::uint64_t chunk = member.chunks * row->rounds; chunk < member.chunks * next; ++chunk) {
                 batch.push_back({member.face, static_cast<uint>(chunk * SAMPLES_OF_CHUNK)});
                 owners.push_back({row, member.weight});
-                if (batch.size() == batch_chunks) flush();
+                if (batch.size() == ray_chunks_of_batch) flush();
             }
         row->rounds = next;
     }

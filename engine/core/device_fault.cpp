@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t most_infos = 8;  // of either list
 
-const char* name_of(VkDeviceFaultAddressTypeEXT type) {
+const char* kind_of(VkDeviceFaultAddressTypeEXT type) {
     switch (type) {
         case VK_DEVICE_FAULT_ADDRESS_TYPE_READ_INVALID_EXT: return "invalid read";
         case VK_DEVICE_FAULT_ADDRESS_TYPE_WRITE_INVALID_EXT: return "invalid write";
@@ -29,7 +29,7 @@ std::string hexadecimal(std::uint64_t value) { return text("0x", std::hex, value
 std::string told(const VkDeviceFaultAddressInfoEXT& address) {
     const std::uint64_t within = address.addressPrecision ? address.addressPrecision - 1 : 0;
     const std::uint64_t first = address.reportedAddress & ~within, last = address.reportedAddress | within;
-    return text(name_of(address.addressType), " at ", hexadecimal(first),
+    return text(kind_of(address.addressType), " at ", hexadecimal(first),
                 last > first ? " to " + hexadecimal(last) : "");
 }
 

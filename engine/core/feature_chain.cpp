@@ -6,55 +6,56 @@
 namespace twinray {
 namespace {
 
-constexpr VkStructureType core = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
-constexpr VkStructureType vulkan12 = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
-constexpr VkStructureType timeline = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TIMELINE_SEMAPHORE_FEATURES;
-constexpr VkStructureType address = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_BUFFER_DEVICE_ADDRESS_FEATURES;
-constexpr VkStructureType layout = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SCALAR_BLOCK_LAYOUT_FEATURES;
-constexpr VkStructureType indexing = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DESCRIPTOR_INDEXING_FEATURES;
-constexpr VkStructureType structure = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_FEATURES_KHR;
-constexpr VkStructureType query = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR;
-constexpr VkStructureType tracing = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_FEATURES_KHR;
-constexpr VkStructureType fault = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FAULT_FEATURES_EXT;
+constexpr VkStructureType type_of_core = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
+constexpr VkStructureType type_of_vulkan12 = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
+constexpr VkStructureType type_of_timeline = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TIMELINE_SEMAPHORE_FEATURES;
+constexpr VkStructureType type_of_address = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_BUFFER_DEVICE_ADDRESS_FEATURES;
+constexpr VkStructureType type_of_layout = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SCALAR_BLOCK_LAYOUT_FEATURES;
+constexpr VkStructureType type_of_indexing = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DESCRIPTOR_INDEXING_FEATURES;
+constexpr VkStructureType type_of_structure = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_FEATURES_KHR;
+constexpr VkStructureType type_of_query = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR;
+constexpr VkStructureType type_of_tracing = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_FEATURES_KHR;
+constexpr VkStructureType type_of_fault = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FAULT_FEATURES_EXT;
 
 constexpr FeatureBit alone(bool DeviceProperties::*fact, const char* name, VkStructureType type, std::size_t offset) {
     return {fact, name, type, offset, type, offset};
 }
 
 constexpr FeatureBit bits[] = {
-    alone(&DeviceProperties::shader_int64, "shaderInt64", core,
+    alone(&DeviceProperties::shader_int64, "shaderInt64", type_of_core,
           offsetof(VkPhysicalDeviceFeatures2, features.shaderInt64)),
-    alone(&DeviceProperties::shader_float64, "shaderFloat64", core,
+    alone(&DeviceProperties::shader_float64, "shaderFloat64", type_of_core,
           offsetof(VkPhysicalDeviceFeatures2, features.shaderFloat64)),
-    {&DeviceProperties::timeline_semaphore, "timelineSemaphore", timeline,
-     offsetof(VkPhysicalDeviceTimelineSemaphoreFeatures, timelineSemaphore), vulkan12,
+    {&DeviceProperties::timeline_semaphore, "timelineSemaphore", type_of_timeline,
+     offsetof(VkPhysicalDeviceTimelineSemaphoreFeatures, timelineSemaphore), type_of_vulkan12,
      offsetof(VkPhysicalDeviceVulkan12Features, timelineSemaphore)},
-    {&DeviceProperties::buffer_device_address, "bufferDeviceAddress", address,
-     offsetof(VkPhysicalDeviceBufferDeviceAddressFeatures, bufferDeviceAddress), vulkan12,
+    {&DeviceProperties::buffer_device_address, "bufferDeviceAddress", type_of_address,
+     offsetof(VkPhysicalDeviceBufferDeviceAddressFeatures, bufferDeviceAddress), type_of_vulkan12,
      offsetof(VkPhysicalDeviceVulkan12Features, bufferDeviceAddress)},
-    {&DeviceProperties::scalar_block_layout, "scalarBlockLayout", layout,
-     offsetof(VkPhysicalDeviceScalarBlockLayoutFeatures, scalarBlockLayout), vulkan12,
+    {&DeviceProperties::scalar_block_layout, "scalarBlockLayout", type_of_layout,
+     offsetof(VkPhysicalDeviceScalarBlockLayoutFeatures, scalarBlockLayout), type_of_vulkan12,
      offsetof(VkPhysicalDeviceVulkan12Features, scalarBlockLayout)},
-    {&DeviceProperties::runtime_descriptor_array, "runtimeDescriptorArray", indexing,
-     offsetof(VkPhysicalDeviceDescriptorIndexingFeatures, runtimeDescriptorArray), vulkan12,
+    {&DeviceProperties::runtime_descriptor_array, "runtimeDescriptorArray", type_of_indexing,
+     offsetof(VkPhysicalDeviceDescriptorIndexingFeatures, runtimeDescriptorArray), type_of_vulkan12,
      offsetof(VkPhysicalDeviceVulkan12Features, runtimeDescriptorArray)},
-    {&DeviceProperties::variable_descriptor_count, "descriptorBindingVariableDescriptorCount", indexing,
-     offsetof(VkPhysicalDeviceDescriptorIndexingFeatures, descriptorBindingVariableDescriptorCount), vulkan12,
+    {&DeviceProperties::variable_descriptor_count, "descriptorBindingVariableDescriptorCount", type_of_indexing,
+     offsetof(VkPhysicalDeviceDescriptorIndexingFeatures, descriptorBindingVariableDescriptorCount), type_of_vulkan12,
      offsetof(VkPhysicalDeviceVulkan12Features, descriptorBindingVariableDescriptorCount)},
-    {&DeviceProperties::nonuniform_sampled_images, "shaderSampledImageArrayNonUniformIndexing", indexing,
-     offsetof(VkPhysicalDeviceDescriptorIndexingFeatures, shaderSampledImageArrayNonUniformIndexing), vulkan12,
+    {&DeviceProperties::nonuniform_sampled_images, "shaderSampledImageArrayNonUniformIndexing", type_of_indexing,
+     offsetof(VkPhysicalDeviceDescriptorIndexingFeatures, shaderSampledImageArrayNonUniformIndexing), type_of_vulkan12,
      offsetof(VkPhysicalDeviceVulkan12Features, shaderSampledImageArrayNonUniformIndexing)},
-    {&DeviceProperties::update_after_bind_images, "descriptorBindingSampledImageUpdateAfterBind", indexing,
-     offsetof(VkPhysicalDeviceDescriptorIndexingFeatures, descriptorBindingSampledImageUpdateAfterBind), vulkan12,
-     offsetof(VkPhysicalDeviceVulkan12Features, descriptorBindingSampledImageUpdateAfterBind)},
-    alone(&DeviceProperties::acceleration_structure, "accelerationStructure", structure,
+    {&DeviceProperties::update_after_bind_images, "descriptorBindingSampledImageUpdateAfterBind", type_of_indexing,
+     offsetof(VkPhysicalDeviceDescriptorIndexingFeatures, descriptorBindingSampledImageUpdateAfterBind),
+     type_of_vulkan12, offsetof(VkPhysicalDeviceVulkan12Features, descriptorBindingSampledImageUpdateAfterBind)},
+    alone(&DeviceProperties::acceleration_structure, "accelerationStructure", type_of_structure,
           offsetof(VkPhysicalDeviceAccelerationStructureFeaturesKHR, accelerationStructure)),
-    alone(&DeviceProperties::ray_query, "rayQuery", query, offsetof(VkPhysicalDeviceRayQueryFeaturesKHR, rayQuery)),
-    alone(&DeviceProperties::ray_tracing_pipeline, "rayTracingPipeline", tracing,
+    alone(&DeviceProperties::ray_query, "rayQuery", type_of_query,
+          offsetof(VkPhysicalDeviceRayQueryFeaturesKHR, rayQuery)),
+    alone(&DeviceProperties::ray_tracing_pipeline, "rayTracingPipeline", type_of_tracing,
           offsetof(VkPhysicalDeviceRayTracingPipelineFeaturesKHR, rayTracingPipeline)),
-    alone(&DeviceProperties::primitive_culling, "rayTraversalPrimitiveCulling", tracing,
+    alone(&DeviceProperties::primitive_culling, "rayTraversalPrimitiveCulling", type_of_tracing,
           offsetof(VkPhysicalDeviceRayTracingPipelineFeaturesKHR, rayTraversalPrimitiveCulling)),
-    alone(&DeviceProperties::device_fault, "deviceFault", fault,
+    alone(&DeviceProperties::device_fault, "deviceFault", type_of_fault,
           offsetof(VkPhysicalDeviceFaultFeaturesEXT, deviceFault)),
 };
 
@@ -71,15 +72,15 @@ bool has_extension(const VkDeviceCreateInfo& info, const char* name) {
 }  // namespace
 
 FeatureStructs::FeatureStructs() {
-    core.sType = twinray::core;
-    timeline.sType = twinray::timeline;
-    address.sType = twinray::address;
-    layout.sType = twinray::layout;
-    indexing.sType = twinray::indexing;
-    structure.sType = twinray::structure;
-    query.sType = twinray::query;
-    pipeline.sType = twinray::tracing;
-    fault.sType = twinray::fault;
+    core.sType = type_of_core;
+    timeline.sType = type_of_timeline;
+    address.sType = type_of_address;
+    layout.sType = type_of_layout;
+    indexing.sType = type_of_indexing;
+    structure.sType = type_of_structure;
+    query.sType = type_of_query;
+    pipeline.sType = type_of_tracing;
+    fault.sType = type_of_fault;
 }
 
 VkBaseOutStructure* FeatureStructs::find(VkStructureType type) {
@@ -103,7 +104,7 @@ VkBool32& provide_bit(VkDeviceCreateInfo& info, FeatureStructs& ours, const Feat
     auto* chain = static_cast<VkBaseOutStructure*>(const_cast<void*>(info.pNext));
     if (VkBool32* found = find_bit(chain, bit)) return *found;
     VkBaseOutStructure* added = ours.find(bit.own);
-    if (bit.own == core && info.pEnabledFeatures) {
+    if (bit.own == type_of_core && info.pEnabledFeatures) {
         // Vulkan forbids the one beside the other.
         ours.core.features = *info.pEnabledFeatures;
         info.pEnabledFeatures = nullptr;
@@ -116,11 +117,11 @@ VkBool32& provide_bit(VkDeviceCreateInfo& info, FeatureStructs& ours, const Feat
 void state_features(const VkDeviceCreateInfo& info, DeviceProperties& properties) {
     auto* chain = static_cast<VkBaseOutStructure*>(const_cast<void*>(info.pNext));
     VkPhysicalDeviceFeatures2 old_style{};
-    old_style.sType = core;
+    old_style.sType = type_of_core;
     if (info.pEnabledFeatures) old_style.features = *info.pEnabledFeatures;
     for (const FeatureBit& bit : bits) {
         const VkBool32* found = find_bit(chain, bit);
-        if (!found && bit.own == core)
+        if (!found && bit.own == type_of_core)
             found = bit_at(reinterpret_cast<VkBaseOutStructure*>(&old_style), bit.own_offset);
         properties.*bit.fact = found && *found;
     }

@@ -8,6 +8,8 @@
 
 namespace twinray {
 
+constexpr std::uint32_t morton_bits = 30;  // of keys that shaders/shared/morton.h makes
+
 // Sorts (key, value) pairs of uints on the GPU, stable, by the low bits of the key.
 class RadixSort {
   public:

@@ -9,6 +9,7 @@
 #include <tiny_gltf.h>
 
 #include "engine/core/error.h"
+#include "engine/core/ray.h"
 #include "engine/core/files.h"
 #include "twinray/glsl/cpp.h"
 
@@ -25,8 +26,6 @@ ChannelTable linear_table() {
         table[i] = static_cast<std::uint16_t>(std::lround(linear_of_srgb(static_cast<float>(i) / 255) * 65535));
     return table;
 }
-
-bool is_finite(vec3 point) { return std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z); }
 
 // glTF wants nodes that are made of a rotation and scales along the axes: columns that are perpendicular, but for
 // rounding.
@@ -123,7 +122,7 @@ class GlbModel {
             std::array<vec3, 3> vertices;
             for (int k = 0; k < 3; ++k)
                 vertices[static_cast<std::size_t>(k)] = transform_point(to_world, mesh.positions[mesh.triangles[i][k]]);
-            if (!std::all_of(vertices.begin(), vertices.end(), is_finite)) continue;
+            if (!std::all_of(vertices.begin(), vertices.end(), [](vec3 p) { return is_finite(p); })) continue;
             positions.insert(positions.end(), vertices.begin(), vertices.end());
             channels.insert(channels.end(), 3, channels_of(colors[i]));
         }

@@ -12,8 +12,6 @@
 namespace twinray {
 namespace {
 
-bool is_finite(const dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
-
 double largest_entry(const dvec3& v) { return std::max({v.x, v.y, v.z}); }
 
 // The largest power of ten, or below 1 of two, that is not larger: its multiples are float64.

@@ -3,6 +3,7 @@
 // float64 before it is rounded.
 #pragma once
 
+#include <cmath>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,6 +11,8 @@
 #include "twinray/glsl/cpp.h"
 
 namespace twinray {
+
+inline bool is_finite(const dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
 // Axis-aligned box in float64; the default is empty.
 struct Bounds64 {

@@ -5,14 +5,9 @@
 #include <cmath>
 
 #include "engine/core/error.h"
+#include "engine/core/ray.h"
 
 namespace twinray {
-namespace {
-
-bool is_finite(vec3 point) { return std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z); }
-
-}  // namespace
-
 void Bounds::include(vec3 point) { lo = min(lo, point), hi = max(hi, point); }
 void Bounds::include(const Bounds& other) { lo = min(lo, other.lo), hi = max(hi, other.hi); }
 vec3 Bounds::size() const { return is_empty() ? vec3(0) : hi - lo; }

@@ -49,11 +49,6 @@ FilmWindow window_of(const RenderSettings& settings) {
     return {part.width, settings.width, part.y * settings.width + part.x};
 }
 
-template <class T>
-Buffer array_of(Context& context, const char* name, std::uint64_t count) {
-    return Buffer(context, {.name = name, .bytes = count * sizeof(T)});
-}
-
 }  // namespace
 
 Renderer::Renderer(Context& context, const DeviceScene& scene, const RenderSettings& settings)

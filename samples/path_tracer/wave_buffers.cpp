@@ -4,15 +4,6 @@
 #include <cstddef>
 
 namespace twinray::path_tracer {
-namespace {
-
-template <class T>
-Buffer array_of(Context& context, const char* name, std::uint64_t count) {
-    return Buffer(context, {.name = name, .bytes = count * sizeof(T)});
-}
-
-}  // namespace
-
 WaveBuffers::WaveBuffers(Context& context, const DeviceScene& scene, Ref<Radiance> sums, FilmWindow window,
                          uint capacity)
     : scene_(scene),

@@ -8,6 +8,11 @@
 
 namespace twinray::path_tracer {
 
+template <class T>
+Buffer array_of(Context& context, const char* name, std::uint64_t count) {
+    return Buffer(context, {.name = name, .bytes = count * sizeof(T)});
+}
+
 // The arrays of waves on the device. Path rays take turns between two sets of arrays, of which the other one is what
 // the next wave is appended to; so do shadow rays where they may pass surfaces, else theirs is one.
 class WaveBuffers {

@@ -17,7 +17,7 @@ class AllHitsTest : public test::AccelTest {};
 
 INSTANTIATE_TEST_SUITE_P(Queries, AllHitsTest, ::testing::Values(Kind::software, Kind::ray_query), test::name_of_kind);
 
-std::vector<Ray> random_rays(std::size_t count, unsigned seed) {
+std::vector<Ray> rays_about_origin(std::size_t count, unsigned seed) {
     std::mt19937 random(seed);
     std::vector<Ray> rays;
     for (std::size_t i = 0; i < count; ++i)
@@ -29,7 +29,7 @@ TEST_P(AllHitsTest, EachTriangleOnTheWayOnceInOrder) {
     const Mesh soup = make_soup(300, 4, 0.8f);
     const Transform moved = Transform::translation(vec3(-1.5f, -0.5f, -0.75f));
     accel().push(soup, std::vector{Transform{}, moved});
-    const std::vector<Ray> rays = random_rays(400, 9);
+    const std::vector<Ray> rays = rays_about_origin(400, 9);
     const HitsOfRays found = AllHits(accel())(rays);
     ASSERT_EQ(found.first.size(), rays.size() + 1);
     std::size_t total = 0;
@@ -86,7 +86,7 @@ TEST_P(AllHitsTest, IntervalMaskCullingAndFilters) {
 TEST_P(AllHitsTest, MoreThanThereIsRoomForAreCounted) {
     const Mesh soup = make_soup(500, 4, 2.0f);
     accel().push(soup);
-    const std::vector<Ray> rays = random_rays(100, 3);
+    const std::vector<Ray> rays = rays_about_origin(100, 3);
     AllHits all(accel());
     const HitsOfRays found = all(rays);
     EXPECT_GT(found.hits.size(), 4 * rays.size());  // the list had to grow
@@ -103,7 +103,7 @@ TEST_P(AllHitsTest, BoxesAreRefused) {
     const std::vector<Bounds> bounds = {{vec3(0), vec3(1)}};
     accel().push(BoxesView{"boxes", bounds});
     AllHits all(accel());
-    EXPECT_THROW(all(random_rays(1, 1)), Error);
+    EXPECT_THROW(all(rays_about_origin(1, 1)), Error);
 }
 
 }  // namespace

@@ -17,12 +17,12 @@ using test::House;
 constexpr double least_steepness = 0.2;
 
 // Where a ray enters a house and leaves it again, by float64. Steepness: cosine of its angle to the wall's normal.
-struct Crossing {
+struct HousePassage {
     double enter = -INFINITY, leave = INFINITY, steepness = 0;
 };
 
-Crossing crossing_of(const House& house, const dvec3& from, const dvec3& direction) {
-    Crossing crossing;
+HousePassage crossing_of(const House& house, const dvec3& from, const dvec3& direction) {
+    HousePassage crossing;
     for (int axis = 0; axis < 3; ++axis) {
         const double a = (house.lo[axis] - from[axis]) / direction[axis];
         const double b = (house.hi[axis] - from[axis]) / direction[axis];
@@ -34,10 +34,10 @@ Crossing crossing_of(const House& house, const dvec3& from, const dvec3& directi
 }
 
 // The first house that a ray from outside meets.
-Crossing first_crossing(const dvec3& from, const dvec3& direction) {
-    Crossing first{INFINITY, INFINITY, 0};
+HousePassage first_crossing(const dvec3& from, const dvec3& direction) {
+    HousePassage first{INFINITY, INFINITY, 0};
     for (const House& house : test::far_houses())
-        if (const Crossing crossing = crossing_of(house, from, direction);
+        if (const HousePassage crossing = crossing_of(house, from, direction);
             crossing.enter <= crossing.leave && crossing.enter >= 0 && crossing.enter < first.enter)
             first = crossing;
     return first;

@@ -46,14 +46,14 @@ Mesh height_field(uint cells) {
     return mesh;
 }
 
-struct Outcome {
+struct RefinedHits {
     std::size_t hits = 0, wrong = 0;
     double worst_ulp = 0, worst_uv = 0;
 };
 
-Outcome compare(const ReferenceScene& reference, std::span<const Ray> rays, std::span<const Hit> hits,
-                const std::function<double(float, double)>& ulps) {
-    Outcome outcome;
+RefinedHits compare(const ReferenceScene& reference, std::span<const Ray> rays, std::span<const Hit> hits,
+                    const std::function<double(float, double)>& ulps) {
+    RefinedHits outcome;
     for (std::size_t i = 0; i < rays.size(); ++i) {
         const ReferenceHit exact = reference.closest_hit(rays[i]);
         if (!exact.hit && !hits[i].hit) continue;
@@ -79,8 +79,8 @@ TEST_P(Refined, DistancesAreThoseOfFloat64RoundedOnce) {
     for (const Instance& instance : scene.instances) accel().push(scene.meshes[instance.mesh], instance.transform);
     const std::vector<Ray> rays = rays_from(3, 20'000, 16, 1);
     const ReferenceScene reference = ReferenceScene::of(scene);
-    const Outcome refined = compare(reference, rays, accel().closest_hits(rays, {.level = Level::refined}), ulps);
-    const Outcome plain = compare(reference, rays, accel().closest_hits(rays), ulps);
+    const RefinedHits refined = compare(reference, rays, accel().closest_hits(rays, {.level = Level::refined}), ulps);
+    const RefinedHits plain = compare(reference, rays, accel().closest_hits(rays), ulps);
     EXPECT_GT(refined.hits, 19'000u);
     EXPECT_LE(refined.worst_ulp, 0.5 + 1e-6);
     EXPECT_LE(refined.worst_uv, 1e-7);
@@ -96,10 +96,11 @@ TEST_P(Refined, AFarCameraHitsTheRightTriangles) {
     const ReferenceScene reference = ReferenceScene::of(scene);
     for (int exponent = 1; exponent <= 9; ++exponent) {
         const std::vector<Ray> rays = rays_from(std::pow(10.0f, static_cast<float>(exponent)), 2000, 64, 3);
-        const Outcome refined = compare(reference, rays, accel().closest_hits(rays, {.level = Level::refined}), ulps);
+        const RefinedHits refined =
+            compare(reference, rays, accel().closest_hits(rays, {.level = Level::refined}), ulps);
         EXPECT_EQ(refined.wrong, 0u) << "from 1e" << exponent << " cells";
         EXPECT_LE(refined.worst_ulp, 0.5 + 1e-6) << "from 1e" << exponent << " cells";
-        const Outcome plain = compare(reference, rays, accel().closest_hits(rays), ulps);
+        const RefinedHits plain = compare(reference, rays, accel().closest_hits(rays), ulps);
         if (exponent < 7) continue;
         EXPECT_GT(plain.wrong, 20u) << "without, from 1e" << exponent << " cells";
     }

@@ -15,15 +15,15 @@ using test::error_of;
 
 const dvec3 far_away(1e7 + 0.37, -2e7 - 0.71, 5e6 + 0.13);
 
-struct Reference {
+struct WorldReference {
     double t = INFINITY, u = 0, v = 0;
     std::size_t triangle = 0;
     double margin = 0;  // how far from the triangle's border, in barycentrics
 };
 
 // Moeller and Trumbore's test in float64 against every triangle.
-Reference reference_hit(std::span<const dvec3> positions, std::span<const uvec3> triangles, const Ray64& ray) {
-    Reference best;
+WorldReference reference_hit(std::span<const dvec3> positions, std::span<const uvec3> triangles, const Ray64& ray) {
+    WorldReference best;
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         const dvec3 a = positions[triangles[i].x] - ray.origin, e1 = positions[triangles[i].y] - ray.origin - a,
                     e2 = positions[triangles[i].z] - ray.origin - a, p = cross(ray.direction, e2);
@@ -71,7 +71,7 @@ class WorldAccelTest : public test::AccelTest {
         std::size_t count = 0, wrong = 0;
         double worst = 0;
         for (std::size_t i = 0; i < rays.size(); ++i) {
-            const Reference expected = reference_hit(positions, sphere_.triangles, rays[i]);
+            const WorldReference expected = reference_hit(positions, sphere_.triangles, rays[i]);
             if (std::isfinite(expected.t) && expected.margin < 1e-4) continue;  // rounding may give it to its neighbour
             if ((hits[i].hit != 0) != std::isfinite(expected.t)) {
                 ++wrong;
@@ -163,7 +163,7 @@ TEST_P(WorldAccelTest, ExactHitsAreInFloat64) {
     const std::vector<HitExact> hits = world.exact_hits(rays);
     std::size_t count = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
-        const Reference expected = reference_hit(positions, sphere_.triangles, rays[i]);
+        const WorldReference expected = reference_hit(positions, sphere_.triangles, rays[i]);
         if (expected.margin < 1e-4 || !hits[i].hit) {
             EXPECT_TRUE(hits[i].hit || hits[i].t == -1);
             continue;

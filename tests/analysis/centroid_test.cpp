@@ -20,7 +20,7 @@ TWINRAY_OVER_EVERY_ACCEL(CentroidTest);
 class CentroidRulesTest : public CentroidTest {};
 TWINRAY_OVER_SOFTWARE(CentroidRulesTest);
 
-CentroidDesc along(dvec3 direction, uint side) { return {.grid = {.direction = direction, .side = side}}; }
+CentroidDesc centroids_along(dvec3 direction, uint side) { return {.grid = {.direction = direction, .side = side}}; }
 
 void expect_near(dvec3 a, dvec3 b, dvec3 error) {
     for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(a[axis], b[axis], error[axis]) << axis;
@@ -29,7 +29,7 @@ void expect_near(dvec3 a, dvec3 b, dvec3 error) {
 TEST_P(CentroidTest, OfASquareIsItsMiddleInWorldSpace) {
     for (const Transform& transform : {Transform(), skewed(), mirrored()}) {
         const Scene scene = scene_of({square(2)}, {transform});
-        const Centroid result = seen(scene, along({0.5, 0.25, -1}, 100));
+        const Centroid result = seen(scene, centroids_along({0.5, 0.25, -1}, 100));
         ASSERT_TRUE(result.mean && result.standard_error);
         EXPECT_EQ(result.ray_count, 10000u);
         EXPECT_GT(result.point_count, 2000u);
@@ -40,15 +40,15 @@ TEST_P(CentroidTest, OfASquareIsItsMiddleInWorldSpace) {
 
 TEST_P(CentroidRulesTest, OfASphereIsTwoThirdsOfTheRadiusInFront) {
     const Scene scene = scene_of({make_icosphere(5, 3)}, {Transform::translation({100, -200, 300})});
-    const Centroid result = seen(scene, along({0, 1e-3, 0}, 300));
+    const Centroid result = seen(scene, centroids_along({0, 1e-3, 0}, 300));
     ASSERT_TRUE(result.mean);
     expect_near(*result.mean, {100, -202, 300}, *result.standard_error * 4.0 + 0.004);  // facets
 }
 
 TEST_P(CentroidRulesTest, OnlyTheClosestPointsCount) {
     const Scene scene = scene_of({square(0), square(1), make_quad(vec3(0, 0, -1), vec3(0.5f, 0, 0), vec3(0, 1, 0))});
-    EXPECT_NEAR(seen(scene, along({0, 0, -1}, 50)).mean->z, 1, 1e-6);
-    EXPECT_NEAR(seen(scene, along({0, 0, 1}, 50)).mean->z, -0.5, 0.02);
+    EXPECT_NEAR(seen(scene, centroids_along({0, 0, -1}, 50)).mean->z, 1, 1e-6);
+    EXPECT_NEAR(seen(scene, centroids_along({0, 0, 1}, 50)).mean->z, -0.5, 0.02);
 }
 
 TEST_P(CentroidRulesTest, StandardErrorsAreThoseOfManySeeds) {
@@ -56,9 +56,9 @@ TEST_P(CentroidRulesTest, StandardErrorsAreThoseOfManySeeds) {
     fill(scene);
     constexpr int runs = 100;
     dvec3 sum(0), squares(0), told(0);
-    const dvec3 about = *centroid(accel(), scene, along({1, 2, -3}, 400)).mean;
+    const dvec3 about = *centroid(accel(), scene, centroids_along({1, 2, -3}, 400)).mean;
     for (int run = 0; run < runs; ++run) {
-        CentroidDesc desc = along({1, 2, -3}, 40);
+        CentroidDesc desc = centroids_along({1, 2, -3}, 40);
         desc.grid.seed = 77 + run;
         const Centroid result = centroid(accel(), scene, desc);
         const dvec3 off = *result.mean - about;
@@ -73,7 +73,7 @@ TEST_P(CentroidRulesTest, StandardErrorsAreThoseOfManySeeds) {
 }
 
 TEST_P(CentroidRulesTest, PointsAreKeptWhereAskedAndMeanWhatTheySay) {
-    CentroidDesc desc = along({0, -1, 0}, 1025);  // more than one batch
+    CentroidDesc desc = centroids_along({0, -1, 0}, 1025);  // more than one batch
     desc.keeps_points = true;
     const Scene scene = scene_of({make_icosphere(1)}, {Transform::translation({0, 7, 0})});
     const Centroid result = seen(scene, desc);
@@ -85,14 +85,14 @@ TEST_P(CentroidRulesTest, PointsAreKeptWhereAskedAndMeanWhatTheySay) {
         sum += point;
     }
     expect_near(sum / double(result.points.size()), *result.mean, dvec3(1e-9));
-    const Centroid again = seen(scene, along({0, -1, 0}, 1025));
+    const Centroid again = seen(scene, centroids_along({0, -1, 0}, 1025));
     EXPECT_TRUE(again.points.empty());
     EXPECT_EQ(*again.mean, *result.mean);
     EXPECT_EQ(*again.standard_error, *result.standard_error);
 }
 
 TEST_P(CentroidRulesTest, CentersGiveAMeanForEverySeedAndNoError) {
-    CentroidDesc desc = along({0, 0, -1}, 32);
+    CentroidDesc desc = centroids_along({0, 0, -1}, 32);
     desc.grid.points = GridPoints::centers;
     const Centroid result = seen(scene_of({square(0)}), desc);
     expect_near(*result.mean, {0.5, 0.5, 0}, dvec3(1e-6));
@@ -103,7 +103,7 @@ TEST_P(CentroidRulesTest, CentersGiveAMeanForEverySeedAndNoError) {
 
 TEST_P(CentroidRulesTest, NothingHitIsNoMean) {
     for (const Scene& scene : {Scene(), scene_of({Mesh()}), scene_of({make_quad(vec3(1), vec3(0), vec3(0))})}) {
-        const Centroid result = seen(scene, along({0, 0, -1}, 10));
+        const Centroid result = seen(scene, centroids_along({0, 0, -1}, 10));
         EXPECT_FALSE(result.mean || result.standard_error);
         EXPECT_EQ(result.point_count, 0u);
     }
@@ -112,21 +112,21 @@ TEST_P(CentroidRulesTest, NothingHitIsNoMean) {
 TEST_P(CentroidRulesTest, WrongUseSaysWhatIsWrong) {
     fill(scene_of({make_icosphere(0)}));
     EXPECT_NE(error_of([&] {
-                  centroid(accel(), scene_of({square(0)}), along({0, 0, -1}, 9));
+                  centroid(accel(), scene_of({square(0)}), centroids_along({0, 0, -1}, 9));
               }).find("its instance 0 has 20 primitives and the scene's 2 triangles"),
               std::string::npos);
     EXPECT_NE(error_of([&] {
-                  centroid(accel(), Scene(), along({0, 0, -1}, 9));
+                  centroid(accel(), Scene(), centroids_along({0, 0, -1}, 9));
               }).find("has 1 instances"),
               std::string::npos);
     EXPECT_NE(error_of([&] {
-                  centroid(accel(), scene_of({make_icosphere(0)}), along({0, INFINITY, -1}, 9));
+                  centroid(accel(), scene_of({make_icosphere(0)}), centroids_along({0, INFINITY, -1}, 9));
               }).find("finite"),
               std::string::npos);
     const Scene vast = scene_of({make_quad(vec3(-3.4e38f, 0, 0), vec3(3.4e38f, 0, 0), vec3(0, 3e38f, 0))});
     fill(vast);
     EXPECT_NE(error_of([&] {
-                  centroid(accel(), vast, along({1, 0, 0.1}, 9));
+                  centroid(accel(), vast, centroids_along({1, 0, 0.1}, 9));
               }).find("float32 ends"),
               std::string::npos);
 }

@@ -115,7 +115,7 @@ TEST(Contour, OfPolygonsWithMoreCornersNearsThatOfDiscs) {
     EXPECT_LT(last, 2e-3);
 }
 
-Surface sphere(uint subdivisions, const dvec3& middle, double radius) {
+Surface sphere_surface(uint subdivisions, const dvec3& middle, double radius) {
     const Mesh mesh = make_icosphere(subdivisions);
     Surface surface;
     for (const uvec3& t : mesh.triangles) {
@@ -129,7 +129,8 @@ TEST(Contour, SpheresThatFaceEachOtherAreCutAtTheirHorizons) {
     constexpr double known = 0.016156244369874;  // radii of 1, centres 4 apart
     double last = 0;
     for (const uint subdivisions : {0u, 1u, 2u}) {
-        const Surface a = sphere(subdivisions, dvec3(0), 1), b = sphere(subdivisions, dvec3(4, 0, 0), 1);
+        const Surface a = sphere_surface(subdivisions, dvec3(0), 1),
+                      b = sphere_surface(subdivisions, dvec3(4, 0, 0), 1);
         const double factor = test::exchange_of(a, b).flow / test::area_of(a);
         if (subdivisions) {
             EXPECT_NEAR((last - known) / (factor - known), 4, 0.9) << subdivisions;

@@ -26,7 +26,9 @@ TWINRAY_OVER_EVERY_ACCEL(IlluminationTest);
 class IlluminationRulesTest : public IlluminationTest {};
 TWINRAY_OVER_SOFTWARE(IlluminationRulesTest);
 
-IlluminationDesc along(dvec3 direction, uint side = 200) { return {.grid = {.direction = direction, .side = side}}; }
+IlluminationDesc lit_along(dvec3 direction, uint side = 200) {
+    return {.grid = {.direction = direction, .side = side}};
+}
 
 // The upper one hides half of the lower one. The one in between them is a unit square as well, turned away by 60
 // degrees.
@@ -36,7 +38,7 @@ Scene squares() {
 }
 
 TEST_P(IlluminationTest, AreasOfSquaresAreWhatIsSeenOfThem) {
-    const Illumination result = lit(squares(), along({0, 0, -3}));
+    const Illumination result = lit(squares(), lit_along({0, 0, -3}));
     EXPECT_EQ(result.ray_count, 200u * 200);
     const std::array exact = {0.125, 0.375, 0.5, 0.5, 0.25, 0.25};
     for (uint face = 0; face < 6; ++face) {
@@ -62,7 +64,7 @@ TEST_P(IlluminationTest, OfABoxThreeSidesAreSeenWhateverMovesIt) {
     for (const Transform& transform : {skewed(), mirrored()}) {
         const Scene scene = scene_of({make_box(vec3(-1, -2, 0), vec3(1, 0, 1))}, {transform});
         for (const Sides sides : {Sides::both, Sides::front}) {
-            IlluminationDesc desc = along(direction);
+            IlluminationDesc desc = lit_along(direction);
             desc.sides = sides;
             const Illumination result = lit(scene, desc);
             uint seen = 0;
@@ -83,7 +85,7 @@ TEST_P(IlluminationTest, OfABoxThreeSidesAreSeenWhateverMovesIt) {
 
 TEST_P(IlluminationRulesTest, LightOnASideThatDoesNotCountIsStoppedAllTheSame) {
     const Scene scene = scene_of({square(0), make_quad(vec3(0, 0, 1), vec3(0, 1, 0), vec3(0.5f, 0, 0))});
-    IlluminationDesc desc = along({0, 0, -1});
+    IlluminationDesc desc = lit_along({0, 0, -1});
     desc.sides = Sides::front;
     const Illumination front = lit(scene, desc);
     EXPECT_NEAR(area_of(front, 0), 0.5, 0.01);
@@ -96,8 +98,8 @@ TEST_P(IlluminationRulesTest, LightOnASideThatDoesNotCountIsStoppedAllTheSame) {
 
 TEST_P(IlluminationRulesTest, GroupsAreSumsOfFacesWithIntervalsOfTheirOwn) {
     Scene scene = squares();
-    const Illumination faces = lit(scene, along({0, 0, -1}));
-    IlluminationDesc desc = along({0, 0, -1});
+    const Illumination faces = lit(scene, lit_along({0, 0, -1}));
+    IlluminationDesc desc = lit_along({0, 0, -1});
     desc.by = FaceGrouping::instance;
     const Illumination instances = lit(scene, desc);
     ASSERT_EQ(instances.groups.size(), 3u);
@@ -115,8 +117,9 @@ TEST_P(IlluminationTest, EveryAcceleratorCountsTheSameHits) {
     Scene scene = scene_of({make_icosphere(3)}, {{}, Transform::translation({1.5f, 0.25f, -2}), skewed()});
     SwTlas software(context());
     push_scene(software, scene);
-    const Illumination expected = illuminate(software, scene, Faces(context(), scene), along({-0.25, -1, -0.5}, 300));
-    const Illumination result = lit(scene, along({-0.25, -1, -0.5}, 300));
+    const Illumination expected =
+        illuminate(software, scene, Faces(context(), scene), lit_along({-0.25, -1, -0.5}, 300));
+    const Illumination result = lit(scene, lit_along({-0.25, -1, -0.5}, 300));
     ASSERT_EQ(result.groups.size(), expected.groups.size());
     for (std::size_t face = 0; face < result.groups.size(); ++face) {
         EXPECT_EQ(result.groups[face].hits, expected.groups[face].hits) << face;
@@ -137,7 +140,7 @@ TEST_P(IlluminationRulesTest, WhatIsLitWhollyIsNotLitMore) {
     for (const uint side : {7u, 30u, 50u})
         for (const GridPoints points : {GridPoints::random, GridPoints::centers})
             for (const FaceGrouping by : {FaceGrouping::face, FaceGrouping::mesh}) {
-                IlluminationDesc desc = along({0, 0, -1}, side);
+                IlluminationDesc desc = lit_along({0, 0, -1}, side);
                 desc.grid.points = points;
                 desc.by = by;
                 Illumination result = illuminate(accel(), scene, faces, desc);
@@ -164,7 +167,7 @@ TEST_P(IlluminationRulesTest, IntervalsCoverAndEstimatesHaveNoBias) {
     std::array<int, 3> missed{};
     constexpr int runs = 100;
     for (int run = 0; run < runs; ++run) {
-        IlluminationDesc desc = along({0, 0, -1}, 37);
+        IlluminationDesc desc = lit_along({0, 0, -1}, 37);
         desc.grid.seed = 1000 + run;
         desc.by = FaceGrouping::mesh;
         const Illumination result = illuminate(accel(), scene, faces, desc);
@@ -187,7 +190,7 @@ TEST_P(IlluminationRulesTest, IntervalsCoverAndEstimatesHaveNoBias) {
 TEST_P(IlluminationTest, CountsAreThoseOfTheRaysAsTheHostMakesThem) {
     const Scene scene = scene_of({make_icosphere(1)}, {skewed(), Transform::translation({0, 3, 0})});
     for (const GridPoints points : {GridPoints::random, GridPoints::centers}) {
-        IlluminationDesc desc = along({1, -2, 0.5}, 99);
+        IlluminationDesc desc = lit_along({1, -2, 0.5}, 99);
         desc.grid.points = points;
         desc.grid.seed = 0x1'0000'0001;
         const Illumination result = lit(scene, desc);
@@ -203,7 +206,7 @@ TEST_P(IlluminationTest, CountsAreThoseOfTheRaysAsTheHostMakesThem) {
 
 TEST_P(IlluminationRulesTest, SeedsOf64BitsDifferAndRepeat) {
     const auto hits = [&](std::uint64_t seed) {
-        IlluminationDesc desc = along({0.25, 0.5, -1}, 31);
+        IlluminationDesc desc = lit_along({0.25, 0.5, -1}, 31);
         desc.grid.seed = seed;
         return lit(squares(), desc).groups[0].hits + lit(squares(), desc).groups[2].hits * 1000;
     };
@@ -214,15 +217,15 @@ TEST_P(IlluminationRulesTest, SeedsOf64BitsDifferAndRepeat) {
 
 TEST_P(IlluminationRulesTest, NothingToSeeIsNoLight) {
     for (Scene scene : {Scene(), scene_of({Mesh()}), scene_of({make_quad(vec3(0), vec3(NAN), vec3(1))})}) {
-        const Illumination result = lit(scene, along({0, 0, -1}));
+        const Illumination result = lit(scene, lit_along({0, 0, -1}));
         EXPECT_EQ(result.ray_count, 0u);
         EXPECT_EQ(result.total.area, 0);
         EXPECT_EQ(result.total.fraction(), 0);
         EXPECT_EQ(result.groups.size(), count_triangles(scene));
     }
     // Seen from its edge, and all at one point.
-    EXPECT_EQ(lit(scene_of({square(0)}), along({0, 1, 0})).total.area, 0);
-    EXPECT_EQ(lit(scene_of({make_quad(vec3(0), vec3(0), vec3(0))}), along({0, 1, 0})).total.hits, 0u);
+    EXPECT_EQ(lit(scene_of({square(0)}), lit_along({0, 1, 0})).total.area, 0);
+    EXPECT_EQ(lit(scene_of({make_quad(vec3(0), vec3(0), vec3(0))}), lit_along({0, 1, 0})).total.hits, 0u);
 }
 
 TEST_P(IlluminationRulesTest, WrongUseSaysWhatIsWrong) {
@@ -232,16 +235,16 @@ TEST_P(IlluminationRulesTest, WrongUseSaysWhatIsWrong) {
     const auto error = [&](const Scene& of, const IlluminationDesc& desc) {
         return error_of([&] { illuminate(accel(), of, faces, desc); });
     };
-    EXPECT_NE(error(scene, along({0, 0, 0})).find("direction (0, 0, 0) must be"), std::string::npos);
-    EXPECT_NE(error(scene, along({0, NAN, 0})).find("must be finite"), std::string::npos);
-    EXPECT_NE(error(scene, along({0, 0, 1}, 0)).find("0 cells a side"), std::string::npos);
-    EXPECT_NE(error(scene, along({0, 0, 1}, 65536)).find("65536 cells a side; 1 to 65535"), std::string::npos);
-    EXPECT_NE(error(other, along({0, 0, 1})).find("Faces 6 in 3"), std::string::npos);
-    EXPECT_EQ(error(scene, along({0, 0, 1e-300}, 1)), "");
+    EXPECT_NE(error(scene, lit_along({0, 0, 0})).find("direction (0, 0, 0) must be"), std::string::npos);
+    EXPECT_NE(error(scene, lit_along({0, NAN, 0})).find("must be finite"), std::string::npos);
+    EXPECT_NE(error(scene, lit_along({0, 0, 1}, 0)).find("0 cells a side"), std::string::npos);
+    EXPECT_NE(error(scene, lit_along({0, 0, 1}, 65536)).find("65536 cells a side; 1 to 65535"), std::string::npos);
+    EXPECT_NE(error(other, lit_along({0, 0, 1})).find("Faces 6 in 3"), std::string::npos);
+    EXPECT_EQ(error(scene, lit_along({0, 0, 1e-300}, 1)), "");
     fill(scene_of({square(0)}));
-    EXPECT_NE(error(scene, along({0, 0, 1})).find("it has 1 instances and the scene 3"), std::string::npos);
+    EXPECT_NE(error(scene, lit_along({0, 0, 1})).find("it has 1 instances and the scene 3"), std::string::npos);
     fill(other);
-    EXPECT_NE(error(scene, along({0, 0, 1})).find("primitives and the scene's"), std::string::npos);
+    EXPECT_NE(error(scene, lit_along({0, 0, 1})).find("primitives and the scene's"), std::string::npos);
     const Scene vast = scene_of({make_quad(vec3(-3.4e38f, 0, 0), vec3(3.4e38f, 0, 0), vec3(0, 3e38f, 0))});
     const std::string far = error_of([&] { Faces(context(), vast); });
     EXPECT_NE(far.find("triangle 0 of instance 0 has a coordinate of 3.4e+38 in world space; at most 2^124"),

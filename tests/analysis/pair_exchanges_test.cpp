@@ -162,7 +162,7 @@ TEST_P(PairExchangesTest, FewRaysThroughAHoleHaveNoBias) {
     EXPECT_GT(without, seeds) << "of " << 4 * seeds;
 }
 
-const ViewFactor& factor(const ViewFactorRow& row, uint target) {
+const ViewFactor& entry_of(const ViewFactorRow& row, uint target) {
     static const ViewFactor none;
     for (const ViewFactor& entry : row.factors)
         if (entry.target == target) return entry;
@@ -181,14 +181,14 @@ TEST_P(PairExchangesTest, AllEstimatorsAndSequencesAgree) {
         for (const ViewFactorRow& row : all) {
             ASSERT_EQ(row.factors.size(), all[0].factors.size());
             for (const ViewFactor& entry : row.factors) {
-                EXPECT_TRUE(overlap(entry, factor(all[0], entry.target)))
+                EXPECT_TRUE(overlap(entry, entry_of(all[0], entry.target)))
                     << entry.value << " +- " << entry.high - entry.value;
                 EXPECT_LT(entry.high - entry.low, 0.2f * entry.value);
             }
         }
-        EXPECT_EQ(factor(all[0], 1).by, scene.meshes.size() == 2 ? PairEstimator::contour : PairEstimator::area);
-        EXPECT_EQ(factor(all[2], 1).by, PairEstimator::hits);
-        EXPECT_EQ(factor(all[4], 1).by, PairEstimator::area);
+        EXPECT_EQ(entry_of(all[0], 1).by, scene.meshes.size() == 2 ? PairEstimator::contour : PairEstimator::area);
+        EXPECT_EQ(entry_of(all[2], 1).by, PairEstimator::hits);
+        EXPECT_EQ(entry_of(all[4], 1).by, PairEstimator::area);
     }
 }
 
@@ -214,8 +214,8 @@ TEST_P(PairExchangesTest, WhatIsHiddenHasNoFactor) {
     scene.meshes[2] = make_quad(vec3(-0.5f, -0.5f, 1), vec3(2, 0, 0), vec3(0, 2, 0));
     for (const PairEstimator estimator : {PairEstimator::automatic, PairEstimator::area}) {
         const std::vector<ViewFactorRow> all = rows(scene, {.grouping = FaceGrouping::mesh}, estimator);
-        EXPECT_EQ(factor(all[0], 1).value, 0) << "a plate is in between";
-        EXPECT_GT(factor(all[1], 2).value, 0.5f) << "and looks up";
+        EXPECT_EQ(entry_of(all[0], 1).value, 0) << "a plate is in between";
+        EXPECT_GT(entry_of(all[1], 2).value, 0.5f) << "and looks up";
     }
 }
 
@@ -224,17 +224,17 @@ TEST_P(PairExchangesOfAccels, OfConcentricSpheresContoursTellWhatIsNotHidden) {
     const Scene spheres = scene_of({make_icosphere(1, 1), turned(make_icosphere(1, 2))});
     const std::vector<ViewFactorRow> all = rows(spheres, {.grouping = FaceGrouping::mesh}, PairEstimator::automatic);
     ASSERT_EQ(all[0].factors.size(), 1u);
-    EXPECT_FLOAT_EQ(factor(all[0], 1).value, 1) << "the inner one sees the outer one alone";
-    EXPECT_EQ(factor(all[0], 1).by, PairEstimator::contour);
-    EXPECT_FLOAT_EQ(factor(all[1], 0).value, 0.25f) << "the spheres are similar";
-    const ViewFactor& itself = factor(all[1], 1);
+    EXPECT_FLOAT_EQ(entry_of(all[0], 1).value, 1) << "the inner one sees the outer one alone";
+    EXPECT_EQ(entry_of(all[0], 1).by, PairEstimator::contour);
+    EXPECT_FLOAT_EQ(entry_of(all[1], 0).value, 0.25f) << "the spheres are similar";
+    const ViewFactor& itself = entry_of(all[1], 1);
     EXPECT_EQ(itself.by, PairEstimator::hits);
     EXPECT_TRUE(itself.low <= 0.75f && 0.75f <= itself.high);
 
     const Scene alone = scene_of({turned(make_icosphere(1, 2))});
     const std::vector<ViewFactorRow> hollow = rows(alone, {.grouping = FaceGrouping::mesh}, PairEstimator::automatic);
-    EXPECT_FLOAT_EQ(factor(hollow[0], 0).value, 1);
-    EXPECT_EQ(factor(hollow[0], 0).by, PairEstimator::contour);
+    EXPECT_FLOAT_EQ(entry_of(hollow[0], 0).value, 1);
+    EXPECT_EQ(entry_of(hollow[0], 0).by, PairEstimator::contour);
 }
 
 TEST_P(PairExchangesTest, ProjectionKeepsWhatIsKnownBest) {
@@ -257,8 +257,8 @@ TEST_P(PairExchangesTest, ProjectionKeepsWhatIsKnownBest) {
         for (const ViewFactor& entry : before[i].factors) {
             if (entry.by != PairEstimator::contour) continue;
             ++contours;
-            EXPECT_NEAR(factor(all[i], entry.target).value, entry.value, 1e-6f);
-            EXPECT_EQ(factor(all[i], entry.target).by, PairEstimator::contour);
+            EXPECT_NEAR(entry_of(all[i], entry.target).value, entry.value, 1e-6f);
+            EXPECT_EQ(entry_of(all[i], entry.target).by, PairEstimator::contour);
         }
     EXPECT_GT(contours, 24);
 }
@@ -294,8 +294,8 @@ TEST_P(PairExchangesTest, AGroupSeesItselfByEveryEstimator) {
     for (const PairEstimator estimator : {PairEstimator::contour, PairEstimator::area, PairEstimator::hits}) {
         const std::vector<ViewFactorRow> all =
             rows(test::parallel_squares(1), {.grouping = FaceGrouping::material, .rays = 1 << 15}, estimator);
-        EXPECT_NEAR(factor(all[0], 0).value, 0.199824895698387383, 0.004) << name_of(estimator);
-        EXPECT_EQ(factor(all[0], 0).by, estimator);
+        EXPECT_NEAR(entry_of(all[0], 0).value, 0.199824895698387383, 0.004) << name_of(estimator);
+        EXPECT_EQ(entry_of(all[0], 0).by, estimator);
     }
 }
 
@@ -322,10 +322,10 @@ TEST_P(PairExchangesTest, TinyFacesAreAsAccurateAsLargeOnes) {
         const std::vector<ViewFactorRow> all =
             rows(scene, {.grouping = FaceGrouping::mesh, .rays = 1 << 14}, estimator);
         const double error = estimator == PairEstimator::area ? 1e-3 : 1e-6;
-        EXPECT_NEAR(static_cast<double>(factor(all[1], 0).value) / known, 1, error) << name_of(estimator);
-        EXPECT_NEAR(static_cast<double>(factor(all[0], 1).value) / known * 0x1p40, 1, error) << name_of(estimator);
-        EXPECT_LE(static_cast<double>(factor(all[1], 0).low), known * (1 + 1e-6));
-        EXPECT_GE(static_cast<double>(factor(all[1], 0).high), known * (1 - 1e-6));
+        EXPECT_NEAR(static_cast<double>(entry_of(all[1], 0).value) / known, 1, error) << name_of(estimator);
+        EXPECT_NEAR(static_cast<double>(entry_of(all[0], 1).value) / known * 0x1p40, 1, error) << name_of(estimator);
+        EXPECT_LE(static_cast<double>(entry_of(all[1], 0).low), known * (1 + 1e-6));
+        EXPECT_GE(static_cast<double>(entry_of(all[1], 0).high), known * (1 - 1e-6));
     }
 }
 

@@ -12,7 +12,7 @@ namespace twinray {
 namespace {
 
 // With the flow of row 0 known exactly, in float32; `half` is half of every interval.
-std::vector<ViewFactorRow> cube(float parallel, float half = 0) {
+std::vector<ViewFactorRow> cube_factors(float parallel, float half = 0) {
     std::vector<ViewFactorRow> rows;
     const float perpendicular = (1 - parallel) / 4;
     for (uint i = 0; i < 6; ++i) {
@@ -41,7 +41,7 @@ CubeLight cube_light(double rho, double p) {
 TEST(Radiosity, OfACubeIsTheClosedForm) {
     const std::vector<double> emission = {1, 0, 0, 0, 0, 0};
     for (const double rho : {0.0, 0.5, 0.9, 0.99, 0.999, 0.9999, 0.999999}) {
-        const Radiosity found = solve_radiosity(cube(known_parallel), emission, std::vector<double>(6, rho));
+        const Radiosity found = solve_radiosity(cube_factors(known_parallel), emission, std::vector<double>(6, rho));
         const double slack = 1e-6;
         const CubeLight known = cube_light(rho, static_cast<double>(known_parallel));
         const double of = known.emitter;
@@ -64,7 +64,7 @@ TEST(Radiosity, ReferenceValues) {
 
 TEST(Radiosity, ForwardErrorIsTheAmplifiedResidual) {
     const std::vector<double> emission = {1, 0, 0.5, 0, 0, 0.25}, rho(6, 0.999);
-    const Radiosity exact = solve_radiosity(cube(known_parallel), emission, rho);
+    const Radiosity exact = solve_radiosity(cube_factors(known_parallel), emission, rho);
     double residual = 0;
     for (std::size_t i = 0; i < 6; ++i)
         residual = std::max(residual, std::abs(emission[i] + rho[i] * exact.incident[i] - exact.values[i]));
@@ -78,10 +78,10 @@ TEST(Radiosity, SamplingBoundsWhatTheErrorOfFactorsDoes) {
     std::normal_distribution<double> normal;
     constexpr float half = 0.002f;
     const std::vector<double> emission = {1, 0, 0, 0, 0, 0}, rho(6, 0.9);
-    const Radiosity found = solve_radiosity(cube(known_parallel, half), emission, rho);
+    const Radiosity found = solve_radiosity(cube_factors(known_parallel, half), emission, rho);
     int inside = 0, count = 0;
     for (int trial = 0; trial < 200; ++trial) {
-        std::vector<ViewFactorRow> rows = cube(known_parallel, half);
+        std::vector<ViewFactorRow> rows = cube_factors(known_parallel, half);
         for (ViewFactorRow& row : rows)
             for (ViewFactor& factor : row.factors) factor.value += static_cast<float>(normal(random) * half / 1.96);
         for (ViewFactorRow& row : rows) {
@@ -98,18 +98,19 @@ TEST(Radiosity, SamplingBoundsWhatTheErrorOfFactorsDoes) {
 }
 
 TEST(Radiosity, WhatHasNoSolutionIsAnError) {
-    EXPECT_THROW(solve_radiosity(cube(known_parallel), std::vector<double>(6, 1.0), std::vector<double>(6, 1.0)),
-                 Error);
-    EXPECT_THROW(solve_radiosity(cube(known_parallel), std::vector<double>(5, 1.0), std::vector<double>(6, 0.5)),
-                 Error);
-    EXPECT_THROW(solve_radiosity(cube(known_parallel), std::vector<double>(6, 1.0), std::vector<double>(6, 1.5)),
-                 Error);
-    EXPECT_THROW(solve_radiosity(cube(known_parallel), std::vector<double>(6, NAN), std::vector<double>(6, 0.5)),
-                 Error);
+    EXPECT_THROW(
+        solve_radiosity(cube_factors(known_parallel), std::vector<double>(6, 1.0), std::vector<double>(6, 1.0)), Error);
+    EXPECT_THROW(
+        solve_radiosity(cube_factors(known_parallel), std::vector<double>(5, 1.0), std::vector<double>(6, 0.5)), Error);
+    EXPECT_THROW(
+        solve_radiosity(cube_factors(known_parallel), std::vector<double>(6, 1.0), std::vector<double>(6, 1.5)), Error);
+    EXPECT_THROW(
+        solve_radiosity(cube_factors(known_parallel), std::vector<double>(6, NAN), std::vector<double>(6, 0.5)), Error);
 }
 
 TEST(Radiosity, NothingEmittedAndNothingAtAll) {
-    const Radiosity dark = solve_radiosity(cube(known_parallel), std::vector<double>(6), std::vector<double>(6, 1.0));
+    const Radiosity dark =
+        solve_radiosity(cube_factors(known_parallel), std::vector<double>(6), std::vector<double>(6, 1.0));
     EXPECT_EQ(dark.values, std::vector<double>(6));
     EXPECT_TRUE(solve_radiosity({}, {}, {}).values.empty());
 }

@@ -11,6 +11,12 @@
 
 namespace twinray::test {
 
+struct KnownFactor {
+    std::string name;
+    Scene scene;
+    double value;  // from mesh 0 to mesh 1
+};
+
 // Squares with sides of 1 that face each other at this distance.
 inline Scene parallel_squares(float distance) {
     return scene_of({make_quad(vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)),

@@ -22,19 +22,13 @@ class ViewFactorCoverage : public test::AnalysisTest {
 };
 TWINRAY_OVER_SOFTWARE(ViewFactorCoverage);
 
-struct Known {
-    std::string name;
-    Scene scene;
-    double value;  // from mesh 0 to mesh 1
-};
-
 double area_of(const Scene& scene) {
     double area = 0;
     for (uint i = 0; i < scene.meshes[0].triangles.size(); ++i) area += length(area_vector(scene, {0, i}));
     return area;
 }
 
-Known by_contour(std::string name, Scene scene) {
+test::KnownFactor by_contour(std::string name, Scene scene) {
     const double value = test::contour_flow(scene) / area_of(scene);
     return {std::move(name), std::move(scene), value};
 }
@@ -52,7 +46,7 @@ Scene sphere_pair(float r1, float r2, float distance) {
 }
 
 TEST_P(ViewFactorCoverage, OfDiscsAndSpheres) {
-    const std::vector<Known> all = {
+    const std::vector<test::KnownFactor> all = {
         by_contour("discs", discs(1, 1, 1)),
         by_contour("a disc and one of twice its radius", discs(1, 2, 1)),
         by_contour("spheres 4 apart", sphere_pair(1, 1, 4)),
@@ -60,7 +54,7 @@ TEST_P(ViewFactorCoverage, OfDiscsAndSpheres) {
         {"concentric spheres, inwards", scene_of({turned(make_icosphere(1, 2)), make_icosphere(1, 1)}), 0.25}};
     for (const Sequence sequence : {Sequence::sobol, Sequence::random}) {
         uint inside = 0;
-        for (const Known& known : all) {
+        for (const test::KnownFactor& known : all) {
             fill(known.scene);
             for (uint seed = 1; seed <= test::seeds(); ++seed) {
                 const ViewFactorRow row = this->row(

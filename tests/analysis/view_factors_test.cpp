@@ -15,7 +15,7 @@ namespace {
 using test::scene_of;
 using test::turned;
 
-float factor(const ViewFactorRow& row, uint target) {
+float factor_or_none(const ViewFactorRow& row, uint target) {
     for (const ViewFactor& entry : row.factors)
         if (entry.target == target) return entry.value;
     return 0;
@@ -45,14 +45,8 @@ Scene room() {
     return scene;
 }
 
-struct Known {
-    std::string name;
-    Scene scene;
-    double value;  // from mesh 0 to mesh 1
-};
-
 // Howell, "A Catalog of Radiation Heat Transfer Configuration Factors", C-11 and C-14, evaluated with 30 digits.
-std::vector<Known> known_factors() {
+std::vector<test::KnownFactor> known_factors() {
     return {{"parallel, distance 1", test::parallel_squares(1), 0.199824895698387383},
             {"parallel, distance 0.5", test::parallel_squares(0.5f), 0.415253283577146735},
             {"parallel, distance 2", test::parallel_squares(2), 0.0685895888185524478},
@@ -67,8 +61,8 @@ struct Trial {
     int inside = 0;
     double rms = 0;
 };
-Trial estimates(AbstractAccel& accel, const Faces& faces, const Known& known, Sequence sequence, std::uint64_t rays,
-                uint seeds, uint first_seed = 0) {
+Trial estimates(AbstractAccel& accel, const Faces& faces, const test::KnownFactor& known, Sequence sequence,
+                std::uint64_t rays, uint seeds, uint first_seed = 0) {
     Trial trial;
     for (uint seed = 0; seed < seeds; ++seed) {
         ViewFactors factors(
@@ -90,8 +84,8 @@ TEST_P(ViewFactorsTest, KnownFactorsLieWithinTheirIntervalsAsOftenAsTheyShould) 
     constexpr uint seeds = 100;
     for (const Sequence sequence : {Sequence::sobol, Sequence::random}) {
         int inside = 0;
-        const std::vector<Known> all = known_factors();
-        for (const Known& known : all) {
+        const std::vector<test::KnownFactor> all = known_factors();
+        for (const test::KnownFactor& known : all) {
             const auto accel = make_accel();
             push_scene(*accel, known.scene);
             const Faces faces(context(), known.scene);
@@ -112,8 +106,8 @@ TEST_P(ViewFactorsTest, ErrorsFallAsTheyShouldWithTheRays) {
     for (const Sequence sequence : {Sequence::sobol, Sequence::random}) {
         double slopes = 0;
         uint seed = 0;
-        const std::vector<Known> all = known_factors();
-        for (const Known& known : all) {
+        const std::vector<test::KnownFactor> all = known_factors();
+        for (const test::KnownFactor& known : all) {
             const auto accel = make_accel();
             push_scene(*accel, known.scene);
             const Faces faces(context(), known.scene);
@@ -144,7 +138,7 @@ TEST_P(ViewFactorsOfAccels, EveryRayInAClosedRoomMeetsAFace) {
                 EXPECT_EQ(row.hits, row.rays) << "face " << row.group;
                 EXPECT_EQ(row.open.value, 0) << "face " << row.group;
             }
-            EXPECT_EQ(factor(row, row.group), 0) << "a flat face does not see itself";
+            EXPECT_EQ(factor_or_none(row, row.group), 0) << "a flat face does not see itself";
             double sum = row.open.value + row.back.value;
             for (const ViewFactor& entry : row.factors) sum += static_cast<double>(entry.value);
             EXPECT_EQ(sum, 1) << "face " << row.group;
@@ -189,9 +183,9 @@ TEST_P(ViewFactorsTest, WhatIsHiddenOrTurnedAwayHasNoFactor) {
     blocked.meshes.push_back(make_quad(vec3(-9, -9, 0.5f), vec3(20, 0, 0), vec3(0, 20, 0)));
     blocked.instances.push_back({"plate", 2, {}});
     std::vector<ViewFactorRow> all = rows(blocked, {.grouping = FaceGrouping::mesh});
-    EXPECT_EQ(factor(all[0], 1), 0);
-    EXPECT_EQ(factor(all[1], 0), 0);
-    EXPECT_GT(factor(all[1], 2), 0.99f) << "the plate's front";
+    EXPECT_EQ(factor_or_none(all[0], 1), 0);
+    EXPECT_EQ(factor_or_none(all[1], 0), 0);
+    EXPECT_GT(factor_or_none(all[1], 2), 0.99f) << "the plate's front";
     EXPECT_GT(all[0].back.value, 0.99) << "and its back";
 
     Scene away = test::parallel_squares(1);
@@ -200,7 +194,7 @@ TEST_P(ViewFactorsTest, WhatIsHiddenOrTurnedAwayHasNoFactor) {
     EXPECT_TRUE(all[0].factors.empty() && all[1].factors.empty());
     EXPECT_EQ(all[0].open.value, 1);
     all = rows(away, {.grouping = FaceGrouping::mesh, .sides = Sides::both});
-    EXPECT_NEAR(factor(all[0], 1), 0.199824895698387383 / 2, 0.003) << "half of the rays leave the other side";
+    EXPECT_NEAR(factor_or_none(all[0], 1), 0.199824895698387383 / 2, 0.003) << "half of the rays leave the other side";
 
     Scene coplanar = scene_of({test::square(0), make_quad(vec3(1, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0))});
     all = rows(coplanar, {.grouping = FaceGrouping::mesh, .sides = Sides::both});
@@ -231,7 +225,7 @@ TEST_P(ViewFactorsTest, NarrowGapsAndPanelsAreAsAccurateAsWideOnes) {
 TEST_P(ViewFactorsOfAccels, OfConcentricSpheresTheInnerSeesTheOuterAlone) {
     const Scene spheres = scene_of({make_icosphere(3, 1), turned(make_icosphere(3, 2))});
     const std::vector<ViewFactorRow> all = rows(spheres, {.grouping = FaceGrouping::mesh, .rays = 1 << 17});
-    EXPECT_EQ(factor(all[0], 1), 1) << "every ray, to the last";
+    EXPECT_EQ(factor_or_none(all[0], 1), 1) << "every ray, to the last";
     EXPECT_EQ(all[1].hits, all[1].rays);
     const ViewFactor& inward = all[1].factors.front();
     EXPECT_EQ(inward.target, 0u);
@@ -247,7 +241,7 @@ TEST_P(ViewFactorsTest, InstancesStandWhereTheirTransformsPutThem) {
         for (vec3& position : mesh.positions) position = transform_point(in_half, position);
     for (Instance& instance : scene.instances) instance.transform = inverse(in_half, "test");
     const ViewFactorRow row = rows(scene, {.grouping = FaceGrouping::instance}).front();
-    EXPECT_NEAR(factor(row, 1), 0.199824895698387383, 0.006);
+    EXPECT_NEAR(factor_or_none(row, 1), 0.199824895698387383, 0.006);
 }
 
 TEST_P(ViewFactorsTest, RowsEndWhenTheirErrorIsSmallEnough) {

@@ -70,12 +70,6 @@ std::vector<TriangleContact> brute_force(const std::vector<MeshView>& meshes,
     return contacts;
 }
 
-Transform turned(std::mt19937& random, float spread) {
-    Transform m = Transform::scaling(vec3(test::uniform(random, 0.5f, 1.5f)));
-    for (vec4& row : m.rows) row += vec4(test::uniform3(random, -0.5f, 0.5f), test::uniform(random, -spread, spread));
-    return m;
-}
-
 TEST_F(NarrowPhaseTest, ThoseOnALatticeHaveTheirExactClass) {
     const std::vector<TrianglePair> pairs = test::lattice_pairs(test::lattice_count(), 9);
     const std::vector<PairClass> found = narrow_phase().classify(pairs);
@@ -89,7 +83,7 @@ TEST_F(NarrowPhaseTest, NoPairOfInstancesIsLost) {
     const Soup soup = test::random_soup(20, 0.4f, 4), ball = test::sphere(1);
     const std::vector<MeshView> meshes = {soup.view(), ball.view()};
     std::vector<MeshInstance> instances;
-    for (uint i = 0; i < 40; ++i) instances.push_back({i % 2, turned(random, 4)});
+    for (uint i = 0; i < 40; ++i) instances.push_back({i % 2, test::random_placement(random, 4)});
     const std::vector<TriangleContact> expected = brute_force(meshes, instances);
     ASSERT_GT(expected.size(), 150u);
     const Contacts found = find(meshes, instances);
@@ -108,7 +102,7 @@ TEST_F(NarrowPhaseTest, CoordinatesOfManySizesAreAlike) {
             std::mt19937 same(5);
             std::vector<MeshInstance> instances;
             for (uint i = 0; i < 12; ++i) {
-                instances.push_back({0, turned(same, 1.5f)});
+                instances.push_back({0, test::random_placement(same, 1.5f)});
                 for (vec4& row : instances.back().transform.rows) row *= size;
             }
             return instances;

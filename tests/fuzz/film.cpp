@@ -9,7 +9,7 @@
 namespace twinray::fuzz {
 namespace {
 
-void load(Input bytes) {
+void load_film(Input bytes) {
     is_taken([&] {
         path_tracer::Film film = path_tracer::load_film(file_of(bytes, "input.film"));
         require(film.pixels.size() == std::size_t{film.width} * film.height, "a film has its pixels");
@@ -24,13 +24,13 @@ void load(Input bytes) {
 
 // As it is, and with the checksum at the end as it should be: a fuzzer does not guess it.
 void film(Input input) {
-    load(input);
+    load_film(input);
     Bytes file(input.begin(), input.end());
     if (file.size() < sizeof(std::uint32_t)) return;
     const std::size_t body = file.size() - sizeof(std::uint32_t);
     const std::uint32_t sum = crc32_of(std::as_bytes(std::span(file)).first(body));
     std::memcpy(file.data() + body, &sum, sizeof sum);
-    load(file);
+    load_film(file);
 }
 
 }  // namespace twinray::fuzz

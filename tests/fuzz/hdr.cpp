@@ -6,7 +6,7 @@
 namespace twinray::fuzz {
 namespace {
 
-void load(const std::filesystem::path& file) {
+void load_map(const std::filesystem::path& file) {
     is_taken([&] {
         const HdrImage image = load_hdr_image(file);
         require(image.rgb.size() == std::size_t(image.width) * image.height, "an image has a colour a pixel");
@@ -18,7 +18,7 @@ void load(const std::filesystem::path& file) {
 
 }  // namespace
 
-void hdr(Input input) { load(file_of(input, "input.hdr")); }
-void exr(Input input) { load(file_of(input, "input.exr")); }
+void hdr(Input input) { load_map(file_of(input, "input.hdr")); }
+void exr(Input input) { load_map(file_of(input, "input.exr")); }
 
 }  // namespace twinray::fuzz

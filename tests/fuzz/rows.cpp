@@ -26,7 +26,7 @@ void put_checksums(std::span<std::uint8_t> rows) {
     }
 }
 
-void load(Input bytes) {
+void load_rows(Input bytes) {
     const std::filesystem::path file = file_of(bytes, "input.rows");
     is_taken([&] {
         const std::vector<ViewFactorRow> rows = RowFile(file, "of a fuzzer").load();
@@ -38,11 +38,11 @@ void load(Input bytes) {
 }  // namespace
 
 void rows(Input input) {
-    load(input);
+    load_rows(input);
     Bytes file(first_lines.begin(), first_lines.end());
     file.insert(file.end(), input.begin(), input.end());
     put_checksums(std::span(file).subspan(first_lines.size()));
-    load(file);
+    load_rows(file);
 }
 
 }  // namespace twinray::fuzz

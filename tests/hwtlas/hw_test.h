@@ -57,7 +57,7 @@ inline const auto name_of_way = [](const auto& info) { return info.param.name; }
 
 inline bool same_bytes(const Hit& a, const Hit& b) { return std::memcmp(&a, &b, sizeof(Hit)) == 0; }
 
-struct ReferenceHit {
+struct ExpectedHit {
     double t = INFINITY, u = 0, v = 0;
     uint instance = 0, primitive = 0;
 };
@@ -76,10 +76,10 @@ class BruteForce {
     }
 
     // Nothing when float32 may rightly disagree: an edge or a second triangle too near. t = infinity is a miss.
-    std::optional<ReferenceHit> closest(const Ray& ray) const {
-        ReferenceHit best, second;
+    std::optional<ExpectedHit> closest(const Ray& ray) const {
+        ExpectedHit best, second;
         for (const Triangle& triangle : triangles_) {
-            ReferenceHit hit;
+            ExpectedHit hit;
             const double inside = intersect(triangle, ray, hit);
             if (!(inside > -margin_) || hit.t <= ray.t_min || hit.t >= ray.t_max) continue;
             if (inside < margin_) hit.primitive = unsure_;
@@ -107,7 +107,7 @@ class BruteForce {
         return result;
     }
     // The smallest of the three barycentric coordinates; NaN for degenerate and non-finite triangles.
-    static double intersect(const Triangle& triangle, const Ray& ray, ReferenceHit& hit) {
+    static double intersect(const Triangle& triangle, const Ray& ray, ExpectedHit& hit) {
         const dvec3 d(ray.direction), a = triangle.corners[0];
         const dvec3 e1 = triangle.corners[1] - a, e2 = triangle.corners[2] - a, s = dvec3(ray.origin) - a;
         const dvec3 p = cross(d, e2), q = cross(s, e1);
@@ -143,7 +143,7 @@ inline void expect_agreement(HwTlas& accel, const BruteForce& reference, const s
     const std::vector<Hit> hits = accel.closest_hits(rays), any_hits = accel.any_hits(rays);
     std::size_t hit_count = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
-        const std::optional<ReferenceHit> expected = reference.closest(rays[i]);
+        const std::optional<ExpectedHit> expected = reference.closest(rays[i]);
         if (!expected) continue;
         if (expected->t == INFINITY) {
             ASSERT_TRUE(same_bytes(hits[i], miss()) && same_bytes(any_hits[i], miss())) << "ray " << i;

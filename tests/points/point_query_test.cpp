@@ -117,12 +117,6 @@ std::size_t point_count() {
     return asked ? std::stoul(asked) : 2'000;
 }
 
-Transform turned(std::mt19937& random, float spread) {
-    Transform m = Transform::scaling(vec3(test::uniform(random, 0.5f, 1.5f)));
-    for (vec4& row : m.rows) row += vec4(test::uniform3(random, -0.5f, 0.5f), test::uniform(random, -spread, spread));
-    return m;
-}
-
 // Of every shape: without area, without length, needles.
 Soup mixed_soup(std::size_t count, unsigned seed) {
     Soup soup = test::random_soup(count, 0.3f, seed);
@@ -140,7 +134,7 @@ TEST_F(PointQueryTest, TheNearestTriangleIsFoundWhateverItsShape) {
     const Soup soup = mixed_soup(300, 5);
     const Mesh ball = make_icosphere(2, 0.7f);
     std::mt19937 random(3);
-    set({soup.view(), ball}, {{0, {}}, {1, turned(random, 2)}, {0, turned(random, 2)}});
+    set({soup.view(), ball}, {{0, {}}, {1, test::random_placement(random, 2)}, {0, test::random_placement(random, 2)}});
     const Errors errors = errors_of(random_points(point_count(), 3, 8));
     RecordProperty("double_ulp", std::to_string(errors.of_double));
     RecordProperty("float_ulp", std::to_string(errors.of_float));
@@ -255,7 +249,7 @@ TEST_F(PointQueryTest, TheLargestDistanceCountsAsNear) {
 TEST_F(PointQueryTest, AllTrianglesWithinTheRadius) {
     const Soup soup = mixed_soup(150, 7);
     std::mt19937 random(1);
-    set({soup.view()}, {{0, {}}, {0, turned(random, 1)}});
+    set({soup.view()}, {{0, {}}, {0, test::random_placement(random, 1)}});
     const std::vector<dvec3> points = random_points(150, 1.5f, 3);
     std::size_t count = 0;
     const std::vector<NearTriangle> near = query().within(points, 0.6);

@@ -11,11 +11,12 @@
 namespace twinray::path_tracer {
 namespace {
 
-Material glass(const char* name) { return {.name = name, .metallic = 0, .roughness = 0, .transmission = 1}; }
+Material glass_material(const char* name) { return {.name = name, .metallic = 0, .roughness = 0, .transmission = 1}; }
 
 struct Glasses {
-    Material pane = glass("pane"), rough = glass("rough"), thick = glass("thick"), combed = glass("combed"),
-             mapped = glass("mapped"), metal = glass("metal"), unlit = glass("unlit");
+    Material pane = glass_material("pane"), rough = glass_material("rough"), thick = glass_material("thick"),
+             combed = glass_material("combed"), mapped = glass_material("mapped"), metal = glass_material("metal"),
+             unlit = glass_material("unlit");
 
     Glasses() {
         rough.roughness = 0.2f;

@@ -17,7 +17,7 @@ std::vector<float> quaternion_about_z(double angle) {
     return {0, 0, static_cast<float>(std::sin(angle / 2)), static_cast<float>(std::cos(angle / 2))};
 }
 
-std::vector<float> joined(std::vector<float> a, const std::vector<float>& b) {
+std::vector<float> concatenated(std::vector<float> a, const std::vector<float>& b) {
     a.insert(a.end(), b.begin(), b.end());
     return a;
 }
@@ -56,7 +56,7 @@ TEST(Keyframes, RotationsTurnEvenlyAlongTheShorterWay) {
     std::vector<float> negated = turned;
     for (float& x : negated) x = -x;
     for (const std::vector<float>& end : {turned, negated}) {
-        const Keyframes keyframes{Interpolation::linear, true, 4, {0, 3}, joined(quaternion_about_z(0), end)};
+        const Keyframes keyframes{Interpolation::linear, true, 4, {0, 3}, concatenated(quaternion_about_z(0), end)};
         for (const double t : {1.0, 2.0}) {
             const std::vector<double> q = value_at(keyframes, t);
             EXPECT_NEAR(q[2], std::sin(t * pi / 12), 1e-7);
@@ -81,7 +81,7 @@ Rig arm() {
     rig.nodes[1].weights = {0.25, 0};
     Animation animation{.name = "turn", .keyframes = {}, .channels = {}, .fault = {}};
     animation.keyframes.push_back(
-        {Interpolation::linear, true, 4, {0, 1}, joined(quaternion_about_z(0), quaternion_about_z(pi / 2))});
+        {Interpolation::linear, true, 4, {0, 1}, concatenated(quaternion_about_z(0), quaternion_about_z(pi / 2))});
     animation.keyframes.push_back({Interpolation::linear, false, 2, {0.5f, 2}, {0, 0, 1, 3}});
     animation.channels = {{0, Animation::Channel::Path::rotation, 0}, {1, Animation::Channel::Path::weights, 1}};
     rig.animations = {animation};

@@ -7,24 +7,25 @@
 namespace twinray::test {
 namespace {
 
-const std::string TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n";
+const std::string TRIANGLE_WITH_UVS = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n";
 
 // A triangle of material "a" of a file a.mtl.
-Scene load(const std::string& mtl, const std::string& used = "a") {
+Scene load_with_mtl(const std::string& mtl, const std::string& used = "a") {
     const TempDir dir;
     dir.write("a.mtl", mtl);
     dir.write("skin.png", png_bytes(1, 1, 8, 6, "abcd"));
-    return load_scene(dir.write("a.obj", "mtllib a.mtl\n" + TRIANGLE + "usemtl " + used + "\nf 1/1 2/2 3/3\n"));
+    return load_scene(
+        dir.write("a.obj", "mtllib a.mtl\n" + TRIANGLE_WITH_UVS + "usemtl " + used + "\nf 1/1 2/2 3/3\n"));
 }
 
 const Material& used_in(const Scene& scene) { return scene.materials[scene.meshes[0].material(0)]; }
 
 vec3 color_of(const std::string& mtl, const std::string& used = "a") {
-    return vec3(used_in(load(mtl, used)).base_color);
+    return vec3(used_in(load_with_mtl(mtl, used)).base_color);
 }
 
 TEST(Mtl, ColoursOpacityAndTexture) {
-    const Scene scene = load("newmtl a\nKd 0.5 0.25 0\nKe 1 2 3\nd 0.5\nmap_Kd skin.png\nNs 10\nillum 2\n");
+    const Scene scene = load_with_mtl("newmtl a\nKd 0.5 0.25 0\nKe 1 2 3\nd 0.5\nmap_Kd skin.png\nNs 10\nillum 2\n");
     const Material& material = used_in(scene);
     EXPECT_EQ(material.name, "a");
     EXPECT_EQ(material.base_color, vec4(0.5f, 0.25f, 0, 0.5f));
@@ -47,13 +48,15 @@ TEST(Mtl, LinesAreAsFreeAsInObjFiles) {
 }
 
 TEST(Mtl, TrIsTheOppositeOfDWhichCounts) {
-    const auto opacity = [](const std::string& lines) { return used_in(load("newmtl a\n" + lines)).base_color.w; };
+    const auto opacity = [](const std::string& lines) {
+        return used_in(load_with_mtl("newmtl a\n" + lines)).base_color.w;
+    };
     EXPECT_EQ(opacity("Tr 0.75\n"), 0.25f);
     EXPECT_EQ(opacity("d 1\nTr 1\n"), 1);
     EXPECT_EQ(opacity("Tr 1\nd 1\n"), 1);
     EXPECT_EQ(opacity("d -halo 0.25\n"), 0.25f);
     EXPECT_EQ(opacity("d 2\n"), 1);
-    EXPECT_EQ(used_in(load("newmtl a\nd 0.5\nd 1\n")).alpha_mode, AlphaMode::opaque);
+    EXPECT_EQ(used_in(load_with_mtl("newmtl a\nd 0.5\nd 1\n")).alpha_mode, AlphaMode::opaque);
 }
 
 TEST(Mtl, WithoutAColourItIsGreyOrTheTexture) {
@@ -63,7 +66,7 @@ TEST(Mtl, WithoutAColourItIsGreyOrTheTexture) {
 }
 
 TEST(Mtl, OptionsOfATextureAreReadOrPassedOver) {
-    const Scene scene = load("newmtl a\nmap_Kd -s 2 4 1 -o 0.5 0.25 -clamp on -mm 0 1 -blendu off skin.png\n");
+    const Scene scene = load_with_mtl("newmtl a\nmap_Kd -s 2 4 1 -o 0.5 0.25 -clamp on -mm 0 1 -blendu off skin.png\n");
     const Texture& texture = used_in(scene).base_color_texture;
     EXPECT_EQ(texture.uv_row0, vec3(2, 0, 0.5f));
     EXPECT_EQ(texture.uv_row1, vec3(0, 4, 1 - 4 - 0.25f));  // v up in the file: 4 v + 0.25
@@ -79,8 +82,9 @@ TEST(Mtl, TexturesAreFoundBesideEitherFile) {
     dir.write("blue.png", png_bytes(1, 1, 8, 6, "bgra"));
     dir.write("paint/a.mtl",
               "newmtl a\nmap_Kd -s 1 1 1 1 red.png\nnewmtl b\nmap_Kd .\\blue.png\nnewmtl c\nmap_Kd paint\\1 red.png\n");
-    const Scene scene = load_scene(dir.write("a.obj", "mtllib .\\paint\\a.mtl\nmtllib .\\paint\\a.mtl\n" + TRIANGLE +
-                                                          "usemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n"));
+    const Scene scene =
+        load_scene(dir.write("a.obj", "mtllib .\\paint\\a.mtl\nmtllib .\\paint\\a.mtl\n" + TRIANGLE_WITH_UVS +
+                                          "usemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n"));
     EXPECT_TRUE(scene.warnings.empty()) << joined(scene.warnings);
     ASSERT_EQ(scene.materials.size(), 3u);
     const auto first_byte = [&](std::size_t i) {
@@ -95,7 +99,8 @@ TEST(Mtl, SeveralFilesAndBlanksInNames) {
     const TempDir dir;
     dir.write("my paint.mtl", "newmtl a\nKd 0.5\n");
     dir.write("b.MTL", "newmtl b\nKd 0.25\nnewmtl a\nKd 0.125\n");
-    const Scene scene = load_scene(dir.write("a.obj", "mtllib my paint.mtl b.MTL # both\n" + TRIANGLE + "f 1 2 3\n"));
+    const Scene scene =
+        load_scene(dir.write("a.obj", "mtllib my paint.mtl b.MTL # both\n" + TRIANGLE_WITH_UVS + "f 1 2 3\n"));
     EXPECT_TRUE(scene.warnings.empty()) << joined(scene.warnings);
     ASSERT_EQ(scene.materials.size(), 3u);
     EXPECT_EQ(scene.materials[0].base_color.x, 0.125f);  // told anew
@@ -108,8 +113,8 @@ TEST(Mtl, SeveralFilesAndBlanksInNames) {
 TEST(Mtl, MaterialsKeepTheirOrderAndCutNoMesh) {
     const TempDir dir;
     dir.write("a.mtl", "newmtl a\nnewmtl b\nnewmtl unused\nnewmtl c\n");
-    const Scene scene = load_scene(dir.write(
-        "a.obj", "mtllib a.mtl\no body\n" + TRIANGLE + "usemtl c\nf 1 2 3\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n"));
+    const Scene scene = load_scene(dir.write("a.obj", "mtllib a.mtl\no body\n" + TRIANGLE_WITH_UVS +
+                                                          "usemtl c\nf 1 2 3\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n"));
     ASSERT_EQ(scene.meshes.size(), 1u);
     EXPECT_EQ(scene.meshes[0].positions.size(), 3u);
     EXPECT_EQ(scene.meshes[0].materials, (std::vector<uint>{3, 0, 1}));
@@ -118,8 +123,8 @@ TEST(Mtl, MaterialsKeepTheirOrderAndCutNoMesh) {
 
 TEST(Mtl, WhatIsMissingIsNamed) {
     const TempDir dir;
-    const Scene scene =
-        load_scene(dir.write("a.obj", "mtllib nowhere.mtl\n" + TRIANGLE + "usemtl b\nf 1 2 3\nusemtl a\nf 1 2 3\n"));
+    const Scene scene = load_scene(
+        dir.write("a.obj", "mtllib nowhere.mtl\n" + TRIANGLE_WITH_UVS + "usemtl b\nf 1 2 3\nusemtl a\nf 1 2 3\n"));
     EXPECT_EQ(scene.meshes[0].materials, (std::vector<uint>{0, 1}));
     EXPECT_EQ(scene.materials[0].name, "b");
     EXPECT_EQ(scene.materials[0].base_color, vec4(0.6f, 0.6f, 0.6f, 1));
@@ -129,15 +134,15 @@ TEST(Mtl, WhatIsMissingIsNamed) {
 }
 
 TEST(Mtl, AMissingImageIsACheckerboard) {
-    const Scene scene = load("newmtl a\nmap_Kd sub\\no.png\n");
+    const Scene scene = load_with_mtl("newmtl a\nmap_Kd sub\\no.png\n");
     EXPECT_EQ(scene.images[std::size_t(used_in(scene).base_color_texture.image)].width, 32u);
     ASSERT_EQ(scene.warnings.size(), 1u);
     expect_contains(scene.warnings[0], "sub/no.png': file not found; it is shown as a checkerboard");
 }
 
 TEST(Mtl, WhatHasNoUseIsToldOnce) {
-    const Scene scene =
-        load("Kd 1 1 1\nnewmtl a\nKd spectral file.rfl\nd\nmap_Bump b.png\nmap_Bump c.png\nmap_Kd\nKe nan 0 0\n");
+    const Scene scene = load_with_mtl(
+        "Kd 1 1 1\nnewmtl a\nKd spectral file.rfl\nd\nmap_Bump b.png\nmap_Bump c.png\nmap_Kd\nKe nan 0 0\n");
     EXPECT_EQ(used_in(scene).base_color, vec4(0.6f, 0.6f, 0.6f, 1));
     ASSERT_EQ(scene.warnings.size(), 1u) << joined(scene.warnings);
     expect_contains(

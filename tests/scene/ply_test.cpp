@@ -6,7 +6,7 @@
 #include <twinray/scene.h>
 
 #include "tests/scene/packed_bytes.h"
-#include "tests/scene/temp_dir.h"
+#include "tests/scene/load_text.h"
 #include "twinray/glsl/vector_math.h"
 
 namespace twinray::test {
@@ -14,7 +14,7 @@ namespace {
 
 const std::string POSITIONS = "property float x\nproperty float y\nproperty float z\n";
 const std::string FACE_LIST = "property list uchar int vertex_indices\n";
-const std::string TRIANGLE = "0 0 0\n1 0 0\n0 1 0\n";
+const std::string TRIANGLE_ROWS = "0 0 0\n1 0 0\n0 1 0\n";
 
 // An ASCII file of those vertices and faces.
 std::string ply(int vertex_count, const std::string& vertices, int face_count, const std::string& faces) {
@@ -22,19 +22,14 @@ std::string ply(int vertex_count, const std::string& vertices, int face_count, c
                 "element face ", face_count, "\n", FACE_LIST, "end_header\n", vertices, faces);
 }
 
-Scene load(const std::string& content, const std::string& name = "a.ply") {
-    const TempDir dir;
-    return load_scene(dir.write(name, content));
-}
+Scene load_ply(const std::string& content, const std::string& name = "a.ply") { return load_text(content, name); }
 
-void expect_error(const std::string& content, const std::string& part) {
-    const std::string message = error_of([&] { load(content); });
-    expect_contains(message, "a.ply");
-    expect_contains(message, part);
+void expect_ply_error(const std::string& content, const std::string& part) {
+    expect_load_error(content, "a.ply", part);
 }
 
 TEST(Ply, AsciiKeepsVerticesTrianglesAndTheirOrder) {
-    const Scene scene = load(ply(4, TRIANGLE + "0 0 0\n", 3, "3 0 1 2\n3 1 1 3\n3 3 2 1\n"));
+    const Scene scene = load_ply(ply(4, TRIANGLE_ROWS + "0 0 0\n", 3, "3 0 1 2\n3 1 1 3\n3 3 2 1\n"));
     ASSERT_EQ(scene.meshes.size(), 1u);
     EXPECT_EQ(scene.meshes[0].name, "a");
     EXPECT_EQ(scene.meshes[0].positions, (std::vector<vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}}));
@@ -45,7 +40,7 @@ TEST(Ply, AsciiKeepsVerticesTrianglesAndTheirOrder) {
 
 TEST(Ply, NumbersAreAsTheirDigitsSayAndBeyondFloatInfiniteOrZero) {
     const Mesh mesh =
-        load(ply(4, "0.1 1.00000005960465 +3\n1e60 -1e999 1e-999\nnan inf -inf\n0 0 0\n", 2, "3 0 1 2\n3 0 1 3\n"))
+        load_ply(ply(4, "0.1 1.00000005960465 +3\n1e60 -1e999 1e-999\nnan inf -inf\n0 0 0\n", 2, "3 0 1 2\n3 0 1 3\n"))
             .meshes[0];
     EXPECT_EQ(mesh.positions[0], vec3(0.1f, 1.00000012f, 3));
     EXPECT_EQ(mesh.positions[1], vec3(INFINITY, -INFINITY, 0));
@@ -78,14 +73,14 @@ std::string binary_ply(bool is_big_endian) {
 
 TEST(Ply, BothEndiansAndUnknownPropertiesAreRead) {
     for (const bool is_big_endian : {false, true}) {
-        const Mesh mesh = load(binary_ply(is_big_endian)).meshes[0];
+        const Mesh mesh = load_ply(binary_ply(is_big_endian)).meshes[0];
         EXPECT_EQ(mesh.positions, (std::vector<vec3>{{0, 0, -0.25f}, {1, 0, -0.25f}, {0, 1, -0.25f}}));
         EXPECT_EQ(mesh.triangles, (std::vector<uvec3>{{2, 1, 0}}));
     }
 }
 
 TEST(Ply, NormalsAndTextureCoordinatesAreTakenFromAnyPlace) {
-    const Mesh mesh = load(
+    const Mesh mesh = load_ply(
                           "ply\nformat ascii 1.0\nelement vertex 3\nproperty float s\nproperty float t\n"
                           "property float nx\nproperty float ny\nproperty float nz\n" +
                           POSITIONS + "element face 1\n" + FACE_LIST +
@@ -97,27 +92,27 @@ TEST(Ply, NormalsAndTextureCoordinatesAreTakenFromAnyPlace) {
 }
 
 TEST(Ply, NormalsWithoutADirectionAreCounted) {
-    const Scene scene = load("ply\nformat ascii 1.0\nelement vertex 3\n" + POSITIONS +
-                             "property float nx\nproperty float ny\nproperty float nz\nelement face 1\n" + FACE_LIST +
-                             "end_header\n0 0 0 0 0 0\n1 0 0 nan 0 1\n0 1 0 0 0 2\n3 0 1 2\n");
+    const Scene scene = load_ply("ply\nformat ascii 1.0\nelement vertex 3\n" + POSITIONS +
+                                 "property float nx\nproperty float ny\nproperty float nz\nelement face 1\n" +
+                                 FACE_LIST + "end_header\n0 0 0 0 0 0\n1 0 0 nan 0 1\n0 1 0 0 0 2\n3 0 1 2\n");
     ASSERT_EQ(scene.warnings.size(), 1u);
     expect_contains(scene.warnings[0], "2 of 3 normals are 0, NaN or infinite; triangles show their own there");
 }
 
 TEST(Ply, AListIsNoTextureCoordinate) {
-    const Mesh mesh = load("ply\nformat ascii 1.0\nelement vertex 3\n" + POSITIONS +
-                           "property list uchar float u\nproperty float v\nelement face 1\n" + FACE_LIST +
-                           "end_header\n0 0 0 0 9\n1 0 0 1 5 9\n0 1 0 2 5 6 9\n3 0 1 2\n")
+    const Mesh mesh = load_ply("ply\nformat ascii 1.0\nelement vertex 3\n" + POSITIONS +
+                               "property list uchar float u\nproperty float v\nelement face 1\n" + FACE_LIST +
+                               "end_header\n0 0 0 0 9\n1 0 0 1 5 9\n0 1 0 2 5 6 9\n3 0 1 2\n")
                           .meshes[0];
     EXPECT_TRUE(mesh.uvs.empty());
     EXPECT_EQ(mesh.positions[2], vec3(0, 1, 0));
 }
 
 TEST(Ply, FacesMayComeBeforeVerticesAndOtherElementsAreSkipped) {
-    const Scene scene =
-        load("ply\nformat ascii 1.0\nelement face 1\nproperty uchar flags\n" + FACE_LIST +
-             "element edge 2\nproperty int a\nproperty list uchar int vertex_index\nelement vertex 3\n" + POSITIONS +
-             "property uchar red\nend_header\n0 3 0 1 2\n5 2 6 7\n8 0\n0 0 0 255\n1 0 0 255\n0 1 0 255\n");
+    const Scene scene = load_ply(
+        "ply\nformat ascii 1.0\nelement face 1\nproperty uchar flags\n" + FACE_LIST +
+        "element edge 2\nproperty int a\nproperty list uchar int vertex_index\nelement vertex 3\n" + POSITIONS +
+        "property uchar red\nend_header\n0 3 0 1 2\n5 2 6 7\n8 0\n0 0 0 255\n1 0 0 255\n0 1 0 255\n");
     EXPECT_EQ(scene.meshes[0].triangles, (std::vector<uvec3>{{0, 1, 2}}));
     EXPECT_EQ(scene.meshes[0].positions[2], vec3(0, 1, 0));
     ASSERT_EQ(scene.warnings.size(), 1u);
@@ -127,52 +122,52 @@ TEST(Ply, FacesMayComeBeforeVerticesAndOtherElementsAreSkipped) {
 }
 
 TEST(Ply, GzipIsUnpacked) {
-    EXPECT_EQ(count_triangles(load(gzip_bytes(ply(3, TRIANGLE, 1, "3 0 1 2\n")), "a.PLY.GZ")), 1u);
+    EXPECT_EQ(count_triangles(load_ply(gzip_bytes(ply(3, TRIANGLE_ROWS, 1, "3 0 1 2\n")), "a.PLY.GZ")), 1u);
 }
 
 TEST(Ply, FacesOfFewerThanThreeCornersAreSkippedWithACount) {
-    const Scene scene = load(ply(3, TRIANGLE, 3, "2 0 1\n3 0 1 2\n0\n"));
+    const Scene scene = load_ply(ply(3, TRIANGLE_ROWS, 3, "2 0 1\n3 0 1 2\n0\n"));
     EXPECT_EQ(count_triangles(scene), 1u);
     ASSERT_EQ(scene.warnings.size(), 1u);
     expect_contains(scene.warnings[0], "skipped 2 faces");
 }
 
 TEST(Ply, ALineThatForgotToBeACommentIsReadOver) {
-    EXPECT_EQ(count_triangles(
-                  load("ply\nformat ascii 1.0\nCreated by Blender\n" + ply(3, TRIANGLE, 1, "3 0 1 2\n").substr(21))),
+    EXPECT_EQ(count_triangles(load_ply("ply\nformat ascii 1.0\nCreated by Blender\n" +
+                                       ply(3, TRIANGLE_ROWS, 1, "3 0 1 2\n").substr(21))),
               1u);
 }
 
 TEST(Ply, HeaderFaultsAreNamed) {
-    const std::string good = ply(3, TRIANGLE, 1, "3 0 1 2\n");
+    const std::string good = ply(3, TRIANGLE_ROWS, 1, "3 0 1 2\n");
     const auto replaced = [&](const std::string& from, const std::string& to) {
         std::string bad = good;
         return bad.replace(bad.find(from), from.size(), to);
     };
-    expect_error("", "does not start with 'ply'");
-    expect_error("solid stl\n", "does not start with 'ply'");
-    expect_error("ply\nformat ascii 1.0\nelement vertex 1\n", "no end_header");
-    expect_error(replaced("ascii", "morse"), "line 2 'format morse 1.0' is not understood");
-    expect_error(replaced("element face 1", "element face -1"), "line 8 'element face -1' is not understood");
-    expect_error(replaced("property list", "propety list"), "is not understood");
-    expect_error(replaced("uchar", "float"), "is not understood");
-    expect_error(replaced("property float z", "property real z"), "line 7 'property real z' is not understood");
-    expect_error(replaced("property float z\n", ""), "have no x, y and z");
-    expect_error(replaced("vertex 3", "vertex 4000000000"), "4000000000 elements 'vertex' do not fit");
-    expect_error(replaced("face 1", "face 999999999999"), "999999999999 elements 'face' do not fit");
+    expect_ply_error("", "does not start with 'ply'");
+    expect_ply_error("solid stl\n", "does not start with 'ply'");
+    expect_ply_error("ply\nformat ascii 1.0\nelement vertex 1\n", "no end_header");
+    expect_ply_error(replaced("ascii", "morse"), "line 2 'format morse 1.0' is not understood");
+    expect_ply_error(replaced("element face 1", "element face -1"), "line 8 'element face -1' is not understood");
+    expect_ply_error(replaced("property list", "propety list"), "is not understood");
+    expect_ply_error(replaced("uchar", "float"), "is not understood");
+    expect_ply_error(replaced("property float z", "property real z"), "line 7 'property real z' is not understood");
+    expect_ply_error(replaced("property float z\n", ""), "have no x, y and z");
+    expect_ply_error(replaced("vertex 3", "vertex 4000000000"), "4000000000 elements 'vertex' do not fit");
+    expect_ply_error(replaced("face 1", "face 999999999999"), "999999999999 elements 'face' do not fit");
 }
 
 TEST(Ply, AHeaderEndsItsLinesAsTheFirstOneDoes) {
-    const std::string file = ply(3, TRIANGLE, 1, "3 0 1 2\n");
+    const std::string file = ply(3, TRIANGLE_ROWS, 1, "3 0 1 2\n");
     for (const char* end : {"\r", "\r\n", " \n"})
-        EXPECT_EQ(count_triangles(load(replaced(file, "\n", end))), 1u) << end;
-    expect_error(replaced(replaced(file, "property list", "propety list"), "\n", "\r"), "line 9 'propety list");
+        EXPECT_EQ(count_triangles(load_ply(replaced(file, "\n", end))), 1u) << end;
+    expect_ply_error(replaced(replaced(file, "property list", "propety list"), "\n", "\r"), "line 9 'propety list");
     // A body whose first byte is 10 belongs to no line end.
     std::string binary = replaced(binary_ply(false), "\r\n", "\r");
     const double ten = 0x0.000000000000ap-1022;  // its lowest byte
     std::memcpy(binary.data() + binary.find("end_header\r") + 11, &ten, sizeof ten);
     ASSERT_EQ(binary[binary.find("end_header\r") + 11], '\n');
-    EXPECT_EQ(load(binary).meshes[0].positions[1], vec3(1, 0, -0.25f));
+    EXPECT_EQ(load_ply(binary).meshes[0].positions[1], vec3(1, 0, -0.25f));
 }
 
 // The strips of `lists`, of which there are `count`, about two squares.
@@ -186,19 +181,19 @@ TEST(Ply, StripsBecomeTrianglesThatFaceOneWay) {
     const std::vector<uvec3> squares = {{0, 1, 2}, {1, 3, 2}, {4, 5, 6}, {5, 7, 6}};
     for (const std::string& file : {strips(1, "9 0 1 2 3 -1 4 5 6 7\n"), strips(2, "4 0 1 2 3\n5 4 5 6 7 -1\n"),
                                     strips(1, "15 -1 -1 0 1 2 3 -1 0 1 -1 4 5 6 7 -1\n")}) {
-        const Scene scene = load(file);
+        const Scene scene = load_ply(file);
         EXPECT_EQ(scene.meshes[0].triangles, squares);
         EXPECT_TRUE(scene.warnings.empty()) << joined(scene.warnings);
     }
-    expect_error(strips(1, "4 0 1 2 8\n"), "face 1 has vertex index 8, but there are only 8 vertices");
-    expect_error(strips(1, "4 0 1 2 -2\n"), "face 1 has vertex index -2");
-    expect_error(strips(1, "2 0 1\n"), "has 8 vertices but no faces");
+    expect_ply_error(strips(1, "4 0 1 2 8\n"), "face 1 has vertex index 8, but there are only 8 vertices");
+    expect_ply_error(strips(1, "4 0 1 2 -2\n"), "face 1 has vertex index -2");
+    expect_ply_error(strips(1, "2 0 1\n"), "has 8 vertices but no faces");
 }
 
 TEST(Ply, ANormalThatIsNoNumberIsNone) {
-    const Mesh mesh = load("ply\nformat ascii 1.0\nelement vertex 3\n" + POSITIONS +
-                           "property float nx\nproperty float ny\nproperty float nz\nelement face 1\n" + FACE_LIST +
-                           "end_header\n0 0 0 0 0 1\n1 0 0 nan nan nan\n0 1 0 -1.#IND 0 1\n3 0 1 2\n")
+    const Mesh mesh = load_ply("ply\nformat ascii 1.0\nelement vertex 3\n" + POSITIONS +
+                               "property float nx\nproperty float ny\nproperty float nz\nelement face 1\n" + FACE_LIST +
+                               "end_header\n0 0 0 0 0 1\n1 0 0 nan nan nan\n0 1 0 -1.#IND 0 1\n3 0 1 2\n")
                           .meshes[0];
     EXPECT_EQ(mesh.normals, (std::vector<vec3>{{0, 0, 1}, vec3(0), vec3(0)}));
 }
@@ -209,7 +204,7 @@ TEST(Ply, APolygonOfManyCornersIsCoveredOnceAndACrossingOneTold) {
     for (int i = 400; i >= 0; --i) vertices += text(i, ' ', i % 2, " 0\n");
     for (int i = 0; i < 802; ++i) face += text(' ', i);
     const std::string list = "property list ushort int vertex_indices\n";
-    const Scene scene = load(replaced(ply(802, vertices, 1, face + "\n"), FACE_LIST, list));
+    const Scene scene = load_ply(replaced(ply(802, vertices, 1, face + "\n"), FACE_LIST, list));
     double area = 0;
     for (const uvec3& t : scene.meshes[0].triangles) {
         const std::vector<vec3>& p = scene.meshes[0].positions;
@@ -219,24 +214,24 @@ TEST(Ply, APolygonOfManyCornersIsCoveredOnceAndACrossingOneTold) {
     }
     EXPECT_EQ(area, 800);
     EXPECT_TRUE(scene.warnings.empty()) << joined(scene.warnings);
-    const Scene crossing = load(ply(4, "0 0 0\n1 0 0\n0 1 0\n1 1 0\n", 2, "3 0 1 2\n4 0 1 2 3\n"));
+    const Scene crossing = load_ply(ply(4, "0 0 0\n1 0 0\n0 1 0\n1 1 0\n", 2, "3 0 1 2\n4 0 1 2 3\n"));
     ASSERT_EQ(crossing.warnings.size(), 1u);
     expect_contains(crossing.warnings[0],
                     "1 faces cross themselves, so that their triangles overlap (the first: face 1)");
 }
 
 TEST(Ply, BodyFaultsAreNamed) {
-    expect_error(ply(3, TRIANGLE, 1, "3 0 1 3\n"), "face 0 has vertex index 3, but there are only 3 vertices");
-    expect_error(ply(3, TRIANGLE, 2, "3 0 1 2\n3 0 1 -1\n"), "face 1 has vertex index -1");
-    expect_error(ply(3, TRIANGLE, 1, "3 0 1 0.5\n"), "face 0 has vertex index 0.5");
-    expect_error(ply(3, TRIANGLE, 1, "3 0 1\n"), "truncated");
-    expect_error(ply(3, TRIANGLE, 1, "-3 0 1 2\n"), "list claims -3 entries");
-    expect_error(ply(3, TRIANGLE, 1, "9999 0 1 2\n"), "list claims 9999 entries");
-    expect_error(ply(3, "0 0 zero\n", 1, "3 0 1 2\n"), "'zero");
-    expect_error(ply(3, "0 0 0x1\n", 1, "3 0 1 2\n"), "'0x1");
-    expect_error(ply(3, TRIANGLE, 0, ""), "has 3 vertices but no faces");
+    expect_ply_error(ply(3, TRIANGLE_ROWS, 1, "3 0 1 3\n"), "face 0 has vertex index 3, but there are only 3 vertices");
+    expect_ply_error(ply(3, TRIANGLE_ROWS, 2, "3 0 1 2\n3 0 1 -1\n"), "face 1 has vertex index -1");
+    expect_ply_error(ply(3, TRIANGLE_ROWS, 1, "3 0 1 0.5\n"), "face 0 has vertex index 0.5");
+    expect_ply_error(ply(3, TRIANGLE_ROWS, 1, "3 0 1\n"), "truncated");
+    expect_ply_error(ply(3, TRIANGLE_ROWS, 1, "-3 0 1 2\n"), "list claims -3 entries");
+    expect_ply_error(ply(3, TRIANGLE_ROWS, 1, "9999 0 1 2\n"), "list claims 9999 entries");
+    expect_ply_error(ply(3, "0 0 zero\n", 1, "3 0 1 2\n"), "'zero");
+    expect_ply_error(ply(3, "0 0 0x1\n", 1, "3 0 1 2\n"), "'0x1");
+    expect_ply_error(ply(3, TRIANGLE_ROWS, 0, ""), "has 3 vertices but no faces");
     const std::string binary = binary_ply(false);
-    expect_error(binary.substr(0, binary.size() - 1), "truncated");
+    expect_ply_error(binary.substr(0, binary.size() - 1), "truncated");
 }
 
 }  // namespace

@@ -5,12 +5,12 @@
 #include <twinray/scene.h>
 
 #include "tests/scene/packed_bytes.h"
-#include "tests/scene/temp_dir.h"
+#include "tests/scene/load_text.h"
 
 namespace twinray::test {
 namespace {
 
-const std::string SQUARE =
+const std::string STL_SQUARE =
     "solid s\n"
     "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nendloop\nendfacet\n"
     "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 1 0\nvertex 0 1 0\nendloop\nendfacet\n"
@@ -31,19 +31,14 @@ std::string binary_square(const std::string& header = "made by a test", std::uin
     return file;
 }
 
-Scene load(const std::string& content, const std::string& name = "a.stl") {
-    const TempDir dir;
-    return load_scene(dir.write(name, content));
+Scene load_stl(const std::string& content, const std::string& name = "a.stl") { return load_text(content, name); }
+
+void expect_stl_error(const std::string& content, const std::string& part) {
+    expect_load_error(content, "a.stl", part);
 }
 
-void expect_error(const std::string& content, const std::string& part) {
-    const std::string message = error_of([&] { load(content); });
-    expect_contains(message, "a.stl");
-    expect_contains(message, part);
-}
-
-void expect_square(const std::string& content, const std::string& name = "a.stl") {
-    const Scene scene = load(content, name);
+void expect_stl_square(const std::string& content, const std::string& name = "a.stl") {
+    const Scene scene = load_stl(content, name);
     ASSERT_EQ(scene.meshes.size(), 1u);
     EXPECT_EQ(scene.meshes[0].positions, (std::vector<vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}));
     EXPECT_EQ(scene.meshes[0].triangles, (std::vector<uvec3>{{0, 1, 2}, {0, 2, 3}}));
@@ -51,40 +46,34 @@ void expect_square(const std::string& content, const std::string& name = "a.stl"
     EXPECT_TRUE(scene.warnings.empty()) << joined(scene.warnings);
 }
 
-std::string replaced(std::string all, const std::string& from, const std::string& to) {
-    for (std::size_t at = all.find(from); at != all.npos; at = all.find(from, at + to.size()))
-        all.replace(at, from.size(), to);
-    return all;
-}
-
 TEST(Stl, TextAndBinaryAreToldApartByTheCount) {
-    expect_square(SQUARE);
-    expect_square(binary_square());
-    expect_square(binary_square("solid part_7 exported by a CAD program"));
-    expect_square(binary_square(std::string("solid\0", 6)));
-    expect_square(gzip_bytes(SQUARE), "a.stl.gz");
-    expect_square(gzip_bytes(binary_square()), "a.STL.gz");
+    expect_stl_square(STL_SQUARE);
+    expect_stl_square(binary_square());
+    expect_stl_square(binary_square("solid part_7 exported by a CAD program"));
+    expect_stl_square(binary_square(std::string("solid\0", 6)));
+    expect_stl_square(gzip_bytes(STL_SQUARE), "a.stl.gz");
+    expect_stl_square(gzip_bytes(binary_square()), "a.STL.gz");
 }
 
 TEST(Stl, FacetNormalsAreNotRead) {
-    expect_square(binary_square("x", 2, NAN));
+    expect_stl_square(binary_square("x", 2, NAN));
     for (const char* normal : {"nan nan nan", "-nan 0 0", "-1.#IND -1.#IND -1.#IND", "1.#QNAN 0 0", "inf 0 0", "", "?"})
-        expect_square(replaced(SQUARE, "0 0 1\n", std::string(normal) + "\n"));
+        expect_stl_square(replaced(STL_SQUARE, "0 0 1\n", std::string(normal) + "\n"));
 }
 
 TEST(Stl, LinesAreFree) {
-    expect_square("\xef\xbb\xbf \n" + replaced(SQUARE, "\n", "  \r\n\t "));
-    expect_square(replaced(SQUARE, "\n", "\r"));
-    expect_square(replaced(replaced(SQUARE, "solid", "SOLID"), "vertex", "VERTEX"));
-    expect_square(replaced(SQUARE, "endsolid", "end solid"));
-    expect_square(SQUARE.substr(0, SQUARE.find("endsolid")));
-    expect_square(replaced(SQUARE, " 1 ", " +1.0E+000 "));
-    expect_square(replaced(SQUARE, "solid s", "solid assembly - 300K_can-1 facet"));
+    expect_stl_square("\xef\xbb\xbf \n" + replaced(STL_SQUARE, "\n", "  \r\n\t "));
+    expect_stl_square(replaced(STL_SQUARE, "\n", "\r"));
+    expect_stl_square(replaced(replaced(STL_SQUARE, "solid", "SOLID"), "vertex", "VERTEX"));
+    expect_stl_square(replaced(STL_SQUARE, "endsolid", "end solid"));
+    expect_stl_square(STL_SQUARE.substr(0, STL_SQUARE.find("endsolid")));
+    expect_stl_square(replaced(STL_SQUARE, " 1 ", " +1.0E+000 "));
+    expect_stl_square(replaced(STL_SQUARE, "solid s", "solid assembly - 300K_can-1 facet"));
 }
 
 TEST(Stl, BytesAfterTheLastTriangleAreTold) {
     for (const std::size_t tail : {1, 2, 10, 512}) {
-        const Scene scene = load(binary_square("solid x") + std::string(tail, '\n'));
+        const Scene scene = load_stl(binary_square("solid x") + std::string(tail, '\n'));
         EXPECT_EQ(count_triangles(scene), 2u);
         ASSERT_EQ(scene.warnings.size(), 1u);
         expect_contains(scene.warnings[0], text("ignored ", tail, " bytes after the last triangle"));
@@ -92,17 +81,17 @@ TEST(Stl, BytesAfterTheLastTriangleAreTold) {
 }
 
 TEST(Stl, EachSolidIsAMeshOfItsName) {
-    const Scene scene = load(SQUARE + replaced(SQUARE, "solid s", "solid two words") + "solid empty\nendsolid\n" +
-                             replaced(SQUARE, "solid s", "solid"));
+    const Scene scene = load_stl(STL_SQUARE + replaced(STL_SQUARE, "solid s", "solid two words") +
+                                 "solid empty\nendsolid\n" + replaced(STL_SQUARE, "solid s", "solid"));
     ASSERT_EQ(scene.meshes.size(), 3u);
     EXPECT_EQ(scene.meshes[0].name, "s");
     EXPECT_EQ(scene.meshes[1].name, "two words");
     EXPECT_EQ(scene.instances[2].name, "a");  // of the file
-    EXPECT_EQ(load(binary_square()).meshes[0].name, "a");
+    EXPECT_EQ(load_stl(binary_square()).meshes[0].name, "a");
 }
 
 TEST(Stl, OtherFacetsThanTrianglesAndOtherWords) {
-    const Scene scene = load(
+    const Scene scene = load_stl(
         "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 2 0 0\nvertex 2 1 0\nvertex 0 1 "
         "0\nendloop\nendfacet\n"
         "facet\ncolor 1 0 0\nvertex 0 0 0\nvertex 2 0 0\n");
@@ -113,19 +102,19 @@ TEST(Stl, OtherFacetsThanTrianglesAndOtherWords) {
 }
 
 TEST(Stl, FaultsAreNamed) {
-    expect_error("", "not an STL file");
-    expect_error("facet normal 0 0 1\n", "not an STL file");
-    expect_error(std::string(100, 'x'), "not an STL file");
-    expect_error("solid s\nendsolid s\n", "holds no triangles to place");
-    expect_error(binary_square("x", 0), "holds no triangles to place (ignored 100 bytes after the last triangle)");
-    expect_error(binary_square("x", 3), "it says that it holds 3 triangles, but ends after 2");
-    expect_error(binary_square("solid", ~0u), "it says that it holds 4294967295 triangles, but ends after 2");
-    expect_error(replaced(SQUARE, "vertex 1 0 0", "vertex 1 O 0"), "line 5: 'O' is not a number");
-    expect_error(replaced(SQUARE, "vertex 1 0 0", "vertex 1 0"), "line 5: '' is not a number");
+    expect_stl_error("", "not an STL file");
+    expect_stl_error("facet normal 0 0 1\n", "not an STL file");
+    expect_stl_error(std::string(100, 'x'), "not an STL file");
+    expect_stl_error("solid s\nendsolid s\n", "holds no triangles to place");
+    expect_stl_error(binary_square("x", 0), "holds no triangles to place (ignored 100 bytes after the last triangle)");
+    expect_stl_error(binary_square("x", 3), "it says that it holds 3 triangles, but ends after 2");
+    expect_stl_error(binary_square("solid", ~0u), "it says that it holds 4294967295 triangles, but ends after 2");
+    expect_stl_error(replaced(STL_SQUARE, "vertex 1 0 0", "vertex 1 O 0"), "line 5: 'O' is not a number");
+    expect_stl_error(replaced(STL_SQUARE, "vertex 1 0 0", "vertex 1 0"), "line 5: '' is not a number");
 }
 
 TEST(Stl, NonFiniteVerticesStayAndAreCounted) {
-    const Scene scene = load(replaced(SQUARE, "vertex 1 0 0", "vertex -1.#IND 0 0"));
+    const Scene scene = load_stl(replaced(STL_SQUARE, "vertex 1 0 0", "vertex -1.#IND 0 0"));
     EXPECT_EQ(count_triangles(scene), 2u);
     ASSERT_EQ(scene.warnings.size(), 1u);
     expect_contains(scene.warnings[0], "1 of 2 triangles have a NaN or infinite coordinate");

@@ -99,7 +99,7 @@ Setting random_setting(Random& random) {
     return {placement_of(rows_of(linear, offset)), vertices, normalize(normal)};
 }
 
-bool has_area(const Setting& setting) { return std::isfinite(setting.normal.x); }
+bool has_surface(const Setting& setting) { return std::isfinite(setting.normal.x); }
 
 double object_distance(const Setting& setting, const vec3& point) {
     return dot(dvec3(point) - dvec3(setting.vertices.a), setting.normal);
@@ -128,7 +128,7 @@ TEST(Spawn, TheBoundHoldsWithEitherInverseAndIsNotLoose) {
     double largest_by_plain_inverse = 0;
     for (int i = 0; i < 1'000'000; ++i) {
         const Setting setting = random_setting(random);
-        if (!has_area(setting)) continue;
+        if (!has_surface(setting)) continue;
         const SurfacePoint point = surface_point(setting.placement, setting.vertices, random.barycentrics());
         ASSERT_GT(point.offset, 0) << i;
         const bool is_front = random.below(2) != 0;
@@ -160,7 +160,7 @@ TEST(Spawn, RaysDoNotMeetTheTriangleTheyStartOn) {
     int without_offset = 0;
     for (int i = 0; i < 300'000; ++i) {
         const Setting setting = random_setting(random);
-        if (!has_area(setting)) continue;
+        if (!has_surface(setting)) continue;
         const SurfacePoint point = surface_point(setting.placement, setting.vertices, random.barycentrics());
         const vec3 direction(random.direction());
         const bool is_front = dot(direction, point.normal) > 0;
@@ -178,7 +178,7 @@ TEST(Spawn, RaysThatPassDoNotMeetTheTriangleAgain) {
     int again = 0;
     for (int i = 0; i < 300'000; ++i) {
         const Setting setting = random_setting(random);
-        if (!has_area(setting)) continue;
+        if (!has_surface(setting)) continue;
         const SurfacePoint point = surface_point(setting.placement, setting.vertices, vec2(0.3f, 0.3f));
         const double far = std::max(length(dvec3(point.position)), double{point.feature});
         Ray ray{vec3(dvec3(point.position) + random.in_box() * far), 0, vec3(0), INFINITY};

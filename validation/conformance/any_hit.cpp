@@ -6,10 +6,8 @@
 namespace twinray::conformance {
 namespace {
 
-constexpr uint triangle_count = 24;
-
 SceneInput transparent(CaseRun& run, VkGeometryFlagsKHR flags = 0) {
-    GeometryInput geometry = random_triangles(run.draws(), triangle_count);
+    GeometryInput geometry = random_triangles(run.draws(), usual_triangle_count);
     geometry.flags = flags;
     return scene_of(geometry);
 }
@@ -36,7 +34,7 @@ void opaque_and_not(CaseRun& run) {
 
 void next_after_refusal(CaseRun& run) {
     std::vector<Shot> shots = random_shots(run.draws(), run.rays());
-    for (Shot& shot : shots) shot.refused = run.draws().below(1u << triangle_count);
+    for (Shot& shot : shots) shot.refused = run.draws().below(1u << usual_triangle_count);
     run.check_hits(transparent(run), shots);
 }
 

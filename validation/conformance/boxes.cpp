@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Boxes: which are offered, and intersections that are generated for them.
+// Boxes: which are boxes_offered, and intersections that are generated for them.
 #include "validation/conformance/case_run.h"
 #include "validation/conformance/suite.h"
 
@@ -25,11 +25,11 @@ GeometryInput random_boxes(Draws& draws, uint count) {
     return geometry;
 }
 
-void offered(CaseRun& run) {
+void boxes_offered(CaseRun& run) {
     run.check_candidates(scene_of(random_boxes(run.draws(), 12)), random_shots(run.draws(), run.rays()));
 }
 
-void offered_of_instances(CaseRun& run) {
+void boxes_offered_of_instances(CaseRun& run) {
     SceneInput scene = scene_of(random_boxes(run.draws(), 8));
     scene.top.instances.resize(3);
     for (InstanceInput& instance : scene.top.instances) instance.to_world = random_placement(run.draws());
@@ -68,7 +68,7 @@ void told_opacity(CaseRun& run) {
 }
 
 // t of a box may be t_min or t_max, unlike that of a triangle.
-void at_the_ends(CaseRun& run) {
+void boxes_at_the_ends(CaseRun& run) {
     std::vector<Shot> shots = box_shots(run, run.rays());
     for (std::size_t i = 0; i < shots.size(); ++i) {
         const float t = 1.5f + 2 * static_cast<float>(run.draws().below(4));
@@ -93,11 +93,12 @@ std::vector<Case> box_cases() {
     using enum Misdeed;
     constexpr Topic topic = Topic::boxes;
     return {
-        {"K64", topic, "random boxes", "VK-GL-CTS AABB candidates", "every box that the ray passes is offered",
-         Demand::must, forgets_later_half, offered},
-        {"K65", topic, "the same in instances", "VK-GL-CTS AABB candidates", "every box that the ray passes is offered",
-         Demand::must, forgets_transforms, offered_of_instances},
-        {"K66", topic, "rays that begin in boxes", "VK-GL-CTS AABB candidates", "those are offered", Demand::must,
+        {"K64", topic, "random boxes", "VK-GL-CTS AABB candidates", "every box that the ray passes is boxes_offered",
+         Demand::must, forgets_later_half, boxes_offered},
+        {"K65", topic, "the same in instances", "VK-GL-CTS AABB candidates",
+         "every box that the ray passes is boxes_offered", Demand::must, forgets_transforms,
+         boxes_offered_of_instances},
+        {"K66", topic, "rays that begin in boxes", "VK-GL-CTS AABB candidates", "those are boxes_offered", Demand::must,
          forgets_later_half, offered_from_inside},
         {"K67", topic, "a t generated in each of eight boxes", "VK-GL-CTS intersection shaders, slang-rhi procedural",
          "the nearest is committed, at that t", Demand::must, moves_boxes, nearest_generated},
@@ -108,7 +109,7 @@ std::vector<Case> box_cases() {
         {"K70", topic, "opaque boxes and others", "VK-GL-CTS AABB opacity", "told of each candidate as it is",
          Demand::must, forgets_geometry_flags, told_opacity, false, "intersection shaders are not told"},
         {"K71", topic, "a t generated at t_min and at t_max", "VK-GL-CTS AABB limits", "both are inside", Demand::must,
-         moves_boxes, at_the_ends},
+         moves_boxes, boxes_at_the_ends},
         {"K72", topic, "t_min and t_max around some of the boxes", "VK-GL-CTS AABB limits",
          "the nearest between is committed", Demand::must, forgets_limits, between_limits},
     };

@@ -8,7 +8,6 @@
 namespace twinray::conformance {
 namespace {
 
-constexpr uint triangle_count = 24;
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 void every_preference(CaseRun& run) {
@@ -17,7 +16,7 @@ void every_preference(CaseRun& run) {
                                                    small = VK_BUILD_ACCELERATION_STRUCTURE_LOW_MEMORY_BIT_KHR,
                                                    update = VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_UPDATE_BIT_KHR,
                                                    compact = VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_COMPACTION_BIT_KHR;
-    SceneInput scene = scene_of(random_triangles(run.draws(), triangle_count));
+    SceneInput scene = scene_of(random_triangles(run.draws(), usual_triangle_count));
     for (const auto flags : {trace, build, trace | small, build | small, trace | update, build | update | compact}) {
         scene.bottoms[0].flags = scene.top.flags = flags;
         run.check_hits(scene, random_shots(run.draws(), run.rays() / 6 + 1));
@@ -44,7 +43,7 @@ void one_command(CaseRun& run) {
 }
 
 void nothing(CaseRun& run) {
-    SceneInput scene = scene_of(random_triangles(run.draws(), triangle_count));
+    SceneInput scene = scene_of(random_triangles(run.draws(), usual_triangle_count));
     GeometryInput empty;
     empty.positions = {vec3(0)};
     scene.bottoms.push_back({{empty}});
@@ -56,14 +55,14 @@ void nothing(CaseRun& run) {
 }
 
 void inactive_triangles(CaseRun& run) {
-    GeometryInput geometry = random_triangles(run.draws(), triangle_count);
-    for (uint i = 0; i < triangle_count; i += 3) geometry.positions[3 * i + run.draws().below(3)].x = nan;
+    GeometryInput geometry = random_triangles(run.draws(), usual_triangle_count);
+    for (uint i = 0; i < usual_triangle_count; i += 3) geometry.positions[3 * i + run.draws().below(3)].x = nan;
     run.check_hits(scene_of(geometry), random_shots(run.draws(), run.rays()));
 }
 
 void degenerate_triangles(CaseRun& run) {
-    GeometryInput geometry = random_triangles(run.draws(), triangle_count);
-    for (uint i = 0; i < triangle_count; i += 3)
+    GeometryInput geometry = random_triangles(run.draws(), usual_triangle_count);
+    for (uint i = 0; i < usual_triangle_count; i += 3)
         geometry.positions[3 * i + 2] = geometry.positions[3 * i + run.draws().below(2)];
     run.check_hits(scene_of(geometry), random_shots(run.draws(), run.rays()));
 }
@@ -79,13 +78,13 @@ void inactive_boxes(CaseRun& run) {
 }
 
 void inactive_instances(CaseRun& run) {
-    SceneInput scene = scene_of(random_triangles(run.draws(), triangle_count));
+    SceneInput scene = scene_of(random_triangles(run.draws(), usual_triangle_count));
     scene.top.instances.insert(scene.top.instances.begin(), {.bottom = no_bottom});
     run.check_hits(scene, random_shots(run.draws(), run.rays()));
 }
 
 void pointers(CaseRun& run) {
-    SceneInput scene = scene_of(random_triangles(run.draws(), triangle_count));
+    SceneInput scene = scene_of(random_triangles(run.draws(), usual_triangle_count));
     scene.top.instances.resize(3);
     for (uint i = 0; i < 3; ++i) scene.top.instances[i].custom_index = 7 + i;
     for (uint i = 0; i < 3; ++i) scene.top.instances[i].mask = 1u << i;
@@ -98,7 +97,7 @@ void pointers(CaseRun& run) {
 // Triangles that the build is to pass over come first.
 void later_primitives(CaseRun& run) {
     for (const Indices indices : {Indices::none, Indices::bits16, Indices::bits32}) {
-        GeometryInput geometry = random_triangles(run.draws(), triangle_count);
+        GeometryInput geometry = random_triangles(run.draws(), usual_triangle_count);
         geometry.indices = indices;
         geometry.earlier_items = 1 + run.draws().below(4);
         run.check_hits(scene_of(geometry), random_shots(run.draws(), run.rays() / 3 + 1));
@@ -113,7 +112,7 @@ void later_boxes(CaseRun& run) {
 
 void later_vertices(CaseRun& run) {
     for (const Indices indices : {Indices::none, Indices::bits16, Indices::bits32}) {
-        GeometryInput geometry = random_triangles(run.draws(), triangle_count);
+        GeometryInput geometry = random_triangles(run.draws(), usual_triangle_count);
         geometry.indices = indices;
         geometry.first_vertex = 3 * (1 + run.draws().below(4));
         run.check_hits(scene_of(geometry), random_shots(run.draws(), run.rays() / 3 + 1));

@@ -27,6 +27,7 @@ class Draws {
     std::mt19937_64 engine_;
 };
 
+constexpr uint usual_triangle_count = 24;
 // Random triangles about the origin, within [-1.5, 1.5]: of areas that no rounding turns into edges.
 GeometryInput random_triangles(Draws& draws, uint count);
 // Boxes one behind the other along z, from z = 2 i to 2 i + 1, of which x and y reach from -1 to 1.

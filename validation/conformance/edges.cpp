@@ -11,8 +11,6 @@
 namespace twinray::conformance {
 namespace {
 
-constexpr float inf = std::numeric_limits<float>::infinity();
-
 GeometryInput geometry_of(const Mesh& mesh) { return {.positions = mesh.positions, .triangles = mesh.triangles}; }
 
 // A vertex of a random triangle, or a point of one of its edges, in float64.
@@ -25,7 +23,7 @@ dvec3 edge_point(Draws& draws, const GeometryInput& geometry) {
 }
 
 Shot aimed(vec3 origin, const dvec3& target) {
-    return shot_of({origin, 0, vec3(normalize(target - dvec3(origin))), inf});
+    return shot_of({origin, 0, vec3(normalize(target - dvec3(origin))), INFINITY});
 }
 
 Transform sphere_placement(Draws& draws) {

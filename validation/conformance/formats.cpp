@@ -9,8 +9,6 @@
 namespace twinray::conformance {
 namespace {
 
-constexpr uint triangle_count = 24;
-
 // Triangles that share vertices, in no order.
 GeometryInput shared_vertices(Draws& draws, uint count) {
     GeometryInput geometry = random_triangles(draws, count);
@@ -26,8 +24,8 @@ GeometryInput shared_vertices(Draws& draws, uint count) {
 
 void index_formats(CaseRun& run) {
     for (const Indices indices : {Indices::bits16, Indices::bits32, Indices::none}) {
-        GeometryInput geometry = indices == Indices::none ? random_triangles(run.draws(), triangle_count)
-                                                          : shared_vertices(run.draws(), triangle_count);
+        GeometryInput geometry = indices == Indices::none ? random_triangles(run.draws(), usual_triangle_count)
+                                                          : shared_vertices(run.draws(), usual_triangle_count);
         geometry.indices = indices;
         run.check_hits(scene_of(geometry), random_shots(run.draws(), run.rays() / 3 + 1));
     }
@@ -52,7 +50,7 @@ void vertex_formats(CaseRun& run) {
     for (const VkFormat format :
          {VK_FORMAT_R32G32_SFLOAT, VK_FORMAT_R32G32B32_SFLOAT, VK_FORMAT_R16G16_SFLOAT, VK_FORMAT_R16G16B16A16_SFLOAT,
           VK_FORMAT_R16G16_SNORM, VK_FORMAT_R16G16B16A16_SNORM}) {
-        GeometryInput geometry = random_triangles(run.draws(), triangle_count);
+        GeometryInput geometry = random_triangles(run.draws(), usual_triangle_count);
         geometry.format = format;
         for (vec3& position : geometry.positions) position = held(format, position);
         run.check_hits(scene_of(geometry), random_shots(run.draws(), run.rays() / 6 + 1));
@@ -61,7 +59,7 @@ void vertex_formats(CaseRun& run) {
 
 void vertex_strides(CaseRun& run) {
     for (const std::uint32_t padding : {4u, 8u, 20u}) {
-        GeometryInput geometry = random_triangles(run.draws(), triangle_count);
+        GeometryInput geometry = random_triangles(run.draws(), usual_triangle_count);
         geometry.padding = padding;
         geometry.format = padding == 8 ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32_SFLOAT;
         geometry.indices = padding == 20 ? Indices::none : Indices::bits32;

@@ -9,14 +9,14 @@
 namespace twinray::conformance {
 namespace {
 
-constexpr uint triangle_count = 12;
+constexpr uint instanced_triangles = 12;
 constexpr uint largest_index = (1u << 24) - 1;
 
 // Of one or two bottom levels, each instance somewhere else.
 SceneInput many_instances(CaseRun& run, uint count) {
     SceneInput scene;
-    scene.bottoms.push_back({{random_triangles(run.draws(), triangle_count)}});
-    scene.bottoms.push_back({{random_triangles(run.draws(), triangle_count), random_triangles(run.draws(), 4)}});
+    scene.bottoms.push_back({{random_triangles(run.draws(), instanced_triangles)}});
+    scene.bottoms.push_back({{random_triangles(run.draws(), instanced_triangles), random_triangles(run.draws(), 4)}});
     for (uint i = 0; i < count; ++i) {
         InstanceInput& instance = scene.top.instances.emplace_back();
         instance.bottom = run.draws().below(2);
@@ -88,7 +88,7 @@ void check_opacity(CaseRun& run, VkGeometryInstanceFlagsKHR flags) {
     scene.top.instances[0].bottom = 0;
     scene.top.instances[1].bottom = 1;
     std::vector<Shot> shots = random_shots(run.draws(), run.rays() / 2 + 1);
-    for (Shot& shot : shots) shot.refused = run.draws().below(1u << triangle_count);
+    for (Shot& shot : shots) shot.refused = run.draws().below(1u << instanced_triangles);
     run.check_hits(scene, shots);
     run.check_candidates(scene, shots);
 }

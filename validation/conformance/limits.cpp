@@ -9,9 +9,6 @@
 namespace twinray::conformance {
 namespace {
 
-constexpr uint triangle_count = 24;
-constexpr float inf = std::numeric_limits<float>::infinity();
-
 // Rays that hit, and where the driver says that they do.
 struct Met {
     SceneInput scene;
@@ -20,7 +17,7 @@ struct Met {
     std::vector<Answer> answers;
 };
 Met meet(CaseRun& run) {
-    Met met{scene_of(random_triangles(run.draws(), triangle_count)), {}, {}, {}};
+    Met met{scene_of(random_triangles(run.draws(), usual_triangle_count)), {}, {}, {}};
     met.built = run.driver().build(met.scene);
     const std::vector<Shot> shots = random_shots(run.draws(), run.rays());
     const Traced traced = run.driver().trace(met.built.top, shots);
@@ -38,7 +35,7 @@ std::vector<Shot> cut_at(const Met& met, bool is_beyond) {
     for (std::size_t i = 0; i < shots.size(); ++i) {
         const float t = met.answers[i].t;
         if (i % 2 == 0)
-            shots[i].ray.t_max = is_beyond ? std::nextafter(t, inf) : t;
+            shots[i].ray.t_max = is_beyond ? std::nextafter(t, INFINITY) : t;
         else
             shots[i].ray.t_min = is_beyond ? std::nextafter(t, 0.0f) : t;
     }
@@ -80,11 +77,11 @@ std::vector<Shot> limited_shots(CaseRun& run) {
 }
 
 void random_limits(CaseRun& run) {
-    run.check_hits(scene_of(random_triangles(run.draws(), triangle_count)), limited_shots(run));
+    run.check_hits(scene_of(random_triangles(run.draws(), usual_triangle_count)), limited_shots(run));
 }
 
 void candidates_between(CaseRun& run) {
-    GeometryInput geometry = random_triangles(run.draws(), triangle_count);
+    GeometryInput geometry = random_triangles(run.draws(), usual_triangle_count);
     geometry.flags = 0;
     run.check_candidates(scene_of(geometry), limited_shots(run));
 }
@@ -92,14 +89,14 @@ void candidates_between(CaseRun& run) {
 void empty_intervals(CaseRun& run) {
     std::vector<Shot> shots = random_shots(run.draws(), run.rays());
     for (Shot& shot : shots) shot.ray.t_min = shot.ray.t_max = run.draws().chance(0.5) ? 4.0f : 0.0f;
-    run.check_hits(scene_of(random_triangles(run.draws(), triangle_count)), shots);
+    run.check_hits(scene_of(random_triangles(run.draws(), usual_triangle_count)), shots);
 }
 
 // What lies behind is not hit.
 void behind(CaseRun& run) {
     std::vector<Shot> shots = random_shots(run.draws(), run.rays());
     for (Shot& shot : shots) shot.ray.origin = run.draws().point(1);
-    run.check_hits(scene_of(random_triangles(run.draws(), triangle_count)), shots);
+    run.check_hits(scene_of(random_triangles(run.draws(), usual_triangle_count)), shots);
 }
 
 }  // namespace

@@ -8,26 +8,26 @@
 namespace twinray::conformance {
 namespace {
 
-constexpr std::array<std::string_view, misdeed_count> names = {"none",
-                                                               "forgets the later half of the primitives",
-                                                               "forgets flags of geometries",
-                                                               "forgets transforms",
-                                                               "forgets masks of instances",
-                                                               "forgets flags of instances",
-                                                               "forgets ids of instances",
-                                                               "forgets updates",
-                                                               "copies in part",
-                                                               "forgets flags of rays",
-                                                               "forgets masks of rays",
-                                                               "forgets refusals",
-                                                               "forgets t_min and t_max",
-                                                               "moves what boxes hold",
-                                                               "loses candidates",
-                                                               "offers candidates twice",
-                                                               "leaks",
-                                                               "wavers",
-                                                               "garbles headers",
-                                                               "takes any file"};
+constexpr std::array<std::string_view, misdeed_count> misdeed_names = {"none",
+                                                                       "forgets the later half of the primitives",
+                                                                       "forgets flags of geometries",
+                                                                       "forgets transforms",
+                                                                       "forgets masks of instances",
+                                                                       "forgets flags of instances",
+                                                                       "forgets ids of instances",
+                                                                       "forgets updates",
+                                                                       "copies in part",
+                                                                       "forgets flags of rays",
+                                                                       "forgets masks of rays",
+                                                                       "forgets refusals",
+                                                                       "forgets t_min and t_max",
+                                                                       "moves what boxes hold",
+                                                                       "loses candidates",
+                                                                       "offers candidates twice",
+                                                                       "leaks",
+                                                                       "wavers",
+                                                                       "garbles headers",
+                                                                       "takes any file"};
 
 constexpr std::size_t every = 8;
 
@@ -46,7 +46,7 @@ void change_last_candidate(Traced& traced, std::size_t shot, bool is_doubled) {
 
 }  // namespace
 
-std::string_view name_of(Misdeed misdeed) { return names[static_cast<std::size_t>(misdeed)]; }
+std::string_view name_of(Misdeed misdeed) { return misdeed_names[static_cast<std::size_t>(misdeed)]; }
 
 void shorten(BottomInput& input) {
     for (GeometryInput& geometry : input.geometries) shorten(geometry);

@@ -8,8 +8,6 @@ namespace twinray::conformance {
 namespace {
 
 std::string fact(const Record& record, const char* name) { return record.results.at(name).text(); }
-bool is_control(const Record& record) { return record.variant.starts_with("control"); }
-
 struct Sum {
     std::uint64_t cases = 0, passed = 0, not_run = 0, controls = 0, items = 0;
     std::uint64_t must_failed = 0, should_failed = 0;

@@ -9,12 +9,12 @@
 namespace twinray::conformance {
 namespace {
 
-constexpr uint triangle_count = 10;
+constexpr uint flagged_triangles = 10;
 
 // Opaque triangles and others, in instances with flags of their own.
 SceneInput mixed_triangles(CaseRun& run) {
     SceneInput scene =
-        scene_of({random_triangles(run.draws(), triangle_count), random_triangles(run.draws(), triangle_count)});
+        scene_of({random_triangles(run.draws(), flagged_triangles), random_triangles(run.draws(), flagged_triangles)});
     scene.bottoms[0].geometries[1].flags = 0;
     scene.top.instances.resize(3);
     scene.top.instances[1].flags = VK_GEOMETRY_INSTANCE_FORCE_OPAQUE_BIT_KHR;
@@ -27,7 +27,7 @@ void check_flag(CaseRun& run, uint flag) {
     const SceneInput scene = mixed_triangles(run);
     std::vector<Shot> shots = random_shots(run.draws(), run.rays() / 2 + 1);
     for (Shot& shot : shots) shot.flags = flag;
-    for (Shot& shot : shots) shot.refused = run.draws().below(1u << triangle_count);
+    for (Shot& shot : shots) shot.refused = run.draws().below(1u << flagged_triangles);
     run.check_hits(scene, shots);
     run.check_candidates(scene, shots);
 }
@@ -100,7 +100,7 @@ void together(CaseRun& run) {
         std::vector<Shot> shots =
             is_layered ? mixed_shots(run, run.rays() / 4 + 1) : random_shots(run.draws(), run.rays() / 4 + 1);
         for (Shot& shot : shots) shot.flags = random_flags(run.draws(), can_skip);
-        for (Shot& shot : shots) shot.refused = run.draws().below(1u << triangle_count);
+        for (Shot& shot : shots) shot.refused = run.draws().below(1u << flagged_triangles);
         run.check_hits(is_layered ? mixed_layers() : triangles, shots);
         run.check_candidates(is_layered ? mixed_layers() : triangles, shots);
     }

@@ -11,7 +11,7 @@
 namespace twinray::conformance {
 namespace {
 
-constexpr uint triangle_count = 32;
+constexpr uint related_triangles = 32;
 constexpr float far_end = 8;  // of random_shots: beyond everything
 
 // How many pairs of hits have the same t to the last bit is told, not demanded.
@@ -28,7 +28,7 @@ void count_identical(CaseRun& run, const Answer& first, const Answer& second) {
 
 template <class Change>
 void check(CaseRun& run, const Change& change) {
-    const SceneInput scene = scene_of(random_triangles(run.draws(), triangle_count));
+    const SceneInput scene = scene_of(random_triangles(run.draws(), related_triangles));
     const std::vector<Shot> shots = random_shots(run.draws(), run.rays());
     const Changed changed = change(scene, shots);
     const Traced first = run.driver().trace(run.driver().build(scene).top, shots);
@@ -75,19 +75,19 @@ void speed(CaseRun& run) {
 }
 
 void permute(CaseRun& run) {
-    std::vector<uint> order(triangle_count);
+    std::vector<uint> order(related_triangles);
     std::iota(order.begin(), order.end(), 0u);
-    for (uint i = triangle_count; i > 1; --i) std::swap(order[i - 1], order[run.draws().below(i)]);
+    for (uint i = related_triangles; i > 1; --i) std::swap(order[i - 1], order[run.draws().below(i)]);
     check(run, [&](const SceneInput& scene, Shots shots) { return permuted(scene, shots, order); });
 }
 
 void two_geometries(CaseRun& run) {
-    const uint at = 1 + run.draws().below(triangle_count - 1);
+    const uint at = 1 + run.draws().below(related_triangles - 1);
     check(run, [&](const SceneInput& scene, Shots shots) { return split_geometry(scene, shots, at); });
 }
 
 void two_instances(CaseRun& run) {
-    const uint at = 1 + run.draws().below(triangle_count - 1);
+    const uint at = 1 + run.draws().below(related_triangles - 1);
     check(run, [&](const SceneInput& scene, Shots shots) { return split_instance(scene, shots, at); });
 }
 
@@ -115,7 +115,7 @@ struct AllHits {
     }
 };
 AllHits all_hits(CaseRun& run) {
-    GeometryInput geometry = random_triangles(run.draws(), triangle_count);
+    GeometryInput geometry = random_triangles(run.draws(), related_triangles);
     geometry.flags = 0;
     AllHits all{scene_of(geometry), {}, random_shots(run.draws(), run.rays())};
     for (Shot& shot : all.shots) {

@@ -13,6 +13,8 @@
 
 namespace twinray::conformance {
 
+constexpr VkBuildAccelerationStructureFlagsKHR can_update = VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_UPDATE_BIT_KHR;
+
 enum class Indices : std::uint8_t { none, bits16, bits32 };
 
 // Triangles, or boxes if there are any.

@@ -177,8 +177,6 @@ class Runner {
     std::unique_ptr<Driver> driver_;
 };
 
-bool is_control(const Record& record) { return record.variant.starts_with("control"); }
-
 }  // namespace
 
 std::string_view name_of(Topic topic) { return topics[static_cast<std::size_t>(topic)]; }

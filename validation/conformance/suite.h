@@ -66,6 +66,8 @@ std::vector<Case> edge_cases();
 std::vector<Case> relation_cases();
 std::vector<Case> catalogue();  // all of them
 
+inline bool is_control(const Record& record) { return record.variant.starts_with("control"); }
+
 struct Settings {
     bool is_full = false;
     std::uint64_t full_rays = 100'000'000;  // of all cases by both ways together, where is_full

@@ -6,8 +6,7 @@
 namespace twinray::conformance {
 namespace {
 
-constexpr uint triangle_count = 16;
-constexpr VkBuildAccelerationStructureFlagsKHR can_update = VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_UPDATE_BIT_KHR;
+constexpr uint moved_triangles = 16;
 
 SceneInput updatable(GeometryInput geometry) {
     SceneInput scene = scene_of(std::move(geometry));
@@ -19,7 +18,7 @@ SceneInput updatable(GeometryInput geometry) {
 // As many triangles elsewhere.
 void move_triangles(CaseRun& run, SceneInput& scene) {
     for (GeometryInput& geometry : scene.bottoms[0].geometries)
-        geometry.positions = random_triangles(run.draws(), triangle_count).positions;
+        geometry.positions = random_triangles(run.draws(), moved_triangles).positions;
 }
 
 void check_updated(CaseRun& run, const SceneInput& scene, const Bottom& bottom, std::size_t rays) {
@@ -28,7 +27,7 @@ void check_updated(CaseRun& run, const SceneInput& scene, const Bottom& bottom, 
 }
 
 void vertices_in_place(CaseRun& run) {
-    SceneInput scene = updatable(random_triangles(run.draws(), triangle_count));
+    SceneInput scene = updatable(random_triangles(run.draws(), moved_triangles));
     Bottom bottom = run.driver().build(scene.bottoms[0]);
     move_triangles(run, scene);
     run.driver().update(bottom, scene.bottoms[0]);
@@ -36,7 +35,7 @@ void vertices_in_place(CaseRun& run) {
 }
 
 void vertices_elsewhere(CaseRun& run) {
-    const SceneInput before = updatable(random_triangles(run.draws(), triangle_count));
+    const SceneInput before = updatable(random_triangles(run.draws(), moved_triangles));
     SceneInput after = before;
     const Bottom source = run.driver().build(before.bottoms[0]);
     move_triangles(run, after);
@@ -46,7 +45,7 @@ void vertices_elsewhere(CaseRun& run) {
 }
 
 void many_times(CaseRun& run) {
-    SceneInput scene = updatable(random_triangles(run.draws(), triangle_count));
+    SceneInput scene = updatable(random_triangles(run.draws(), moved_triangles));
     Bottom bottom = run.driver().build(scene.bottoms[0]);
     for (uint i = 0; i < 8; ++i) {
         move_triangles(run, scene);
@@ -73,7 +72,7 @@ void boxes_in_place(CaseRun& run) {
 }
 
 void geometry_transforms(CaseRun& run) {
-    GeometryInput geometry = random_triangles(run.draws(), triangle_count);
+    GeometryInput geometry = random_triangles(run.draws(), moved_triangles);
     geometry.transform = Transform::translation(vec3(1, 0, 0));
     SceneInput scene = updatable(geometry);
     Bottom bottom = run.driver().build(scene.bottoms[0]);
@@ -83,7 +82,7 @@ void geometry_transforms(CaseRun& run) {
 }
 
 void instances_in_place(CaseRun& run) {
-    SceneInput scene = updatable(random_triangles(run.draws(), triangle_count));
+    SceneInput scene = updatable(random_triangles(run.draws(), moved_triangles));
     scene.top.instances.resize(4);
     DriverScene built = run.driver().build(scene);
     for (InstanceInput& instance : scene.top.instances) {
@@ -100,9 +99,9 @@ void instances_in_place(CaseRun& run) {
 }
 
 void over_another(CaseRun& run) {
-    SceneInput scene = scene_of(random_triangles(run.draws(), triangle_count));
+    SceneInput scene = scene_of(random_triangles(run.draws(), moved_triangles));
     Bottom bottom = run.driver().build(scene.bottoms[0]);
-    scene.bottoms[0].geometries[0] = random_triangles(run.draws(), triangle_count / 2);
+    scene.bottoms[0].geometries[0] = random_triangles(run.draws(), moved_triangles / 2);
     run.driver().rebuild(bottom, scene.bottoms[0]);
     check_updated(run, scene, bottom, run.rays());
 }

@@ -11,7 +11,7 @@
 namespace twinray::conformance {
 namespace {
 
-constexpr std::array<std::string_view, finding_count> names = {
+constexpr std::array<std::string_view, finding_count> finding_names = {
     "AGREE",         "ROUNDING",     "LOST",       "LOST_NEARER",     "FALSE_HIT",   "WRONG_T",       "OUTSIDE_LIMITS",
     "WRONG_IDS",     "WRONG_FACING", "WRONG_UV",   "WRONG_TRANSFORM", "NOT_OFFERED", "OFFERED_AGAIN", "OFFERED_FALSELY",
     "WRONG_OPACITY", "LEAK",         "DOUBLE_HIT", "DIFFERS",         "BROKEN"};
@@ -61,7 +61,7 @@ Finding judge_attributes(const Expectation& expectation, const Shot& shot, const
 
 }  // namespace
 
-std::string_view name_of(Finding finding) { return names[static_cast<std::size_t>(finding)]; }
+std::string_view name_of(Finding finding) { return finding_names[static_cast<std::size_t>(finding)]; }
 
 Finding judge_hit(const Expectation& expectation, const Shot& shot, const Answer& answer) {
     const std::vector<Candidate> all = committable(expectation, shot);

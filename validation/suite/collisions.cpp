@@ -16,7 +16,7 @@ using enum PairClass;
 
 const WorldTriangle base = {dvec3(0, 0, 0), dvec3(4, 0, 0), dvec3(0, 4, 0)};
 
-WorldTriangle moved(const WorldTriangle& t, const dvec3& by) { return {t.a + by, t.b + by, t.c + by}; }
+WorldTriangle moved_by(const WorldTriangle& t, const dvec3& by) { return {t.a + by, t.b + by, t.c + by}; }
 
 void touches(CaseRun& run) {
     const dvec3 up(0, 0, 1), above(1, 2, 1);
@@ -27,14 +27,14 @@ void touches(CaseRun& run) {
                       {base, {dvec3(1, 0, 0), dvec3(3, 0, 0), dvec3(2, -1, 1)}, edge_touch},
                       {base, {dvec3(2, -1, -1), dvec3(2, 1, 1), dvec3(2, -5, 5)}, edge_touch},
                       {base, {dvec3(1, 1, -1), dvec3(1, 1, 1), dvec3(2, 1, 1)}, crossing},
-                      {base, moved(base, up), separate}});
+                      {base, moved_by(base, up), separate}});
 }
 
 void coplanar(CaseRun& run) {
     ask_classes(run, {{base, base, coplanar_overlap},
-                      {base, moved(base, dvec3(1, 1, 0)), coplanar_overlap},
+                      {base, moved_by(base, dvec3(1, 1, 0)), coplanar_overlap},
                       {base, {dvec3(1, 1, 0), dvec3(2, 1, 0), dvec3(1, 2, 0)}, coplanar_overlap},
-                      {base, moved(base, dvec3(4, 0, 0)), coplanar_touch},
+                      {base, moved_by(base, dvec3(4, 0, 0)), coplanar_touch},
                       {base, {dvec3(4, 0, 0), dvec3(0, 4, 0), dvec3(4, 4, 0)}, coplanar_touch},
                       {base, {dvec3(1, 0, 0), dvec3(3, 0, 0), dvec3(2, -2, 0)}, coplanar_touch},
                       {base, {dvec3(3, 3, 0), dvec3(4, 3, 0), dvec3(3, 4, 0)}, separate}});
@@ -43,7 +43,10 @@ void coplanar(CaseRun& run) {
 // A vertex above, on or below a face by so much.
 void add_gap(std::vector<KnownPair>& pairs, double level, double gap) {
     const WorldTriangle pointed = {dvec3(1, 1, level + gap), dvec3(1, 1.5, level + 1), dvec3(2, 1, level + 1)};
-    pairs.push_back({moved(base, dvec3(0, 0, level)), pointed, gap > 0 ? separate : gap < 0 ? crossing : vertex_touch});
+    pairs.push_back({moved_by(base, dvec3(0, 0, level)), pointed,
+                     gap > 0   ? separate
+                     : gap < 0 ? crossing
+                               : vertex_touch});
 }
 
 void ulps(CaseRun& run) {
@@ -55,7 +58,7 @@ void ulps(CaseRun& run) {
     ask_classes(run, pairs);
 }
 
-void gaps(CaseRun& run) {
+void colliding_gaps(CaseRun& run) {
     std::vector<KnownPair> pairs;
     for (int exponent = -7; exponent >= -30; --exponent)
         for (const double sign : {-1.0, 1.0}) add_gap(pairs, 0, sign * std::pow(10.0, exponent));
@@ -63,7 +66,7 @@ void gaps(CaseRun& run) {
 }
 
 // Triangles that cross at an angle of 10^-8, also as needles of that width, and the same a little apart.
-void slivers(CaseRun& run) {
+void colliding_slivers(CaseRun& run) {
     std::vector<KnownPair> pairs;
     for (const double width : {1.0, 1e-4, 1e-8}) {
         const auto tilted = [&](double tilt, double lift) {
@@ -174,7 +177,7 @@ void baked(CaseRun& run) {
     ask_same_contacts(run, {rounded, away}, {{0, {}}, {0, Transform::translation(by)}}, {{0, {}}, {1, {}}});
 }
 
-void identical_boxes(CaseRun& run) {
+void colliding_identical_boxes(CaseRun& run) {
     const std::uint64_t n = run.amount(1'000, 10'000);
     const Mesh box = make_box(vec3(-1), vec3(1));
     for (const Configuration& configuration : run.one_configuration_each()) {
@@ -207,12 +210,12 @@ std::vector<SuiteCase> collision_cases() {
         {"C01", "vertices and edges that touch exactly", classes, none, touches},
         {"C02", "triangles in one plane", classes, none, coplanar},
         {"C03", "-4 to 4 ulp between a vertex and a face, up to 10^6 from the origin", classes, none, ulps},
-        {"C04", "a vertex 10^-7 to 10^-30 above and below a face", classes, none, gaps},
+        {"C04", "a vertex 10^-7 to 10^-30 above and below a face", classes, none, colliding_gaps},
         {"C05", "pairs on the lattice {-2..2}^3", "time and wrong classes, beside signs of plain arithmetic", none,
          lattice},
-        {"C06", "triangles and needles that cross at 10^-8", classes, none, slivers},
+        {"C06", "triangles and needles that cross at 10^-8", classes, none, colliding_slivers},
         {"C07", "tangent spheres, nested boxes, interlocked tori", "contacts by class", "as many as are known", solids},
-        {"C08", "identical boxes", "pairs of instances, time", "n (n - 1) / 2", identical_boxes},
+        {"C08", "identical boxes", "pairs of instances, time", "n (n - 1) / 2", colliding_identical_boxes},
         {"C09", "boxes wall to wall", "contacts by class", "as many as are known", walls},
         {"C10", "triangles and their vertices in every order", classes, none, orders},
         {"C11", "triangles of one mesh", "contacts by class", "none of neighbours; those of a fold", within_a_mesh},

@@ -78,7 +78,7 @@ void sizes(CaseRun& run) {
     }
 }
 
-void far_away(CaseRun& run) {
+void points_far_away(CaseRun& run) {
     for (const double distance : {1e3, 1e9, 1e15})
         measure_nearest(run, make_icosphere(3), random_points(run.amount(2'000, 100'000), distance, run.seed()),
                         {{"distance", distance}});
@@ -100,7 +100,7 @@ void on_the_surface(CaseRun& run) {
                 "a vertex is away from its triangle, or the middle of an edge by more than rounding");
 }
 
-void scaled(CaseRun& run) {
+void distances_scaled(CaseRun& run) {
     Mesh soup = make_soup(500, static_cast<uint>(run.seed()), 0.2f);
     for (vec3& p : soup.positions) p = (p + 16.0f) - 16.0f;  // so that denormals hold them, scaled
     const std::vector<dvec3> points = random_points(run.amount(1'000, 100'000), 2, run.seed());
@@ -185,9 +185,9 @@ std::vector<SuiteCase> distance_cases() {
     const std::string error = "relative error of the distance, time";
     return {
         {"D01", "nearest triangles of spheres", error, "no other triangle is nearer", sizes},
-        {"D02", "points up to 10^15 away", error, "no other triangle is nearer", far_away},
+        {"D02", "points up to 10^15 away", error, "no other triangle is nearer", points_far_away},
         {"D03", "points at vertices and on edges", "distances", "0 at vertices, rounding on edges", on_the_surface},
-        {"D04", "the scene 2^-120 to 2^120 as large", "triangles, distances", "the same, scaled", scaled},
+        {"D04", "the scene 2^-120 to 2^120 as large", "triangles, distances", "the same, scaled", distances_scaled},
         {"D05", "all triangles within a radius", "those that are listed", "as all triangles one by one", radius},
         {"D06", "winding numbers on a lattice", "numbers", "as many boxes as are around the point", sides},
     };

@@ -13,7 +13,7 @@
 namespace twinray::suite {
 namespace {
 
-constexpr uint cells = 32;
+constexpr uint grid_cells = 32;
 
 // 0, 1, ..., count.
 std::vector<float> whole_numbers(uint count) {
@@ -25,15 +25,15 @@ std::vector<float> whole_numbers(uint count) {
 }  // namespace
 
 void slanted_through_a_grid(CaseRun& run) {
-    const std::vector<Ray> rays = exact_grid_rays(cells, true, run.amount(4'096, 1'000'000), run.seed());
-    measure_both(run, make_integer_grid(cells), rays, is_one, {.fast_is_control = true});
+    const std::vector<Ray> rays = exact_grid_rays(grid_cells, true, run.amount(4'096, 1'000'000), run.seed());
+    measure_both(run, make_integer_grid(grid_cells), rays, is_one, {.fast_is_control = true});
 }
 
 // The four signs of the zeros must give the same bits.
 void straight_through_a_grid(CaseRun& run) {
-    const Mesh grid = make_integer_grid(cells);
+    const Mesh grid = make_integer_grid(grid_cells);
     const World world = world_of(grid);
-    const std::vector<Ray> rays = exact_grid_rays(cells, false, run.amount(4'096, 1'000'000), run.seed());
+    const std::vector<Ray> rays = exact_grid_rays(grid_cells, false, run.amount(4'096, 1'000'000), run.seed());
     std::vector<std::vector<Traced>> by_sign;
     for (const uint signs : {0u, 1u, 2u, 3u}) {
         std::vector<Ray> signed_rays = rays;
@@ -79,8 +79,8 @@ void within_a_plane_of_boxes(CaseRun& run) {
 }
 
 void random_winding(CaseRun& run) {
-    const Mesh grid = with_random_winding(make_integer_grid(cells), run.seed());
-    measure_both(run, grid, exact_grid_rays(cells, true, run.amount(2'048, 500'000), run.seed()), is_one,
+    const Mesh grid = with_random_winding(make_integer_grid(grid_cells), run.seed());
+    measure_both(run, grid, exact_grid_rays(grid_cells, true, run.amount(2'048, 500'000), run.seed()), is_one,
                  {.params = {{"mesh", "grid"}}, .fast_is_control = true});
     const Mesh sphere = with_random_winding(make_icosphere(3), run.seed());
     const ClosedMesh closed(sphere);
@@ -90,13 +90,14 @@ void random_winding(CaseRun& run) {
 
 // Steeper than any of its triangles, so that each ray crosses it once.
 void jittered_grid(CaseRun& run) {
-    const Mesh grid = make_jittered_grid(cells, 0.2f, run.seed());
-    const auto inner = [&](Draws& draws) { return 4 + draws.below(cells - 8); };
+    const Mesh grid = make_jittered_grid(grid_cells, 0.2f, run.seed());
+    const auto inner = [&](Draws& draws) { return 4 + draws.below(grid_cells - 8); };
     std::vector<Ray> rays;
     for (std::size_t i = 0; i < run.amount(4'096, 1'000'000); ++i) {
         Draws draws(run.seed(), i);
-        const uint vertex = inner(draws) * (cells + 1) + inner(draws);
-        const uint neighbours[] = {vertex + 1, vertex + cells + 1, vertex + cells};  // to the right, below, diagonal
+        const uint vertex = inner(draws) * (grid_cells + 1) + inner(draws);
+        const uint neighbours[] = {vertex + 1, vertex + grid_cells + 1,
+                                   vertex + grid_cells};  // to the right, below, diagonal
         const double w = i % 2 == 0 ? 0 : draws.unit();
         const dvec3 target =
             (1 - w) * dvec3(grid.positions[vertex]) + w * dvec3(grid.positions[neighbours[draws.below(3)]]);

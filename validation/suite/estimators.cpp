@@ -2,7 +2,6 @@
 #include "validation/suite/estimators.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include <twinray/scene.h>
@@ -14,17 +13,11 @@
 namespace twinray::suite {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 struct Answer {
     double value = 0, low = 0, high = 0;
     double ms = 0;
     std::uint64_t rays = 0;
 };
-
-double ms_since(Clock::time_point start) {
-    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 // Meshes are groups, one instance each.
 class Estimators {

@@ -10,11 +10,11 @@
 namespace twinray::suite {
 namespace {
 
-using Plane = std::vector<double>;  // a value for each pixel
+using PixelPlane = std::vector<double>;  // a value for each pixel
 
-struct Planes {
+struct PixelPlanes {
     int width = 0, height = 0;
-    std::array<Plane, 3> of;  // by channel
+    std::array<PixelPlane, 3> of;  // by channel
 
     dvec3 at(std::size_t i) const { return {of[0][i], of[1][i], of[2][i]}; }
 };
@@ -61,10 +61,11 @@ dvec3 hunt_lab_of(const dvec3& rgb) {
 double hyab(const dvec3& a, const dvec3& b) { return std::abs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z); }
 
 // sum of weights[i] * plane at distance i - radius, along x and then along y; the border repeats.
-Plane filtered(const Plane& plane, int width, int height, const Plane& along_x, const Plane& along_y) {
-    const auto pass = [&](const Plane& from, const Plane& weights, int dx, int dy) {
+PixelPlane filtered(const PixelPlane& plane, int width, int height, const PixelPlane& along_x,
+                    const PixelPlane& along_y) {
+    const auto pass = [&](const PixelPlane& from, const PixelPlane& weights, int dx, int dy) {
         const int radius = static_cast<int>(weights.size() / 2);
-        Plane to(from.size());
+        PixelPlane to(from.size());
         for (int y = 0; y < height; ++y)
             for (int x = 0; x < width; ++x)
                 for (int i = -radius; i <= radius; ++i) {
@@ -78,8 +79,8 @@ Plane filtered(const Plane& plane, int width, int height, const Plane& along_x, 
 }
 
 // exp(-rate x^2) at the pixels within `radius`, of sum 1.
-Plane gaussian(double rate, int radius) {
-    Plane weights;
+PixelPlane gaussian(double rate, int radius) {
+    PixelPlane weights;
     for (int i = -radius; i <= radius; ++i) weights.push_back(std::exp(-rate * i * i));
     const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
     for (double& weight : weights) weight /= sum;
@@ -88,7 +89,7 @@ Plane gaussian(double rate, int radius) {
 
 // What the eye resolves of each channel: contrast sensitivity as sums of gaussians a sqrt(pi / b) exp(-pi^2 x^2 / b)
 // over x in degrees (Johnson and Fairchild 2003).
-Planes seen(const Planes& opponent, double pixels_per_degree) {
+PixelPlanes seen(const PixelPlanes& opponent, double pixels_per_degree) {
     constexpr double pi = 3.14159265358979;
     struct Gaussian {
         double weight, width;
@@ -96,11 +97,11 @@ Planes seen(const Planes& opponent, double pixels_per_degree) {
     const std::array<std::vector<Gaussian>, 3> sensitivity = {
         {{{1, 0.0047}}, {{1, 0.0053}}, {{34.1, 0.04}, {13.5, 0.025}}}};
     const int radius = static_cast<int>(std::ceil(3 * std::sqrt(0.04 / (2 * pi * pi)) * pixels_per_degree));
-    Planes result{opponent.width, opponent.height, {}};
+    PixelPlanes result{opponent.width, opponent.height, {}};
     for (std::size_t channel = 0; channel < 3; ++channel) {
         result.of[channel].resize(opponent.of[channel].size());
-        Plane mass;
-        std::vector<Plane> kernels;
+        PixelPlane mass;
+        std::vector<PixelPlane> kernels;
         for (const Gaussian& g : sensitivity[channel]) {
             const double rate = pi * pi / g.width / (pixels_per_degree * pixels_per_degree);
             double line = 0;
@@ -110,7 +111,8 @@ Planes seen(const Planes& opponent, double pixels_per_degree) {
         }
         const double all = std::accumulate(mass.begin(), mass.end(), 0.0);
         for (std::size_t i = 0; i < kernels.size(); ++i) {
-            const Plane part = filtered(opponent.of[channel], opponent.width, opponent.height, kernels[i], kernels[i]);
+            const PixelPlane part =
+                filtered(opponent.of[channel], opponent.width, opponent.height, kernels[i], kernels[i]);
             for (std::size_t pixel = 0; pixel < part.size(); ++pixel)
                 result.of[channel][pixel] += mass[i] / all * part[pixel];
         }
@@ -120,11 +122,11 @@ Planes seen(const Planes& opponent, double pixels_per_degree) {
 
 // Edges (first derivative) or points (second) of a picture of lightness: the length of the gradient of gaussians
 // that match what the eye detects, normalised so that a step, or a point, of 1 gives at most 1.
-Plane features(const Planes& opponent, double pixels_per_degree, bool is_points) {
+PixelPlane features(const PixelPlanes& opponent, double pixels_per_degree, bool is_points) {
     const double deviation = 0.5 * 0.082 * pixels_per_degree;
     const int radius = static_cast<int>(std::ceil(3 * deviation));
-    const Plane smooth = gaussian(1 / (2 * deviation * deviation), radius);
-    Plane derived;
+    const PixelPlane smooth = gaussian(1 / (2 * deviation * deviation), radius);
+    PixelPlane derived;
     for (int i = -radius; i <= radius; ++i) {
         const double weight = smooth[static_cast<std::size_t>(i + radius)];
         derived.push_back(is_points ? (i * i / (deviation * deviation) - 1) * weight : -i * weight);
@@ -132,17 +134,17 @@ Plane features(const Planes& opponent, double pixels_per_degree, bool is_points)
     double positive = 0, negative = 0;
     for (const double weight : derived) (weight > 0 ? positive : negative) += std::abs(weight);
     for (double& weight : derived) weight /= weight > 0 ? positive : negative;
-    Plane lightness(opponent.of[0]);
+    PixelPlane lightness(opponent.of[0]);
     for (double& value : lightness) value = (value + 16) / 116;
-    const Plane x = filtered(lightness, opponent.width, opponent.height, derived, smooth);
-    const Plane y = filtered(lightness, opponent.width, opponent.height, smooth, derived);
-    Plane lengths;
+    const PixelPlane x = filtered(lightness, opponent.width, opponent.height, derived, smooth);
+    const PixelPlane y = filtered(lightness, opponent.width, opponent.height, smooth, derived);
+    PixelPlane lengths;
     for (std::size_t i = 0; i < x.size(); ++i) lengths.push_back(std::hypot(x[i], y[i]));
     return lengths;
 }
 
-Planes opponent_planes(const HdrImage& picture) {
-    Planes planes{static_cast<int>(picture.width), static_cast<int>(picture.height), {}};
+PixelPlanes opponent_planes(const HdrImage& picture) {
+    PixelPlanes planes{static_cast<int>(picture.width), static_cast<int>(picture.height), {}};
     for (const vec3& pixel : picture.rgb) {
         const dvec3 color = opponent_of(clamp(dvec3(pixel), dvec3(0), dvec3(1)));
         for (std::size_t channel = 0; channel < 3; ++channel)
@@ -151,7 +153,7 @@ Planes opponent_planes(const HdrImage& picture) {
     return planes;
 }
 
-dvec3 color_seen(const Planes& planes, std::size_t i) {
+dvec3 color_seen(const PixelPlanes& planes, std::size_t i) {
     return hunt_lab_of(clamp(rgb_of_opponent(planes.at(i)), dvec3(0), dvec3(1)));
 }
 
@@ -167,10 +169,10 @@ double color_difference(const dvec3& a, const dvec3& b) {
 }  // namespace
 
 std::vector<double> flip(const HdrImage& test, const HdrImage& reference, double pixels_per_degree) {
-    const Planes a = opponent_planes(test), b = opponent_planes(reference);
-    const Planes seen_a = seen(a, pixels_per_degree), seen_b = seen(b, pixels_per_degree);
-    const Plane edges_a = features(a, pixels_per_degree, false), edges_b = features(b, pixels_per_degree, false);
-    const Plane points_a = features(a, pixels_per_degree, true), points_b = features(b, pixels_per_degree, true);
+    const PixelPlanes a = opponent_planes(test), b = opponent_planes(reference);
+    const PixelPlanes seen_a = seen(a, pixels_per_degree), seen_b = seen(b, pixels_per_degree);
+    const PixelPlane edges_a = features(a, pixels_per_degree, false), edges_b = features(b, pixels_per_degree, false);
+    const PixelPlane points_a = features(a, pixels_per_degree, true), points_b = features(b, pixels_per_degree, true);
     std::vector<double> result;
     for (std::size_t i = 0; i < edges_a.size(); ++i) {
         const double color = color_difference(color_seen(seen_a, i), color_seen(seen_b, i));

@@ -54,13 +54,13 @@ class Session {
 };
 
 // During what calls fail.
-enum class Part : std::uint8_t {
+enum class FailingPart : std::uint8_t {
     context,  // its creation
     session,  // all from the context to the hits
     trace     // build and trace in a session that has done so before
 };
-const char* name_of(Part part) {
-    return part == Part::context ? "context" : part == Part::session ? "session" : "build and trace";
+const char* name_of(FailingPart part) {
+    return part == FailingPart::context ? "context" : part == FailingPart::session ? "session" : "build and trace";
 }
 
 class FailingRuns {
@@ -69,7 +69,7 @@ class FailingRuns {
         : run_(run), configuration_(configuration), session_(run.devices(), configuration, vulkan_) {}
 
     // Lets calls fail by `fault`, at most so many, evenly chosen among those of the part, and records what came of it.
-    void fail(Part part, Fault fault, std::size_t most) {
+    void fail(FailingPart part, Fault fault, std::size_t most) {
         if (most == 0) return;
         const std::uint64_t calls = count_calls(part, fault);
         CaseRun::Outcome outcome{.params = {{"failing", fault.result == VK_ERROR_DEVICE_LOST ? "the device" : "a call"},
@@ -101,18 +101,18 @@ class FailingRuns {
 
   private:
     // As the part begins.
-    void prepare(Part part) {
-        if (part == Part::trace) return static_cast<void>(session_.hits(world_, rays_));
+    void prepare(FailingPart part) {
+        if (part == FailingPart::trace) return static_cast<void>(session_.hits(world_, rays_));
         session_.end();
     }
 
-    std::vector<Hit> act(Part part) {
-        if (part != Part::context) return session_.hits(world_, rays_);
+    std::vector<Hit> act(FailingPart part) {
+        if (part != FailingPart::context) return session_.hits(world_, rays_);
         session_.make_context();
         return {};
     }
 
-    std::uint64_t count_calls(Part part, const Fault& fault) {
+    std::uint64_t count_calls(FailingPart part, const Fault& fault) {
         prepare(part);
         vulkan_.inject({.first = faults::every_call, .result = fault.result});
         act(part);
@@ -120,7 +120,7 @@ class FailingRuns {
         return vulkan_.calls();
     }
 
-    std::string what_is_wrong_with(Part part, const Fault& fault) {
+    std::string what_is_wrong_with(FailingPart part, const Fault& fault) {
         prepare(part);
         std::vector<Hit> hits;
         std::string said, again;
@@ -134,7 +134,7 @@ class FailingRuns {
         if (said.empty()) return "an error without a word";
         // Only another device can go on where one was lost.
         if (fault.result == VK_ERROR_DEVICE_LOST) session_.end();
-        if (fault.result == VK_ERROR_DEVICE_LOST || part == Part::context)
+        if (fault.result == VK_ERROR_DEVICE_LOST || part == FailingPart::context)
             if (const std::string left = what_is_left(); !left.empty()) return left;
         if (faults::outcome_of([&] { hits = act(part); }, &again) != faults::Outcome::done) return "after it: " + again;
         return what_is_wrong_with(hits);
@@ -168,10 +168,10 @@ void failing_calls(CaseRun& run) {
     for (const Configuration& configuration : configurations) {
         const bool is_last = configuration == configurations.back();
         FailingRuns runs(run, configuration);
-        runs.fail(Part::context, {}, run.amount(3, 4'096));
-        runs.fail(Part::session, {}, run.is_whole() ? 4'096 : 0);
-        runs.fail(Part::trace, {}, run.amount(4, 4'096));
-        runs.fail(Part::trace, {.count = faults::every_call, .result = VK_ERROR_DEVICE_LOST},
+        runs.fail(FailingPart::context, {}, run.amount(3, 4'096));
+        runs.fail(FailingPart::session, {}, run.is_whole() ? 4'096 : 0);
+        runs.fail(FailingPart::trace, {}, run.amount(4, 4'096));
+        runs.fail(FailingPart::trace, {.count = faults::every_call, .result = VK_ERROR_DEVICE_LOST},
                   run.is_whole() ? 256
                   : is_last      ? 1
                                  : 0);

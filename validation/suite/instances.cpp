@@ -35,7 +35,7 @@ void random_rigid(CaseRun& run) {
     measure_instances(run, instances_of(make_icosphere(2), transforms), run.amount(4'096, 500'000));
 }
 
-void stretched(CaseRun& run) {
+void instances_stretched(CaseRun& run) {
     for (const float ratio : {1e3f, 1e6f}) {
         Random random(run.seed());
         std::vector<Transform> transforms(64);
@@ -141,7 +141,7 @@ void many_instances(CaseRun& run) {
 }
 
 // The camera is a few units beside it.
-void far_away(CaseRun& run) {
+void instances_far_away(CaseRun& run) {
     for (const float distance : {1e3f, 1e5f, 1e7f}) {
         const Scene scene =
             instances_of(make_icosphere(3), {Transform::translation(vec3(distance, -distance, distance))});
@@ -170,7 +170,7 @@ void box_touched_by_rounding(CaseRun& run) {
 }
 
 // Scaling instance and rays by a power of two changes nothing but the unit: the same ids, u and v, and t to the bit.
-void powers_of_two(CaseRun& run) {
+void instances_by_powers_of_two(CaseRun& run) {
     const Mesh sphere = make_icosphere(3);
     const Scene unit = instances_of(sphere, {Transform()});
     const World world = world_of(unit);
@@ -226,7 +226,7 @@ std::vector<SuiteCase> instance_cases() {
          with_and_without_top_level},
         {"I02", "random rotations and translations", "hits, t", "0 SW_LEAK, SW_FALSE, T_ERR", random_rigid},
         {"I03", "scales that differ by 1e3 and 1e6, between rotations", "hits, t", "0 SW_LEAK, SW_FALSE, T_ERR",
-         stretched},
+         instances_stretched},
         {"I04", "mirrored instances, culled by either side", "hits", "the front is decided in object space", mirrored},
         {"I05", "transforms of condition 1e2 to 1e12", "hits, t",
          "0 SW_LEAK, SW_FALSE, T_ERR within what the condition does to rounding", nearly_singular},
@@ -235,14 +235,15 @@ std::vector<SuiteCase> instance_cases() {
         {"I07", "many instances with identical boxes", "hits, time", "0 faults; the lowest instance counts",
          identical_boxes},
         {"I08", "many instances in a line and on a shell", "hits, time", "0 faults", many_instances},
-        {"I09", "a translation of up to 1e7, the camera beside it", "hits, t", "0 SW_LEAK, SW_FALSE, T_ERR", far_away},
+        {"I09", "a translation of up to 1e7, the camera beside it", "hits, t", "0 SW_LEAK, SW_FALSE, T_ERR",
+         instances_far_away},
         {"I10", "an object offset of 10^3 to 10^5 that the instance cancels",
          "rays of twinray/glsl/spawn.glsl that meet the triangle they leave", "0", leave_cancelled_offsets},
         {"I11", "flat geometries, rotated", "hits", "0 SW_LEAK, SW_FALSE, T_ERR", flat_and_rotated},
         {"I12", "boxes that a ray touches only by rounding: edges of rotated squares", "hits",
          "0 SW_LEAK, SW_FALSE, T_ERR", box_touched_by_rounding},
         {"I13", "uniform scales 2^-60 to 2^60 of instance and rays", "ids, u, v, t", "equal to the last bit, t scaled",
-         powers_of_two},
+         instances_by_powers_of_two},
     };
 }
 

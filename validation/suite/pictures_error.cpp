@@ -78,7 +78,7 @@ struct Method {
 };
 
 // What one method makes of the box on one configuration: pictures by seed, then by samples.
-struct Series {
+struct ExposureSeries {
     Configuration configuration;
     Method method;
     Census census;
@@ -96,7 +96,7 @@ struct Reference {
 
 // The mean of the pictures with the most samples by both light and surface sampling, of all other seeds and methods of
 // the first configuration: none shares a random number with what is compared.
-Reference reference_without(std::span<const Series> of_configuration, std::size_t method, std::size_t seed) {
+Reference reference_without(std::span<const ExposureSeries> of_configuration, std::size_t method, std::size_t seed) {
     std::vector<const HdrImage*> pictures;
     for (std::size_t m = 0; m < of_configuration.size(); ++m)
         for (std::size_t s = 0; s < of_configuration[m].exposures.size(); ++s)
@@ -135,9 +135,9 @@ std::vector<double> squared_deviations(std::span<const std::vector<Exposure>> se
     return result;
 }
 
-void add_figures(CaseRun& run, std::span<const Series> all, std::size_t of_configuration, std::size_t which,
+void add_figures(CaseRun& run, std::span<const ExposureSeries> all, std::size_t of_configuration, std::size_t which,
                  std::span<const uint> spp) {
-    const Series& series = all[which];
+    const ExposureSeries& series = all[which];
     std::vector<Reference> references;
     for (std::size_t seed = 0; seed < series.exposures.size(); ++seed)
         references.push_back(reference_without(all.first(of_configuration), which % of_configuration, seed));
@@ -179,14 +179,14 @@ void work_and_precision(CaseRun& run) {
                                          {path_tracer::STRATEGY_MIS, 2},
                                          {path_tracer::STRATEGY_LIGHTS, 1},
                                          {path_tracer::STRATEGY_BSDF, 1}};
-    std::vector<Series> all;
+    std::vector<ExposureSeries> all;
     for (const Configuration& configuration : analysis_configurations(run))
         for (std::size_t method = 0; method < methods.size(); ++method) {
             RenderDesc desc = box_shot(32);
             desc.settings.strategy = methods[method].strategy;
             desc.settings.block_size = methods[method].block_size;
             RenderFixture fixture(run, configuration, desc);
-            Series series{configuration, methods[method], {}, {}};
+            ExposureSeries series{configuration, methods[method], {}, {}};
             for (std::size_t seed = 0; seed < seeds; ++seed)
                 series.exposures.push_back(fixture.expose(seed_of(run, method, seed), spp));
             series.census = fixture.census();

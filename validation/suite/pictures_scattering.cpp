@@ -225,7 +225,7 @@ void samplers(CaseRun& run) {
         }
 }
 
-void reciprocity(CaseRun& run) {
+void bsdf_reciprocity(CaseRun& run) {
     for (const float alpha : {0.1f, 0.3f, 0.8f}) {
         Record record = record_of_cpu(run, {{"plastic, alpha", alpha}});
         record.n = 10'000;
@@ -249,7 +249,7 @@ void reciprocity(CaseRun& run) {
 
 void samplers_and_reciprocity(CaseRun& run) {
     samplers(run);
-    reciprocity(run);
+    bsdf_reciprocity(run);
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <twinray/analysis.h>
 
 #include <algorithm>
-#include <chrono>
 
 #include <twinray/scene.h>
 
@@ -12,8 +11,6 @@
 
 namespace twinray::suite {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 // Six walls of one mesh each that look inwards; 0 and 1 face each other.
 Scene cube() {
@@ -46,7 +43,7 @@ Solution solve(const std::vector<ViewFactorRow>& rows, double rho) {
     const std::vector<double> emission = {1, 0, 0, 0, 0, 0}, reflectance(6, rho);
     const auto start = Clock::now();
     Solution solution{solve_radiosity(rows, emission, reflectance), 0, 0};
-    solution.ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    solution.ms = ms_since(start);
     const std::array<double, 3> known = known_radiosities(rho);
     for (std::size_t i = 0; i < 6; ++i)
         solution.error = std::max(solution.error,
@@ -89,7 +86,7 @@ void by_rays(CaseRun& run) {
                     .grouping = FaceGrouping::mesh, .rays = rays, .seed = static_cast<uint>(run.seed() + seed)};
                 const auto start = Clock::now();
                 last = solve(factors_of(accel, faces, scene, options, PairEstimator::hits), rho);
-                ms.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
+                ms.push_back(ms_since(start));
                 errors.push_back(last->error);
                 double sampling = 0;
                 for (const double half : last->light.sampling) sampling = std::max(sampling, half);

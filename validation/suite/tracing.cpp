@@ -2,18 +2,11 @@
 #include "validation/suite/tracing.h"
 
 #include <algorithm>
-#include <chrono>
 
 #include <twinray/scene.h>
 
 namespace twinray::suite {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double ms_since(Clock::time_point start) {
-    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 // The accelerator of a backend with the world in it, and the rays in its context's memory.
 struct Stage {
@@ -116,6 +109,10 @@ std::vector<Traced> trace(Devices& devices, std::span<const Configuration> confi
                                         static_cast<double>(tracing.rays.size()));
         }
     return all;
+}
+
+double ms_since(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
 double total_ms(const std::vector<PassTiming>& timings) {

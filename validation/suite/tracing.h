@@ -2,6 +2,7 @@
 // Tracing the same rays on several configurations, timed side by side.
 #pragma once
 
+#include <chrono>
 #include <map>
 
 #include "validation/suite/controls.h"
@@ -42,6 +43,8 @@ std::vector<Traced> trace(Devices& devices, std::span<const Configuration> confi
 TimeFigures time_figures(const Traced& traced);
 // Of any repetitions, at least one.
 TimeFigures time_figures(const std::string& metric, std::vector<double> samples);
+using Clock = std::chrono::steady_clock;
+double ms_since(Clock::time_point start);
 // GPU time of all passes.
 double total_ms(const std::vector<PassTiming>& timings);
 

@@ -57,7 +57,7 @@ std::string gltf_name(const char* kind, std::size_t index, const std::string& na
 // Reading extension objects, which tinygltf leaves untyped; what is missing or of another type gives the fallback.
 const tinygltf::Value* find_member(const tinygltf::Value& object, const std::string& key);
 const tinygltf::Value* find_extension(const tinygltf::ExtensionMap& extensions, const std::string& name);
-double number_of(const tinygltf::Value& object, const std::string& key, double fallback);
+double number_or(const tinygltf::Value& object, const std::string& key, double fallback);
 int index_of(const tinygltf::Value& object, const std::string& key);  // -1 when absent
 std::vector<double> numbers_of(const tinygltf::Value& object, const std::string& key);
 

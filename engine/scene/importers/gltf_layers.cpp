@@ -15,7 +15,7 @@ struct Reader {
     const std::string& object;
     GltfTextures& textures;
 
-    double number(const char* key, double fallback) const { return number_of(extension, key, fallback); }
+    double number(const char* key, double fallback) const { return number_or(extension, key, fallback); }
     vec3 color(const char* key, vec3 fallback, double most = 1) const {
         return color_factor<3>(numbers_of(extension, key), fallback, most);
     }
@@ -42,7 +42,7 @@ void read_clearcoat(const Reader& from, Material& material) {
     material.clearcoat_roughness_texture = from.texture("clearcoatRoughnessTexture");
     material.clearcoat_normal_texture = from.normal_texture("clearcoatNormalTexture");
     if (const tinygltf::Value* normal = find_member(from.extension, "clearcoatNormalTexture"))
-        material.clearcoat_normal_scale = clamped_factor(number_of(*normal, "scale", 1), -no_limit, no_limit);
+        material.clearcoat_normal_scale = clamped_factor(number_or(*normal, "scale", 1), -no_limit, no_limit);
 }
 
 void read_sheen(const Reader& from, Material& material) {

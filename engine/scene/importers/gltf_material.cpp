@@ -58,19 +58,19 @@ class MaterialReader {
     void read_extension(const std::string& name, const tinygltf::Value& extension, const std::string& object,
                         Material& material) {
         if (name == "KHR_materials_emissive_strength") {
-            material.emission *= clamped_factor(number_of(extension, "emissiveStrength", 1), 0, 1e30);
+            material.emission *= clamped_factor(number_or(extension, "emissiveStrength", 1), 0, 1e30);
         } else if (name == "KHR_materials_ior") {
-            material.ior = clamped_factor(number_of(extension, "ior", 1.5), 0, 1e30);
+            material.ior = clamped_factor(number_or(extension, "ior", 1.5), 0, 1e30);
         } else if (name == "KHR_materials_unlit") {
             material.unlit = true;
         } else if (name == "KHR_materials_transmission") {
-            material.transmission = unit_factor(number_of(extension, "transmissionFactor", 0));
+            material.transmission = unit_factor(number_or(extension, "transmissionFactor", 0));
             material.transmission_texture = textures_.read(extension, "transmissionTexture", object);
         } else if (name == "KHR_materials_pbrSpecularGlossiness") {
             material.base_color = color_factor<4>(numbers_of(extension, "diffuseFactor"), vec4(1));
             material.base_color_texture = textures_.read(extension, "diffuseTexture", object);
             material.metallic = 0;
-            material.roughness = 1 - unit_factor(number_of(extension, "glossinessFactor", 1));
+            material.roughness = 1 - unit_factor(number_or(extension, "glossinessFactor", 1));
             file_.warn("KHR_materials_pbrSpecularGlossiness is shown by its diffuse colour and glossiness alone");
         } else {
             read_gltf_layer(name, extension, object, textures_, material);

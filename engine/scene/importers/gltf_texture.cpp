@@ -23,7 +23,7 @@ void set_transform(Texture& texture, const tinygltf::Value& transform) {
     std::vector<double> offset = numbers_of(transform, "offset"), scale = numbers_of(transform, "scale");
     if (offset.size() != 2) offset = {0, 0};
     if (scale.size() != 2) scale = {1, 1};
-    const double angle = number_of(transform, "rotation", 0);
+    const double angle = number_or(transform, "rotation", 0);
     const double c = std::cos(angle), s = std::sin(angle);
     texture.uv_row0 = vec3(c * scale[0], s * scale[1], offset[0]);
     texture.uv_row1 = vec3(-s * scale[0], c * scale[1], offset[1]);

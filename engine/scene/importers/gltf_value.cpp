@@ -18,13 +18,13 @@ const tinygltf::Value* find_extension(const tinygltf::ExtensionMap& extensions, 
     return found == extensions.end() ? nullptr : &found->second;
 }
 
-double number_of(const tinygltf::Value& object, const std::string& key, double fallback) {
+double number_or(const tinygltf::Value& object, const std::string& key, double fallback) {
     const tinygltf::Value* member = find_member(object, key);
     return member && member->IsNumber() ? member->GetNumberAsDouble() : fallback;
 }
 
 int index_of(const tinygltf::Value& object, const std::string& key) {
-    const double number = number_of(object, key, -1);
+    const double number = number_or(object, key, -1);
     return number >= 0 && number <= INT32_MAX ? static_cast<int>(number) : -1;
 }
 

@@ -12,11 +12,6 @@ namespace {
 
 using namespace test;  // NOLINT
 
-double distance_to_line(const dvec3& point, const Ray& ray) {
-    const dvec3 d = normalize(dvec3(ray.direction));
-    return length(cross(point - dvec3(ray.origin), d));
-}
-
 double nearest_vertex(const Soup& soup, const Ray& ray) {
     double nearest = INFINITY;
     for (const vec3& position : soup.positions) nearest = std::min(nearest, distance_to_line(position, ray));

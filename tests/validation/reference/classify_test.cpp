@@ -11,8 +11,7 @@ namespace {
 
 using namespace test;  // NOLINT
 
-constexpr std::uint32_t seed = 77;
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+constexpr std::uint32_t inside_seed = 77;
 
 RayResult both(HitClass software, HitClass hardware) { return {software, hardware}; }
 
@@ -24,8 +23,6 @@ RayResult check(const ReferenceScene& reference, const Ray& ray, const Hit& hit)
 Hit hit_of(const ReferenceHit& hit) {
     return {1, float(hit.t), hit.primitive, 0, float(hit.u), float(hit.v), hit.instance, 0};
 }
-
-Scene32 one(const Soup& soup, const Transform& transform = {}) { return {{soup}, {{0, transform, 0}}}; }
 
 // Unit squares in z = 4 and z = 6: triangles 0, 1 and 2, 3, split along x = y.
 Scene32 two_sheets() {
@@ -82,7 +79,7 @@ TEST(Classify, HitOutsideTheIntervalIsFalse) {
 
 TEST(Classify, PrimitiveOrInstanceThatCannotBeHitIsFalse) {
     Scene32 scene = two_sheets();
-    scene.soups[0].add(vec3(nan), vec3(0), vec3(1));
+    scene.soups[0].add(vec3(NAN), vec3(0), vec3(1));
     const ReferenceScene reference = scene.reference();
     for (const auto& [primitive, instance] : {std::pair{4u, 0u}, std::pair{5u, 0u}, std::pair{0u, 1u}}) {
         Hit hit = near_hit;
@@ -151,14 +148,14 @@ TEST(Classify, WrongBarycentricsAreOutOfRange) {
     EXPECT_EQ(check(reference, inner_ray, swapped), both(HitClass::t_err, HitClass::hw_range));
     for (float Hit::*field : {&Hit::t, &Hit::u, &Hit::v}) {
         Hit hit = near_hit;
-        hit.*field = nan;
+        hit.*field = NAN;
         EXPECT_EQ(check(reference, inner_ray, hit), both(HitClass::t_err, HitClass::hw_range));
     }
 }
 
 TEST(Classify, RaysThatNobodyMayTraceMustMiss) {
     const ReferenceScene reference = two_sheets().reference();
-    const Ray ray = make_ray(vec3(nan), {0, 0, 1});
+    const Ray ray = make_ray(vec3(NAN), {0, 0, 1});
     EXPECT_EQ(check(reference, ray, miss()), both(HitClass::agree, HitClass::agree));
     EXPECT_EQ(check(reference, ray, near_hit), both(HitClass::invalid_input, HitClass::invalid_input));
     EXPECT_EQ(classify_any(reference, ray, true, false), both(HitClass::invalid_input, HitClass::agree));
@@ -187,16 +184,17 @@ TEST(Classify, DistanceBeyondFloat32IsUnspecified) {
 // No rounding excuses a miss of a closed mesh from inside.
 void expect_misses_leak(const Soup& soup, const Transform& transform = {}) {
     const ReferenceScene reference = one(soup, transform).reference();
-    std::vector<Ray> rays = rays_from_inside(soup, transform, 1000, seed);
+    std::vector<Ray> rays = rays_from_inside(soup, transform, 1000, inside_seed);
     for (std::size_t i = 0; i < 100; ++i)  // exactly through vertices, where nothing moves them
         rays.push_back(make_ray(transform_point(transform, vec3(0)),
                                 transform_vector(transform, soup.positions[i % soup.positions.size()])));
     for (const Ray& ray : rays) {
         ASSERT_TRUE(reference.closest_hit(ray).hit);
         ASSERT_EQ(check(reference, ray, miss()), both(HitClass::sw_leak, HitClass::hw_leak))
-            << "seed " << seed << ", direction " << ray.direction.x << " " << ray.direction.y << " " << ray.direction.z;
+            << "seed " << inside_seed << ", direction " << ray.direction.x << " " << ray.direction.y << " "
+            << ray.direction.z;
         ASSERT_EQ(classify_any(reference, ray, false, true), both(HitClass::sw_leak, HitClass::agree))
-            << "seed " << seed;
+            << "seed " << inside_seed;
     }
 }
 

@@ -83,6 +83,7 @@ struct Scene32 {
         return best;
     }
 };
+inline Scene32 one(const Soup& soup, const Transform& transform = {}) { return {{soup}, {{0, transform, 0}}}; }
 
 // What a kernel that refines its result reports: t, u and v of the same triangle's plane, in float64, unless that t
 // leaves the ray's interval.

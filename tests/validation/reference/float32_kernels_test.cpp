@@ -52,8 +52,6 @@ void expect_no_fault(const Scene32& scene, std::uint64_t seed) {
     EXPECT_GT(result.software[HitClass::agree], result.software.total() / 4) << "seed " << seed;
 }
 
-Scene32 one(const Soup& soup, const Transform& transform = {}) { return {{soup}, {{0, transform, 0}}}; }
-
 Soup slivers(std::uint32_t seed, float width) {
     std::mt19937 random(seed);
     Soup soup;

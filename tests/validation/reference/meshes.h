@@ -122,6 +122,18 @@ inline Transform rotation(float angle_x, float angle_y) {
     return {{vec4(cy, 0, sy, 0), vec4(sx * sy, cx, -sx * cy, 0), vec4(-cx * sy, sx, cx * cy, 0)}};
 }
 
+// Scaled, sheared, and moved by up to `spread` along each axis.
+inline Transform random_placement(std::mt19937& random, float spread) {
+    Transform m = Transform::scaling(vec3(uniform(random, 0.5f, 1.5f)));
+    for (vec4& row : m.rows) row += vec4(uniform3(random, -0.5f, 0.5f), uniform(random, -spread, spread));
+    return m;
+}
+
+inline double distance_to_line(const dvec3& point, const Ray& ray) {
+    const dvec3 d = normalize(dvec3(ray.direction));
+    return length(cross(point - dvec3(ray.origin), d));
+}
+
 // From inside a mesh around its origin, aimed at its vertices (even ones) and at points of its edges (odd ones).
 inline std::vector<Ray> rays_from_inside(const Soup& soup, const Transform& transform, std::size_t count,
                                          std::uint32_t seed) {

@@ -15,7 +15,7 @@ namespace {
 
 class ReferenceAccelTest : public test::VulkanTest {};
 
-const Ray down{vec3(0.5f, 0.25f, 10), 0, vec3(0, 0, -1), INFINITY};
+const Ray ray_down{vec3(0.5f, 0.25f, 10), 0, vec3(0, 0, -1), INFINITY};
 Mesh square() { return make_quad(vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)); }
 
 TEST_F(ReferenceAccelTest, WantsTheSyncSubmittedBeforeATraceIsRecorded) {
@@ -26,7 +26,7 @@ TEST_F(ReferenceAccelTest, WantsTheSyncSubmittedBeforeATraceIsRecorded) {
     Commands input(context(), "input");
     {
         const auto pass = input.pass("input");
-        input.write(rays, down);
+        input.write(rays, ray_down);
     }
     input.submit();
     const TraceDesc desc{.rays = rays.ref<Ray>(), .hits = hits.ref<Hit>(), .count = 1};
@@ -67,15 +67,15 @@ TEST_F(ReferenceAccelTest, RefusesWhatNeedsGpuCode) {
     const AccelHandle handle = accel.push(BoxesView{"box", std::span(&box, 1)});
     accel.sync();
     EXPECT_EQ(accel.world_bound().hi, vec3(1, 2, 3));
-    test::expect_contains(test::error_of([&] { accel.closest_hits(std::span(&down, 1)); }), "the scene has boxes");
+    test::expect_contains(test::error_of([&] { accel.closest_hits(std::span(&ray_down, 1)); }), "the scene has boxes");
     TraceProgramCode code;
     code.name = "spheres";
     test::expect_contains(test::error_of([&] { static_cast<void>(accel.make_program(code)); }),
                           "ReferenceAccel: program 'spheres': the host runs no GPU code");
     accel.update(handle, square());
-    EXPECT_EQ(accel.closest_hits(std::span(&down, 1)).front().t, 10.0f);
+    EXPECT_EQ(accel.closest_hits(std::span(&ray_down, 1)).front().t, 10.0f);
     accel.push(square(), Transform{}, {.non_opaque = true});
-    test::expect_contains(test::error_of([&] { accel.any_hits(std::span(&down, 1)); }), "non-opaque instances");
+    test::expect_contains(test::error_of([&] { accel.any_hits(std::span(&ray_down, 1)); }), "non-opaque instances");
     for (const Feature feature : {Feature::boxes, Feature::filters, Feature::kernel_queries, Feature::save_and_load}) {
         EXPECT_EQ(accel.capability(feature).support, Support::unsupported);
         EXPECT_FALSE(accel.capability(feature).note.empty());

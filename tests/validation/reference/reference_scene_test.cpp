@@ -12,8 +12,6 @@ namespace {
 
 using namespace test;  // NOLINT
 
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-
 // One sheet: z = 4 over the unit square.
 ReferenceScene plane_at_4() {
     Soup soup;
@@ -87,8 +85,8 @@ TEST(ReferenceScene, NegativeTMinCountsAsZero) {
 TEST(ReferenceScene, RaysThatVulkanForbidsMiss) {
     const ReferenceScene reference = plane_at_4();
     const vec3 o(0.7f, 0.2f, 0), z(0, 0, 1);
-    for (const Ray& ray : {make_ray(o, vec3(0)), make_ray({nan, 0, 0}, z), make_ray(o, {0, INFINITY, 1}),
-                           make_ray(o, z, nan), make_ray(o, z, 0, nan), make_ray(o, z, 5, 3), make_ray(o, z, 0, -1)}) {
+    for (const Ray& ray : {make_ray(o, vec3(0)), make_ray({NAN, 0, 0}, z), make_ray(o, {0, INFINITY, 1}),
+                           make_ray(o, z, NAN), make_ray(o, z, 0, NAN), make_ray(o, z, 5, 3), make_ray(o, z, 0, -1)}) {
         EXPECT_FALSE(reference.closest_hit(ray).hit);
         EXPECT_FALSE(reference.closest_hit_brute_force(ray).hit);
         EXPECT_FALSE(reference.any_hit(ray));
@@ -98,7 +96,7 @@ TEST(ReferenceScene, RaysThatVulkanForbidsMiss) {
 
 TEST(ReferenceScene, NonFiniteAndDegenerateTrianglesAreNeverHit) {
     Soup soup;
-    soup.add({0, 0, 1}, {1, 0, 1}, {nan, 1, 1});
+    soup.add({0, 0, 1}, {1, 0, 1}, {NAN, 1, 1});
     soup.add({0, 0, 1}, {1, 0, 1}, {1, INFINITY, 1});
     soup.add({0, 0, 1}, {1, 0, 1}, {1, 0, 1});
     soup.add({0, 0, 1}, {0.25f, 0.125f, 1}, {1, 0.5f, 1});  // on a line

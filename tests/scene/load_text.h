@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// Scenes of files that a test writes.
+#pragma once
+
+#include <twinray/scene.h>
+
+#include "tests/scene/temp_dir.h"
+
+namespace twinray::test {
+
+// Of a file of that name; what it refers to is not there.
+inline Scene load_text(const std::string& content, const std::string& name) {
+    const TempDir dir;
+    return load_scene(dir.write(name, content));
+}
+
+// The Error names the file and says `part`.
+inline void expect_load_error(const std::string& content, const std::string& name, const std::string& part) {
+    const std::string message = error_of([&] { load_text(content, name); });
+    expect_contains(message, name);
+    expect_contains(message, part);
+}
+
+}  // namespace twinray::test
