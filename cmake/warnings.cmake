@@ -14,10 +14,10 @@ target_compile_options(
     twinray_options
     INTERFACE $<$<COMPILE_LANG_AND_ID:CXX,Clang>:-Wno-sign-conversion -Wno-missing-braces>
 )
-# Unity builds compile files together: GCC takes what a source file declares for a header's, and to Clang a local name
-# of one file shadows what another declares.
+# Unity builds compile files together: a local name of one file shadows what another declares, and GCC takes what a
+# source file declares for a header's. The presets that compile each file alone warn of shadows.
 if(CMAKE_UNITY_BUILD)
-    target_compile_options(twinray_options INTERFACE $<$<COMPILE_LANG_AND_ID:CXX,Clang>:-Wno-shadow>)
+    target_compile_options(twinray_options INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-shadow>)
     target_compile_options(twinray_options INTERFACE $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-subobject-linkage>)
 endif()
 if(TWINRAY_WERROR)

@@ -12,7 +12,6 @@
 namespace twinray {
 namespace {
 
-using enum PairClass;
 using test::Soup;
 
 class NarrowPhaseTest : public test::VulkanTest {
@@ -65,7 +64,7 @@ std::vector<TriangleContact> brute_force(const std::vector<MeshView>& meshes,
                         return placed(instances[instance].transform, mesh, mesh.triangles[triangle]);
                     };
                     const PairClass found = exact_class(vertices(i, s), vertices(j, t));
-                    if (found != separate) contacts.push_back({i, j, s, t, found});
+                    if (found != PairClass::separate) contacts.push_back({i, j, s, t, found});
                 }
     return contacts;
 }
@@ -90,7 +89,7 @@ TEST_F(NarrowPhaseTest, NoPairOfInstancesIsLost) {
     EXPECT_EQ(found.list, expected);
     EXPECT_GT(found.candidates, expected.size());
     EXPECT_LT(found.host_decided, expected.size());
-    EXPECT_GT(found.count(crossing), 150u);
+    EXPECT_GT(found.count(PairClass::crossing), 150u);
 }
 
 TEST_F(NarrowPhaseTest, CoordinatesOfManySizesAreAlike) {
@@ -119,14 +118,14 @@ TEST_F(NarrowPhaseTest, CubesThatTouch) {
     EXPECT_TRUE(find({cube}, {at(vec3(0)), at(vec3(1.0001f, 0, 0))}).list.empty());
     const Contacts vertex = find({cube}, {at(vec3(0)), at(vec3(1))});
     ASSERT_FALSE(vertex.list.empty());
-    EXPECT_EQ(vertex.list.size(), vertex.count(vertex_touch) + vertex.count(coplanar_touch));
+    EXPECT_EQ(vertex.list.size(), vertex.count(PairClass::vertex_touch) + vertex.count(PairClass::coplanar_touch));
     const Contacts face = find({cube}, {at(vec3(0)), at(vec3(1, 0, 0))});
-    EXPECT_GE(face.count(coplanar_overlap), 2u);
-    EXPECT_EQ(face.count(crossing), 0u);
+    EXPECT_GE(face.count(PairClass::coplanar_overlap), 2u);
+    EXPECT_EQ(face.count(PairClass::crossing), 0u);
     const Mesh big = make_box(vec3(-1), vec3(2));
     EXPECT_TRUE(find({cube, big}, {at(vec3(0)), {1, {}}}).list.empty());  // nested
     const Contacts through = find({cube}, {at(vec3(0)), at(vec3(0.5f, 0.25f, 0.125f))});
-    EXPECT_GT(through.count(crossing), 8u);
+    EXPECT_GT(through.count(PairClass::crossing), 8u);
 }
 
 // Spheres whose extreme vertices meet in one point; of the triangles there, each lies opposite to one in its own plane.
@@ -138,8 +137,8 @@ TEST_F(NarrowPhaseTest, TangentSpheres) {
         at_pole += ball.positions[t.x] == vec3(1, 0, 0) || ball.positions[t.y] == vec3(1, 0, 0) ||
                    ball.positions[t.z] == vec3(1, 0, 0);
     EXPECT_EQ(found.list.size(), at_pole * at_pole);
-    EXPECT_EQ(found.count(coplanar_touch), at_pole);
-    EXPECT_EQ(found.count(vertex_touch), found.list.size() - at_pole);
+    EXPECT_EQ(found.count(PairClass::coplanar_touch), at_pole);
+    EXPECT_EQ(found.count(PairClass::vertex_touch), found.list.size() - at_pole);
 }
 
 TEST_F(NarrowPhaseTest, ATranslationIsTheSameAsABakedOne) {
@@ -179,14 +178,14 @@ TEST_F(NarrowPhaseTest, FoldsAndOverlapsInAMeshAreFound) {
     };
     using Classes = std::vector<PairClass>;
     const vec3 o(0), x(4, 0, 0), y(0, 4, 0), xy(4, 4, 0), z(0, 0, 4);
-    EXPECT_EQ(self({o, x, y, xy}, {{0, 1, 2}, {1, 3, 2}}), Classes{});                         // a flat strip
-    EXPECT_EQ(self({o, x, y, {1, 1, 0}}, {{0, 1, 2}, {0, 1, 3}}), Classes{coplanar_overlap});  // folded flat
+    EXPECT_EQ(self({o, x, y, xy}, {{0, 1, 2}, {1, 3, 2}}), Classes{});  // a flat strip
+    EXPECT_EQ(self({o, x, y, {1, 1, 0}}, {{0, 1, 2}, {0, 1, 3}}), Classes{PairClass::coplanar_overlap});  // folded flat
     EXPECT_EQ(self({o, x, y, {1, 1, 1}}, {{0, 1, 2}, {0, 1, 3}}), Classes{});                  // and not quite
-    EXPECT_EQ(self({o, x, y}, {{0, 1, 2}, {2, 1, 0}}), Classes{coplanar_overlap});             // twice the same
+    EXPECT_EQ(self({o, x, y}, {{0, 1, 2}, {2, 1, 0}}), Classes{PairClass::coplanar_overlap});  // twice the same
     EXPECT_EQ(self({o, x, y, {9, 9, -9}, {-9, -9, 3}}, {{0, 1, 2}, {0, 3, 4}}), Classes{});
-    EXPECT_EQ(self({o, x, y, {3, 3, -3}, {3, 3, 3}}, {{0, 1, 2}, {0, 3, 4}}), Classes{crossing});
-    EXPECT_EQ(self({o, x, y, {1, 1, 0}, z}, {{0, 1, 2}, {0, 3, 4}}), Classes{edge_touch});
-    EXPECT_EQ(self({o, x, y, {2, 0, 0}, {2, -2, 0}}, {{0, 1, 2}, {0, 3, 4}}), Classes{coplanar_touch});
+    EXPECT_EQ(self({o, x, y, {3, 3, -3}, {3, 3, 3}}, {{0, 1, 2}, {0, 3, 4}}), Classes{PairClass::crossing});
+    EXPECT_EQ(self({o, x, y, {1, 1, 0}, z}, {{0, 1, 2}, {0, 3, 4}}), Classes{PairClass::edge_touch});
+    EXPECT_EQ(self({o, x, y, {2, 0, 0}, {2, -2, 0}}, {{0, 1, 2}, {0, 3, 4}}), Classes{PairClass::coplanar_touch});
     EXPECT_EQ(self({o, x, y, {-2, 0, 0}, {-2, -2, 0}}, {{0, 1, 2}, {0, 3, 4}}), Classes{});
     EXPECT_EQ(self({o, x, y, {2, -2, 0}}, {{0, 0, 1}, {0, 3, 2}}), Classes{});  // names a vertex twice
 }
@@ -199,11 +198,11 @@ TEST_F(NarrowPhaseTest, CrossingsHaveTheirSegments) {
     const Contacts found = find({a.view(), b.view()}, {{0, {}}, {1, {}}}, {.segments = true});
     ASSERT_EQ(found.list.size(), 2u);
     ASSERT_EQ(found.segments.size(), 2u);
-    EXPECT_EQ(found.list[0].pair_class, crossing);
+    EXPECT_EQ(found.list[0].pair_class, PairClass::crossing);
     const bool is_turned = found.segments[0].from.x > found.segments[0].to.x;
     EXPECT_EQ(is_turned ? found.segments[0].to : found.segments[0].from, dvec3(1, 1, 0));
     EXPECT_EQ(is_turned ? found.segments[0].from : found.segments[0].to, dvec3(2, 1, 0));
-    EXPECT_EQ(found.list[1].pair_class, vertex_touch);
+    EXPECT_EQ(found.list[1].pair_class, PairClass::vertex_touch);
     EXPECT_EQ(found.segments[1].from, dvec3(0));
 }
 

@@ -2,6 +2,7 @@
 #include "validation/picture/value_scale.h"
 
 #include "tests/scene/temp_dir.h"
+#include "twinray/glsl/vector_math.h"
 
 namespace twinray::test {
 namespace {

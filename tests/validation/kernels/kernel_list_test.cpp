@@ -2,6 +2,7 @@
 // That no module of the library or the path tracer is forgotten, and that nothing runs.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "validation/kernels/kernel_list.h"
