@@ -23,7 +23,6 @@ class AccelTest : public VulkanTest, public ::testing::WithParamInterface<Kind> 
         desc.use_ray_tracing_pipeline = GetParam() == Kind::pipeline;
         return desc;
     }
-    bool shares_context() const override { return true; }
     void SetUp() override {
         VulkanTest::SetUp();
         if (IsSkipped() || HasFatalFailure()) return;

@@ -31,7 +31,6 @@ std::vector<Ray> rays_with_zeros() {
 
 class Features : public test::VulkanTest, public ::testing::WithParamInterface<std::tuple<Layout, Level>> {
   protected:
-    bool shares_context() const override { return true; }
     void SetUp() override {
         VulkanTest::SetUp();
         if (IsSkipped() || HasFatalFailure()) return;

@@ -14,7 +14,6 @@ namespace {
 
 class Layouts : public test::VulkanTest, public ::testing::WithParamInterface<Level> {
   protected:
-    bool shares_context() const override { return true; }
     void SetUp() override {
         VulkanTest::SetUp();
         if (IsSkipped() || HasFatalFailure()) return;

@@ -14,7 +14,10 @@
 namespace twinray {
 namespace {
 
-class ContextTest : public test::VulkanTest {};
+class ContextTest : public test::VulkanTest {
+  protected:
+    bool shares_context() const override { return false; }
+};
 
 TEST(ContextErrors, AnUnknownDeviceIsNamedWithTheReasons) {
     if (!test::make_context()) return;

@@ -16,6 +16,7 @@ struct NoArgs {
 
 class PipelineTableTest : public test::VulkanTest {
   protected:
+    bool shares_context() const override { return false; }
     std::size_t size() { return context().state().pipelines().size(); }
     // Constants that a shader does not have are ignored, but make another pipeline.
     KernelDesc desc(uint constant) {

@@ -52,10 +52,9 @@ def run_page(tools, page, folder):
 
 
 def run_pages(tools, pages):
-    """What is wrong, and how many blocks were run. Each page has a folder; compiled kernels are shared."""
+    """What is wrong, and how many blocks were run. Each page has a folder."""
     faults, total = [], 0
     with tempfile.TemporaryDirectory() as above:
-        tools.cache = pathlib.Path(above) / "cache"
         for number, page in enumerate(pages):
             begin = time.monotonic()
             found, count = run_page(tools, page, pathlib.Path(above) / str(number))

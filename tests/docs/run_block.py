@@ -17,7 +17,6 @@ def run(command, folder, tools, wanted_status=0, text=None):
     environment = os.environ | {
         "PATH": f"{tools.programs}:{os.environ['PATH']}",
         "PYTHONPATH": str(tools.package),
-        "XDG_CACHE_HOME": str(tools.cache),
     }
     try:
         result = subprocess.run(

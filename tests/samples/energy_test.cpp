@@ -5,7 +5,7 @@
 namespace twinray::path_tracer {
 namespace {
 
-class Energy : public RenderTest {};
+class Energy : public test::VulkanTest {};
 
 Mesh flat_sphere(uint subdivisions) {
     Mesh mesh = make_icosphere(subdivisions);

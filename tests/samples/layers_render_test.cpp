@@ -6,7 +6,7 @@
 namespace twinray::path_tracer {
 namespace {
 
-class LayersRender : public RenderTest {};
+class LayersRender : public test::VulkanTest {};
 
 const vec3 to_camera = normalize(vec3(0, 0.8f, 0.6f)), to_light = normalize(vec3(-0.3f, 0.9f, -0.4f));
 

@@ -6,7 +6,7 @@
 namespace twinray::path_tracer {
 namespace {
 
-class Panes : public RenderTest {};
+class Panes : public test::VulkanTest {};
 
 Material pane(vec3 color = vec3(1)) {
     return {.name = "pane", .base_color = vec4(color, 1), .metallic = 0, .roughness = 0, .transmission = 1};

@@ -7,7 +7,7 @@
 namespace twinray::path_tracer {
 namespace {
 
-class PathTracer : public RenderTest {};
+class PathTracer : public test::VulkanTest {};
 
 RenderSetup cornell_shot(const Scene& scene) {
     RenderSetup setup;

@@ -22,11 +22,6 @@ inline bool same_bits(const HdrImage& a, const HdrImage& b) {
     return a.rgb.size() == b.rgb.size() && std::memcmp(a.rgb.data(), b.rgb.data(), a.rgb.size() * sizeof(vec3)) == 0;
 }
 
-class RenderTest : public test::VulkanTest {
-  protected:
-    bool shares_context() const override { return true; }
-};
-
 struct RenderSetup {
     RenderSettings settings = {.width = 32, .height = 32, .samples = 64};
     std::unique_ptr<EnvironmentMap> environment = nullptr;  // null: black

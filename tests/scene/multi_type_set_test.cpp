@@ -32,6 +32,7 @@ struct ValueOf {
 
 class MultiTypeSetTest : public VulkanTest {
   protected:
+    bool shares_context() const override { return false; }  // of memory, which is counted
     void SetUp() override {
         VulkanTest::SetUp();
         if (!IsSkipped() && !HasFatalFailure()) set_ = std::make_unique<Materials>(context(), "materials");

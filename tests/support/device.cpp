@@ -57,7 +57,9 @@ class LetsGoOfSharedContext : public ::testing::Environment {
 
 void VulkanTest::SetUp() {
     ContextDesc desc = context_desc();
-    if (shares_context() && shared_context.fits(desc)) {
+    // A driver of the test's own, or submissions cut short, are for it alone.
+    shares_ = shares_context() && !desc.get_instance_proc_addr && !desc.most_submission_seconds;
+    if (shares_ && shared_context.fits(desc)) {
         context_ = shared_context.context;
         log_ = shared_context.log;
         log_->clear();
@@ -67,7 +69,7 @@ void VulkanTest::SetUp() {
     desc.log = [log = log_](std::string_view message) { log->emplace_back(message); };
     context_ = make_context(desc);
     if (!context_ && HasFailure()) FAIL() << "no device";
-    if (!shares_context()) return;
+    if (!shares_) return;
     shared_context.let_go();
     shared_context = {context_, log_, desc};
 }
@@ -83,7 +85,7 @@ void VulkanTest::TearDown() {
     const std::size_t logged = log_->size();
     for (const std::string& message : context_->validation_messages()) ADD_FAILURE() << message;
     context_.reset();
-    if (shares_context() && HasFailure()) shared_context.let_go();
+    if (shares_ && HasFailure()) shared_context.let_go();
     for (std::size_t i = logged; i < log_->size(); ++i) ADD_FAILURE() << (*log_)[i];
 }
 

@@ -28,20 +28,21 @@ bool is_required(const char* what);
 // failed when TWINRAY_REQUIRE names vulkan. Callers return at once on null.
 std::unique_ptr<Context> make_context(ContextDesc desc = {});
 
-// Fixture for label `vulkan`: a fresh context per test.
+// Fixture for label `vulkan`.
 class VulkanTest : public ::testing::Test {
   protected:
     void SetUp() override;
     void TearDown() override;  // fails on validation messages
     virtual ContextDesc context_desc() const { return {}; }
-    // Tests that say so take the context of the one before, with all that it compiled, where that has the same
-    // features: for a driver that takes a second for a kernel.
-    virtual bool shares_context() const { return false; }
+    // Tests take the context of the one before, with all that it compiled, where that has the same features; not
+    // those of a context itself, or that count what it has.
+    virtual bool shares_context() const { return true; }
     Context& context() const { return *context_; }
     // Whether a warning that contains this has come.
     bool was_logged(const std::string& part) const;
 
   private:
+    bool shares_ = false;
     std::shared_ptr<Context> context_;
     std::shared_ptr<std::vector<std::string>> log_;  // outlives the context: what is said at its end counts, too
 };

@@ -21,7 +21,6 @@ class SwBuildTest : public VulkanTest, public testing::WithParamInterface<How> {
   protected:
     BuildQuality quality() const { return std::get<BuildQuality>(GetParam()); }
     AccelOptions options() const { return {.layout = std::get<Layout>(GetParam()), .build_quality = quality()}; }
-    bool shares_context() const override { return true; }
     ContextDesc context_desc() const override {
         ContextDesc desc;
         if (std::get<KernelShape>(GetParam()) == KernelShape::of_gpu) desc.tuning = TuningRow::gpu;
