@@ -119,7 +119,7 @@ check() { # name
         on_driver "$room" "$log/report.txt" "twinray report -o /output/report" || good=0
         report=$(sed -n '/^This driver/p; s/^  \(.*pass [0-9]*\)$/(\1)/p' "$log/report.txt" | tr '\n' ' ')
     fi
-    # shellcheck disable=SC2046
+    # shellcheck disable=SC2046,SC2086
     rows+=("$(row "$1" "$version" ${counts:-- - -} "${conformance:-FAILED}" $((SECONDS - start)) \
         "$( ((good)) && echo passed || echo FAILED)")")
     if ((!quick)); then rows+=("  report: ${report:-FAILED}"); fi

@@ -4,11 +4,7 @@
 #   cmake -D PROGRAM=FILE -D LABEL=NAME -D QUICK=REGEX -D RESULTS=FOLDER -D FILE=FILE -P list_suites.cmake
 #     QUICK      suites that get the label LABEL.quick instead
 #     RESULTS    where each suite leaves an XML file of what its tests did
-execute_process(
-    COMMAND ${PROGRAM} --gtest_list_tests
-    OUTPUT_VARIABLE listing
-    COMMAND_ERROR_IS_FATAL ANY
-)
+execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE listing COMMAND_ERROR_IS_FATAL ANY)
 string(REGEX MATCHALL "(^|\n)[^ \n]+\\.[ \n]" suites "${listing}")
 set(tests "")
 foreach(suite ${suites})
@@ -19,8 +15,7 @@ foreach(suite ${suites})
     endif()
     string(REPLACE / . result "${suite}")
     string(
-        APPEND
-        tests
+        APPEND tests
         "add_test([=[${suite}]=] [=[${PROGRAM}]=] [=[--gtest_filter=${suite}.*]=])\n"
         "set_tests_properties([=[${suite}]=] PROPERTIES LABELS ${label} TIMEOUT 900\n"
         "    ENVIRONMENT [=[GTEST_OUTPUT=xml:${RESULTS}/${result}.xml]=])\n"
