@@ -65,7 +65,7 @@ void add_stopping(CLI::App& app, Options& options) {
                    "gets as many paths as it needs")
         ->check(CLI::Range(1e-6, 1.0));
     app.add_option("--write-partial-images", options.preview_seconds,
-                   "write the picture as it is every so many seconds")
+                   "write the picture as it is after the first path and every so many seconds")
         ->check(CLI::Range(0.0, 1e9));
     app.add_option("--display-server", options.display_server,
                    "show the picture as it grows in a viewer with the protocol of tev, at HOST or HOST:PORT");

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <utility>
 
 #include "samples/path_tracer/display.h"
 #include "samples/path_tracer/film_file.h"
@@ -138,6 +139,9 @@ class FilmRenderer {
         last_round_ = time_.elapsed() - start;
     }
 
+    // The first one comes at once.
+    bool is_preview_due() const { return options_.preview_seconds && (!has_preview_ || preview_.is_due()); }
+
     void read() {
         const double start = time_.elapsed();
         session_.renderer->read(result_.film);
@@ -147,10 +151,13 @@ class FilmRenderer {
     }
 
     void write_what_is_due() {
-        if (preview_.is_due() && ranks_.index() == 0) {
+        if (is_preview_due() && ranks_.index() == 0) {
             read();
             write_output();
             preview_.restart();
+            if (!std::exchange(has_preview_, true) && !options_.quiet)
+                std::fprintf(stderr, "%s: there after %.1f s, coarse; it is replaced by better ones\n",
+                             options_.output.string().c_str(), time_.elapsed());
         }
         if (display_ && display_due_.is_due()) {
             read();
@@ -214,6 +221,7 @@ class FilmRenderer {
     Interrupts interrupts_;
     Rendering result_;
     double error_, last_round_ = 0;
+    bool has_preview_ = false;
     Timer time_{std::nullopt}, estimate_, preview_, checkpoint_, display_due_;
     std::optional<Display> display_;
     RoundProgress progress_;

@@ -14,7 +14,7 @@ namespace twinray {
 namespace {
 
 using test::down;
-using test::error_of;
+using test::error_if_any;
 using test::square;
 
 class Accel : public test::AccelTest {};
@@ -248,7 +248,8 @@ TEST_P(Accel, ADeadHandleIsRefusedByEveryCallThatNeedsALiveOne) {
         [&] { static_cast<void>(accel().get_instances(dead)); },
     };
     for (const std::function<void()>& call : calls)
-        EXPECT_NE(error_of(call).find(text("handle ", dead.id, " is not alive")), std::string::npos) << error_of(call);
+        EXPECT_NE(error_if_any(call).find(text("handle ", dead.id, " is not alive")), std::string::npos)
+            << error_if_any(call);
     EXPECT_FALSE(accel().erase(dead));
     EXPECT_EQ(accel().n_instances(dead), 0u);
 }
@@ -339,7 +340,7 @@ TEST_P(Accel, WrongUseNamesTheObjectTheValueAndTheLimitAndChangesNothing) {
         {[&] { accel().update_transform({~0ull}, {}); }, "handle 18446744073709551615 is not alive"},
     };
     for (const auto& [action, expected] : cases)
-        EXPECT_NE(error_of(action).find(expected), std::string::npos) << error_of(action);
+        EXPECT_NE(error_if_any(action).find(expected), std::string::npos) << error_if_any(action);
     EXPECT_EQ(accel().n_instances(), 2u);
     EXPECT_EQ(accel().view().revision, view.revision) << "no edit is pending";
     EXPECT_EQ(accel().get_instance(pair, 0).transform, Transform{});
@@ -348,14 +349,15 @@ TEST_P(Accel, WrongUseNamesTheObjectTheValueAndTheLimitAndChangesNothing) {
 
 TEST_P(Accel, StaleViewsAreRefused) {
     const AccelHandle handle = accel().push(square(0));
-    EXPECT_NE(error_of([&] { accel().view(); }).find("sync"), std::string::npos);
+    EXPECT_NE(error_if_any([&] { accel().view(); }).find("sync"), std::string::npos);
     accel().sync();
     const AccelView stale = accel().view();
     accel().update(handle, square(1));
     accel().sync();
     Commands commands(context(), "stale");
-    EXPECT_NE(error_of([&] { accel().trace(commands, stale, {.rays = {16}, .hits = {16}, .count = 1}); }).find("stale"),
-              std::string::npos);
+    EXPECT_NE(
+        error_if_any([&] { accel().trace(commands, stale, {.rays = {16}, .hits = {16}, .count = 1}); }).find("stale"),
+        std::string::npos);
 }
 
 TEST_P(Accel, ViewsOfAnotherAcceleratorAreRefused) {
@@ -366,7 +368,7 @@ TEST_P(Accel, ViewsOfAnotherAcceleratorAreRefused) {
     }
     Commands commands(context(), "foreign");
     const TraceDesc desc{.rays = {16}, .hits = {16}, .count = 1};
-    EXPECT_NE(error_of([&] { accel().trace(commands, other->view(), desc); }).find("another accelerator"),
+    EXPECT_NE(error_if_any([&] { accel().trace(commands, other->view(), desc); }).find("another accelerator"),
               std::string::npos);
 }
 
@@ -387,7 +389,7 @@ TEST_P(Accel, TraceRefusesAddressesAndCountsItCannotServe) {
         {{.rays = {16}, .hits = {16}, .count = 1ull << 32}, "4294967296 rays; at most 4294967295"},
     };
     for (const auto& [desc, expected] : cases) {
-        const std::string what = error_of([&, refused = desc] { accel().trace(commands, view, refused); });
+        const std::string what = error_if_any([&, refused = desc] { accel().trace(commands, view, refused); });
         EXPECT_NE(what.find(expected), std::string::npos) << what;
     }
     accel().trace(commands, view, {.rays = {}, .hits = {}, .count = 0});
@@ -529,9 +531,9 @@ TEST_P(Accel, InstancesComeAndGoOneByOne) {
     EXPECT_EQ(accel().index_in_handle(closest(down(4.5f, 0.25f))), 1u);
     EXPECT_EQ(closest(down(20.5f, 0.25f)).t, 5.0f);
     EXPECT_EQ(accel().get_instance(handle, 1).options, options[1]);
-    EXPECT_NE(error_of([&] { accel().erase_instance(handle, 2); }).find("index 2 of the 2 instances"),
+    EXPECT_NE(error_if_any([&] { accel().erase_instance(handle, 2); }).find("index 2 of the 2 instances"),
               std::string::npos);
-    EXPECT_NE(error_of([&] { accel().append_instances(handle, places, options); }).find("2 instance options for 3"),
+    EXPECT_NE(error_if_any([&] { accel().append_instances(handle, places, options); }).find("2 instance options for 3"),
               std::string::npos);
     accel().erase_instance(handle, 1);
     accel().erase_instance(handle, 0);
@@ -566,7 +568,7 @@ TEST_P(Accel, HandlesShareAGeometry) {
     accel().update_transforms(second, std::array{Transform{}, Transform::translation({4, 0, 1})});
     EXPECT_EQ(closest(down(0.5f, 0.25f)).t, 6.0f);
     EXPECT_EQ(closest(down(4.5f, 0.25f)).t, 5.0f);
-    EXPECT_NE(error_of([&] { accel().push_instances_of(first, here); }).find("is not alive"), std::string::npos);
+    EXPECT_NE(error_if_any([&] { accel().push_instances_of(first, here); }).find("is not alive"), std::string::npos);
     EXPECT_TRUE(accel().erase(second));
     EXPECT_EQ(closest(down(0.5f, 0.25f)).hit, 0u);
     EXPECT_EQ(accel().n_geometries(), 0u);
@@ -576,7 +578,7 @@ TEST_P(Accel, AHandleHasTheBoxOfItsGeometry) {
     Mesh mesh = make_box(vec3(-1, -2, -3), vec3(4, 5, 6));
     mesh.positions.push_back(vec3(100));  // of no triangle
     const AccelHandle handle = accel().push(mesh, Transform::translation({50, 0, 0})), empty = accel().push(Mesh{});
-    EXPECT_NE(error_of([&] { accel().object_bound(handle); }).find("edits are pending"), std::string::npos);
+    EXPECT_NE(error_if_any([&] { accel().object_bound(handle); }).find("edits are pending"), std::string::npos);
     accel().sync();
     EXPECT_EQ(accel().object_bound(handle).lo, vec3(-1, -2, -3));
     EXPECT_EQ(accel().object_bound(handle).hi, vec3(4, 5, 6));
@@ -585,8 +587,9 @@ TEST_P(Accel, AHandleHasTheBoxOfItsGeometry) {
 
 TEST_P(Accel, KernelsMoveInstancesInTheirBuffer) {
     const AccelHandle handle = accel().push(square(0), std::vector<Transform>(2));
-    EXPECT_NE(error_of([&] { accel().instance_buffer(handle); }).find("call sync() first"), std::string::npos);
-    EXPECT_NE(error_of([&] { accel().mark_transforms_dirty(handle); }).find("call sync() first"), std::string::npos);
+    EXPECT_NE(error_if_any([&] { accel().instance_buffer(handle); }).find("call sync() first"), std::string::npos);
+    EXPECT_NE(error_if_any([&] { accel().mark_transforms_dirty(handle); }).find("call sync() first"),
+              std::string::npos);
     accel().sync();
     const InstanceRange range = accel().instance_buffer(handle);
     EXPECT_EQ(range.count, 2u);
@@ -662,7 +665,7 @@ TEST_P(Accel, InstancesTellTheirState) {
     accel().update_transform(handle, {});
     EXPECT_EQ(accel().get_instances(handle).size(), 1u);
     EXPECT_EQ(accel().get_instance(handle, 0).options.custom_index, 9u);
-    EXPECT_NE(error_of([&] { accel().get_instance(handle, 1); }).find("index 1 of the 1"), std::string::npos);
+    EXPECT_NE(error_if_any([&] { accel().get_instance(handle, 1); }).find("index 1 of the 1"), std::string::npos);
 }
 
 // The square faces up: a ray down sees its front, the ray up its back.
@@ -695,8 +698,8 @@ TEST_P(Accel, OptionsOfAnInstanceChangeWhereItStands) {
         EXPECT_EQ(closest(ray).t, 5.0f);
         EXPECT_EQ(closest(ray).custom_index, 80u);
     }
-    EXPECT_NE(error_of([&] { accel().update_options(handle, 2, {}); }).find("index 2 of the 2"), std::string::npos);
-    EXPECT_NE(error_of([&] { accel().update_options(handle, 0, {.custom_index = 1u << 24}); }).find("24 bits"),
+    EXPECT_NE(error_if_any([&] { accel().update_options(handle, 2, {}); }).find("index 2 of the 2"), std::string::npos);
+    EXPECT_NE(error_if_any([&] { accel().update_options(handle, 0, {.custom_index = 1u << 24}); }).find("24 bits"),
               std::string::npos);
     accel().erase(handle);
     EXPECT_THROW(accel().update_options(handle, 0, {}), Error);

@@ -103,7 +103,8 @@ inline std::string name_of_kind(const ::testing::TestParamInfo<Kind>& info) {
 inline Mesh square(float z) { return make_quad(vec3(0, 0, z), vec3(1, 0, 0), vec3(0, 1, 0)); }
 inline Ray down(float x, float y) { return {vec3(x, y, 10), 0, vec3(0, 0, -1), INFINITY}; }
 
-inline std::string error_of(const std::function<void()>& action) {
+// What the Error that it throws says; "" where it throws none.
+inline std::string error_if_any(const std::function<void()>& action) {
     try {
         action();
     } catch (const Error& error) {

@@ -14,7 +14,7 @@ namespace twinray {
 namespace {
 
 using test::down;
-using test::error_of;
+using test::error_if_any;
 using test::square;
 
 // A mesh in device memory in one of the forms that a DeviceMesh may have.
@@ -217,7 +217,7 @@ TEST_P(DeviceMeshTest, InPlaceItFollowsWhatKernelsWrite) {
         expect_hits_of(moved, "moved in place");
         EXPECT_EQ(accel().revision(), view.revision);
     }
-    EXPECT_NE(error_of([&] {
+    EXPECT_NE(error_if_any([&] {
                   accel().update_vertices(handle, device.vertices.ref<float>(), mesh.positions.size());
               }).find("mark_vertices_dirty"),
               std::string::npos);
@@ -289,7 +289,7 @@ TEST_P(DeviceMeshTest, WhatCannotBeIsRefused) {
     const auto refused = [&](const char* why, const std::function<void(DeviceMesh&)>& change) {
         DeviceMesh other = device.mesh;
         change(other);
-        const std::string error = error_of([&] { accel().push(other); });
+        const std::string error = error_if_any([&] { accel().push(other); });
         EXPECT_NE(error.find("mesh 'on device'"), std::string::npos) << why << ": " << error;
         EXPECT_NE(error.find(why), std::string::npos) << why << ": " << error;
     };

@@ -8,7 +8,7 @@
 namespace twinray {
 namespace {
 
-using test::error_of;
+using test::error_if_any;
 
 class DeviceSurfaces : public test::SurfacesTest {
   protected:
@@ -86,7 +86,7 @@ TEST_P(DeviceSurfaces, WhatCannotBeIsRefused) {
     add(make_icosphere(1), 1);
     Arrays arrays = on_device(placed_.front().shape);
     const auto refused = [&](const char* why) {
-        const std::string error = error_of([&] { accel().push(arrays.mesh); });
+        const std::string error = error_if_any([&] { accel().push(arrays.mesh); });
         EXPECT_NE(error.find(why), std::string::npos) << error;
     };
     std::vector<DeviceAttribute> wrong = {{"normals", 4, false, {16}}};

@@ -195,7 +195,7 @@ TEST_P(FeaturesOfAccel, WhatMayNotMoveDoesNot) {
     accel().sync();
     const Transform transform;
     const auto refused = [](const std::function<void()>& action) {
-        return test::error_of(action).find("can_move = false") != std::string::npos;
+        return test::error_if_any(action).find("can_move = false") != std::string::npos;
     };
     EXPECT_TRUE(refused([&] { accel().update_transform(handle, transform); }));
     EXPECT_TRUE(refused([&] { accel().update_transform_at(handle, 0, transform); }));

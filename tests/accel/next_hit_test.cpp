@@ -100,7 +100,7 @@ TEST_P(NextHit, AKernelThatTheDeviceCannotRunIsRefused) {
                                               test_next_hit_hw_spirv);
     };
     if (accel().capability(Feature::kernel_queries).support != Support::unsupported) return make();
-    EXPECT_NE(error_of(make).find("next hits: queries in kernels is unsupported"), std::string::npos);
+    EXPECT_NE(error_if_any(make).find("next hits: queries in kernels is unsupported"), std::string::npos);
 }
 
 }  // namespace

@@ -89,10 +89,11 @@ TEST_P(SurfaceUse, OfASharedGeometryAreEachHandles) {
 TEST_P(SurfaceUse, WrongUseIsNamed) {
     Mesh mesh = test::square(0);
     mesh.uvs = {vec2(0), vec2(1)};
-    EXPECT_EQ(test::error_of([&] { accel().push(mesh); }), "mesh 'quad': 2 entries of 'uv0' for 4 vertices");
+    EXPECT_EQ(test::error_if_any([&] { accel().push(mesh); }), "mesh 'quad': 2 entries of 'uv0' for 4 vertices");
     mesh.uvs.clear();
     mesh.materials = {1};
-    EXPECT_EQ(test::error_of([&] { accel().push(mesh); }), "mesh 'quad': 1 entries of 'face_metadata' for 2 triangles");
+    EXPECT_EQ(test::error_if_any([&] { accel().push(mesh); }),
+              "mesh 'quad': 1 entries of 'face_metadata' for 2 triangles");
     mesh.materials.clear();
     const std::vector<float> four(4), eight(8);
     const auto push_with = [&](const AttributeView& attribute, const AttributeView& second = {}) {
@@ -101,35 +102,35 @@ TEST_P(SurfaceUse, WrongUseIsNamed) {
         view.attributes = std::span(both, second.name.empty() ? 1 : 2);
         accel().push(view);
     };
-    EXPECT_EQ(test::error_of([&] {
+    EXPECT_EQ(test::error_if_any([&] {
                   push_with({"heat", 3, false, four});
               }),
               "mesh 'quad': 4 entries of 'heat' for 12 vertices, times its components");
-    EXPECT_EQ(test::error_of([&] {
+    EXPECT_EQ(test::error_if_any([&] {
                   push_with({"heat", 5, false, four});
               }),
               "mesh 'quad': attribute 'heat' has 5 components; 1 to 4 fit");
-    EXPECT_EQ(test::error_of([&] {
+    EXPECT_EQ(test::error_if_any([&] {
                   push_with({"uv0", 1, false, four});
               }),
               "mesh 'quad': an attribute's name, 'uv0', is taken");
-    EXPECT_EQ(test::error_of([&] {
+    EXPECT_EQ(test::error_if_any([&] {
                   push_with({"a", 1, false, four}, {"a", 2, false, eight});
               }),
               "mesh 'quad': an attribute's name, 'a', is taken");
-    EXPECT_EQ(test::error_of([&] {
+    EXPECT_EQ(test::error_if_any([&] {
                   push_with({"", 1, false, four});
               }),
               "mesh 'quad': an attribute's name, '', is empty");
     EXPECT_EQ(accel().n_geometries(), 0u);
-    EXPECT_NE(test::error_of([&] { accel().attribute_number("heat"); }).find("'heat'"), std::string::npos)
+    EXPECT_NE(test::error_if_any([&] { accel().attribute_number("heat"); }).find("'heat'"), std::string::npos)
         << "what was refused left nothing";
 
     accel().push(mesh);
     const Ray ray = test::down(0.5f, 0.25f);
     Hit hit = closest(ray);
     const auto error_with = [&](const Hit& wrong) {
-        return test::error_of([&] { accel().surfaces({&ray, 1}, {&wrong, 1}); });
+        return test::error_if_any([&] { accel().surfaces({&ray, 1}, {&wrong, 1}); });
     };
     EXPECT_EQ(error_with(hit), "");
     Hit wrong = hit;
@@ -138,16 +139,19 @@ TEST_P(SurfaceUse, WrongUseIsNamed) {
     wrong = hit;
     wrong.primitive_index = 2;
     EXPECT_NE(error_with(wrong).find("primitive 2 of 2"), std::string::npos);
-    EXPECT_NE(test::error_of([&] { accel().surfaces({&ray, 1}, {}); }).find("1 rays for 0 hits"), std::string::npos);
+    EXPECT_NE(test::error_if_any([&] {
+                  accel().surfaces({&ray, 1}, {});
+              }).find("1 rays for 0 hits"),
+              std::string::npos);
     wrong = {};
-    EXPECT_NE(test::error_of([&] { accel().handle_of(wrong); }).find("a miss"), std::string::npos);
+    EXPECT_NE(test::error_if_any([&] { accel().handle_of(wrong); }).find("a miss"), std::string::npos);
     accel().push(mesh);
     EXPECT_NE(error_with(hit).find("sync"), std::string::npos) << "edits are pending";
 
     const auto without = make_accel({.compiles_in_background = false});
     without->push(mesh);
     hit = without->closest_hits({&ray, 1}).front();
-    EXPECT_NE(test::error_of([&] {
+    EXPECT_NE(test::error_if_any([&] {
                   without->surfaces({&ray, 1}, {&hit, 1});
               }).find("keeps_surfaces"),
               std::string::npos);

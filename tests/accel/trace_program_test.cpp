@@ -13,7 +13,7 @@ namespace twinray {
 namespace {
 
 using test::down;
-using test::error_of;
+using test::error_if_any;
 using test::square;
 
 struct Sphere {
@@ -187,27 +187,27 @@ TEST_P(Program, WhatNoProgramCanMeetIsRefused) {
     const AccelHandle handle = accel().push(BoxesView{"box", std::span(&box, 1)});
     const Ray ray = down(0.5f, 0.5f);
     const auto trace = [&](const TraceDesc& desc) { accel().closest_hits(std::span(&ray, 1), desc); };
-    EXPECT_NE(error_of([&] { trace({}); }).find("the scene has boxes"), std::string::npos);
+    EXPECT_NE(error_if_any([&] { trace({}); }).find("the scene has boxes"), std::string::npos);
     const auto filters_only = accel().make_program(test_program, FEATURE_FILTERS);
-    EXPECT_NE(error_of([&] { trace({.program = filters_only.get()}); }).find("'test_program' is not specialised"),
+    EXPECT_NE(error_if_any([&] { trace({.program = filters_only.get()}); }).find("'test_program' is not specialised"),
               std::string::npos);
     const std::unique_ptr<AbstractAccel> other = make_accel();
     const auto foreign = other->make_program(test_program);
-    EXPECT_NE(error_of([&] { trace({.program = foreign.get()}); }).find("made by another accelerator"),
+    EXPECT_NE(error_if_any([&] { trace({.program = foreign.get()}); }).find("made by another accelerator"),
               std::string::npos);
     accel().erase(handle);
     accel().push(square(0), Transform{}, {.non_opaque = true});
-    EXPECT_NE(error_of([&] { trace({}); }).find("non-opaque instances"), std::string::npos);
+    EXPECT_NE(error_if_any([&] { trace({}); }).find("non-opaque instances"), std::string::npos);
 }
 
 TEST_P(Program, BoxesMustBeFiniteAndNotEmpty) {
     const std::vector<Bounds> boxes = {{vec3(0), vec3(1)}, {vec3(0, 2, 0), vec3(1, 1, 1)}};
-    EXPECT_NE(error_of([&] {
+    EXPECT_NE(error_if_any([&] {
                   accel().push(BoxesView{"b", boxes});
               }).find("box 1 from (0, 2, 0) to (1, 1, 1)"),
               std::string::npos);
     const std::vector<Bounds> wild = {{vec3(0), vec3(1, 1, INFINITY)}};
-    EXPECT_NE(error_of([&] { accel().push(BoxesView{"b", wild}); }).find("must be finite"), std::string::npos);
+    EXPECT_NE(error_if_any([&] { accel().push(BoxesView{"b", wild}); }).find("must be finite"), std::string::npos);
     EXPECT_EQ(accel().n_geometries(), 0u);
 }
 
@@ -230,8 +230,8 @@ TEST_P(Program, LevelsThatAreUnsupportedAreRefused) {
     const Ray ray = down(0.3f, 0.6f);
     for (const Level level : {Level::fast, Level::watertight, Level::refined, Level::certified}) {
         const bool is_unsupported = accel().capability(feature_of(level)).support == Support::unsupported;
-        const std::string error =
-            error_of([&] { EXPECT_EQ(accel().closest_hits(std::span(&ray, 1), {.level = level}).front().t, 10.0f); });
+        const std::string error = error_if_any(
+            [&] { EXPECT_EQ(accel().closest_hits(std::span(&ray, 1), {.level = level}).front().t, 10.0f); });
         EXPECT_EQ(error.find("is unsupported") != std::string::npos, is_unsupported) << error;
         EXPECT_EQ(error.empty(), level <= accel().options().level) << error;
     }

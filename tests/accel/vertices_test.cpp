@@ -12,7 +12,7 @@ namespace twinray {
 namespace {
 
 using test::down;
-using test::error_of;
+using test::error_if_any;
 using test::square;
 
 class Vertices : public test::AccelTest {
@@ -262,7 +262,7 @@ TEST_P(Vertices, WrongUseNamesTheObjectTheValueAndTheLimitAndChangesNothing) {
         {[&] { accel().update_vertices(boxes, std::span<const vec3>{}); }, "holds boxes, 'crate'"},
     };
     for (const auto& [action, expected] : cases)
-        EXPECT_NE(error_of(action).find(expected), std::string::npos) << error_of(action);
+        EXPECT_NE(error_if_any(action).find(expected), std::string::npos) << error_if_any(action);
     EXPECT_EQ(accel().view().revision, view.revision) << "no edit is pending";
 }
 

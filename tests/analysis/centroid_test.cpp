@@ -111,21 +111,21 @@ TEST_P(CentroidRulesTest, NothingHitIsNoMean) {
 
 TEST_P(CentroidRulesTest, WrongUseSaysWhatIsWrong) {
     fill(scene_of({make_icosphere(0)}));
-    EXPECT_NE(error_of([&] {
+    EXPECT_NE(error_if_any([&] {
                   centroid(accel(), scene_of({square(0)}), centroids_along({0, 0, -1}, 9));
               }).find("its instance 0 has 20 primitives and the scene's 2 triangles"),
               std::string::npos);
-    EXPECT_NE(error_of([&] {
+    EXPECT_NE(error_if_any([&] {
                   centroid(accel(), Scene(), centroids_along({0, 0, -1}, 9));
               }).find("has 1 instances"),
               std::string::npos);
-    EXPECT_NE(error_of([&] {
+    EXPECT_NE(error_if_any([&] {
                   centroid(accel(), scene_of({make_icosphere(0)}), centroids_along({0, INFINITY, -1}, 9));
               }).find("finite"),
               std::string::npos);
     const Scene vast = scene_of({make_quad(vec3(-3.4e38f, 0, 0), vec3(3.4e38f, 0, 0), vec3(0, 3e38f, 0))});
     fill(vast);
-    EXPECT_NE(error_of([&] {
+    EXPECT_NE(error_if_any([&] {
                   centroid(accel(), vast, centroids_along({1, 0, 0.1}, 9));
               }).find("float32 ends"),
               std::string::npos);

@@ -162,7 +162,7 @@ TEST_P(AnalysesOfMovedAccels, FacesOfBeforeAndOfOthersAreRefused) {
     accel().update_transform(handles[2], Transform{});
     EXPECT_FALSE(faces.is_current(accel()));
     const auto expect_refused = [](const std::function<void()>& action, const char* why) {
-        EXPECT_NE(error_of(action).find(why), std::string::npos) << error_of(action);
+        EXPECT_NE(error_if_any(action).find(why), std::string::npos) << error_if_any(action);
     };
     expect_refused([&] { illuminate(accel(), faces, {}); }, "illumination: the faces are of before its last sync");
     expect_refused([&] { sky_light(accel(), faces, {0, 1, 0}, {}); }, "before its last sync");

@@ -175,7 +175,7 @@ TEST_P(SkyRulesTest, FacesWithoutAreaReceiveNothing) {
 TEST_P(SkyRulesTest, WrongUseSaysWhatIsWrong) {
     const Scene scene = scene_of({square(0)});
     const auto error = [&](const SunPosition& position, uint samples) {
-        return error_of([&] { hours(scene, {position}, {.samples = samples}); });
+        return error_if_any([&] { hours(scene, {position}, {.samples = samples}); });
     };
     EXPECT_NE(error({{0, 0, 0}, 1}, 5).find("direction (0, 0, 0) must be"), std::string::npos);
     EXPECT_NE(error({{0, 0, 1}, -1}, 5).find("-1 hours"), std::string::npos);
@@ -184,10 +184,10 @@ TEST_P(SkyRulesTest, WrongUseSaysWhatIsWrong) {
     EXPECT_NE(error({{0, 0, 1}, 1}, 1048577).find("1048577 of each"), std::string::npos);
     EXPECT_EQ(error({{0, 0, 1e-200}, 0}, 1), "");
     const Faces faces(context(), scene);
-    EXPECT_NE(error_of([&] { sky_light(accel(), scene, faces, dvec3(0), {}); }).find("must be finite"),
+    EXPECT_NE(error_if_any([&] { sky_light(accel(), scene, faces, dvec3(0), {}); }).find("must be finite"),
               std::string::npos);
     fill(scene_of({square(0), square(1)}));
-    EXPECT_NE(error_of([&] { sky_light(accel(), scene, faces, zenith, {}); }).find("it has 2 instances"),
+    EXPECT_NE(error_if_any([&] { sky_light(accel(), scene, faces, zenith, {}); }).find("it has 2 instances"),
               std::string::npos);
 }
 

@@ -274,7 +274,7 @@ TEST_P(ViewFactorsTest, AnAcceleratorOfAnotherSceneIsRefused) {
     const auto refusal_of = [&](const Scene& other) {
         const auto accel = make_accel();
         push_scene(*accel, other);
-        return test::error_of([&] { ViewFactors(*accel, faces, {}); });
+        return test::error_if_any([&] { ViewFactors(*accel, faces, {}); });
     };
     EXPECT_EQ(refusal_of(scene), "");
     Scene more = scene;
@@ -288,17 +288,18 @@ TEST_P(ViewFactorsTest, AnAcceleratorOfAnotherSceneIsRefused) {
     push_scene(*accel, scene);
     ViewFactors factors(*accel, faces, {});
     accel->push(make_icosphere(0));
-    EXPECT_NE(test::error_of([&] { factors.rows(0, 1); }).find("it has 3 instances"), std::string::npos);
+    EXPECT_NE(test::error_if_any([&] { factors.rows(0, 1); }).find("it has 3 instances"), std::string::npos);
     const std::string refusal =
-        test::error_of([&] { exchanges_of_pairs(*accel, scene, faces, {}, PairEstimator::area, nullptr); });
+        test::error_if_any([&] { exchanges_of_pairs(*accel, scene, faces, {}, PairEstimator::area, nullptr); });
     EXPECT_NE(refusal.find("exchanges of pairs: it has 3 instances"), std::string::npos) << refusal;
 }
 
 TEST_P(ViewFactorsTest, OptionsOutOfRangeAreRefused) {
     const Scene scene = test::parallel_squares(1);
-    EXPECT_NE(test::error_of([&] { rows(scene, {.rays = 0}); }).find("0 rays a row"), std::string::npos);
-    EXPECT_NE(test::error_of([&] { rows(scene, {.target_error = -1}); }).find("target error of -1"), std::string::npos);
-    EXPECT_NE(test::error_of([&] { rows(scene, {.target_error = NAN}); }).find("target error"), std::string::npos);
+    EXPECT_NE(test::error_if_any([&] { rows(scene, {.rays = 0}); }).find("0 rays a row"), std::string::npos);
+    EXPECT_NE(test::error_if_any([&] { rows(scene, {.target_error = -1}); }).find("target error of -1"),
+              std::string::npos);
+    EXPECT_NE(test::error_if_any([&] { rows(scene, {.target_error = NAN}); }).find("target error"), std::string::npos);
 }
 
 }  // namespace

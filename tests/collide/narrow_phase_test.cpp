@@ -220,12 +220,12 @@ TEST_F(NarrowPhaseTest, NothingAndWhatIsNotFinite) {
 }
 
 TEST_F(NarrowPhaseTest, WrongUseIsAnError) {
-    using test::error_of;
+    using test::error_if_any;
     const Soup ball = test::sphere(1);
-    EXPECT_EQ(error_of([&] { find({ball.view()}, {{0, {}}, {1, {}}}); }), "collide: instance 1 is of mesh 1 of 1");
+    EXPECT_EQ(error_if_any([&] { find({ball.view()}, {{0, {}}, {1, {}}}); }), "collide: instance 1 is of mesh 1 of 1");
     narrow_phase().set_max_pairs(100);
-    EXPECT_NE(error_of([&] { find({ball.view()}, {{0, {}}, {0, {}}}); }).find("at most 100"), std::string::npos);
-    EXPECT_NE(error_of([&] {
+    EXPECT_NE(error_if_any([&] { find({ball.view()}, {{0, {}}, {0, {}}}); }).find("at most 100"), std::string::npos);
+    EXPECT_NE(error_if_any([&] {
                   const TrianglePair pair{test::triangle_of(dvec3(NAN), dvec3(0), dvec3(1)), {}};
                   narrow_phase().classify(std::span(&pair, 1));
               }).find("pair 0"),

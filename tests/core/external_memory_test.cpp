@@ -10,7 +10,7 @@ namespace twinray {
 namespace {
 
 using test::down;
-using test::error_of;
+using test::error_if_any;
 using test::square;
 
 class SharedMemory : public test::AccelTest {
@@ -52,16 +52,17 @@ TEST_P(SharedMemory, AMeshOfAnotherDeviceIsTracedAndFollowsIt) {
 TEST_P(SharedMemory, WhatCannotBeSharedIsRefused) {
     if (!context().properties().external_memory_fd) TWINRAY_LACKS("external_memory", "no VK_KHR_external_memory_fd");
     const Buffer own(context(), {.name = "own", .bytes = 64});
-    EXPECT_NE(error_of([&] { own.exported(); }).find("buffer 'own' is not exportable"), std::string::npos);
-    EXPECT_NE(error_of([&] {
+    EXPECT_NE(error_if_any([&] { own.exported(); }).find("buffer 'own' is not exportable"), std::string::npos);
+    EXPECT_NE(error_if_any([&] {
                   Buffer::exportable(context(), {.name = "mapped", .bytes = 64, .memory = Memory::upload});
               }).find("buffer 'mapped' to be shared: only memory of the device"),
               std::string::npos);
-    EXPECT_NE(error_of([&] { Buffer::imported(context(), {.name = "none", .bytes = 64}, {}); }).find("descriptor -1"),
-              std::string::npos);
+    EXPECT_NE(
+        error_if_any([&] { Buffer::imported(context(), {.name = "none", .bytes = 64}, {}); }).find("descriptor -1"),
+        std::string::npos);
     const Buffer small = Buffer::exportable(context(), {.name = "small", .bytes = 64});
     const ExportedMemory exported = small.exported();
-    EXPECT_NE(error_of([&] {
+    EXPECT_NE(error_if_any([&] {
                   Buffer::imported(context(), {.name = "large", .bytes = 1 << 20}, exported);
               }).find("bytes were exported; 1048576 are needed"),
               std::string::npos);

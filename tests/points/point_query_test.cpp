@@ -50,7 +50,7 @@ class PointQueryTest : public test::VulkanTest {
         std::vector<std::size_t> wrong(points.size(), 0);
         parallel_for(points.size(), [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
-                errors[i] = error_of(points[i], found[i]);
+                errors[i] = error_if_any(points[i], found[i]);
                 wrong[i] = !std::isfinite(errors[i].of_double);
             }
         });
@@ -64,7 +64,7 @@ class PointQueryTest : public test::VulkanTest {
     }
 
   private:
-    Errors error_of(const dvec3& point, const ClosestPoint& found) const {
+    Errors error_if_any(const dvec3& point, const ClosestPoint& found) const {
         const auto is_found = [&](const PlacedTriangle& each) {
             return each.instance == found.instance && each.triangle == found.triangle;
         };

@@ -3,6 +3,7 @@
 
 #include <cstdlib>
 #include <string_view>
+#include <utility>
 
 #include "engine/core/error.h"
 
@@ -28,30 +29,32 @@ std::unique_ptr<Context> make_context(ContextDesc desc) {
 
 namespace {
 
-// The one that is kept for the next test.
+// One that is kept for the tests to come.
 struct SharedContext {
     std::shared_ptr<Context> context;
     std::shared_ptr<std::vector<std::string>> log;
     ContextDesc desc;
 
     bool fits(const ContextDesc& other) const {
-        return context && other.use_ray_query == desc.use_ray_query &&
+        return other.use_ray_query == desc.use_ray_query &&
                other.use_ray_tracing_pipeline == desc.use_ray_tracing_pipeline && other.tuning == desc.tuning;
     }
-    // Fails on what is said meanwhile.
-    void let_go() {
-        if (!context) return;
-        log->clear();
-        context.reset();
-        for (const std::string& message : *log) ADD_FAILURE() << message;
+};
+std::vector<SharedContext> shared_contexts;  // parameters of a suite take turns
+
+// Fails on what is said meanwhile.
+void let_go(SharedContext shared) {
+    shared.log->clear();
+    shared.context.reset();
+    for (const std::string& message : *shared.log) ADD_FAILURE() << message;
+}
+
+class LetsGoOfSharedContexts : public ::testing::Environment {
+    void TearDown() override {
+        for (SharedContext& shared : std::exchange(shared_contexts, {})) let_go(std::move(shared));
     }
 };
-SharedContext shared_context;
-
-class LetsGoOfSharedContext : public ::testing::Environment {
-    void TearDown() override { shared_context.let_go(); }
-};
-[[maybe_unused]] const auto* const lets_go = ::testing::AddGlobalTestEnvironment(new LetsGoOfSharedContext);
+[[maybe_unused]] const auto* const lets_go = ::testing::AddGlobalTestEnvironment(new LetsGoOfSharedContexts);
 
 }  // namespace
 
@@ -59,19 +62,18 @@ void VulkanTest::SetUp() {
     ContextDesc desc = context_desc();
     // A driver of the test's own, or submissions cut short, are for it alone.
     shares_ = shares_context() && !desc.get_instance_proc_addr && !desc.most_submission_seconds;
-    if (shares_ && shared_context.fits(desc)) {
-        context_ = shared_context.context;
-        log_ = shared_context.log;
-        log_->clear();
-        return;
-    }
+    for (const SharedContext& shared : shared_contexts)
+        if (shares_ && shared.fits(desc)) {
+            context_ = shared.context;
+            log_ = shared.log;
+            log_->clear();
+            return;
+        }
     log_ = std::make_shared<std::vector<std::string>>();
     desc.log = [log = log_](std::string_view message) { log->emplace_back(message); };
     context_ = make_context(desc);
     if (!context_ && HasFailure()) FAIL() << "no device";
-    if (!shares_) return;
-    shared_context.let_go();
-    shared_context = {context_, log_, desc};
+    if (context_ && shares_) shared_contexts.push_back({context_, log_, desc});
 }
 
 bool VulkanTest::was_logged(const std::string& part) const {
@@ -84,8 +86,8 @@ void VulkanTest::TearDown() {
     if (!context_) return;
     const std::size_t logged = log_->size();
     for (const std::string& message : context_->validation_messages()) ADD_FAILURE() << message;
+    if (shares_ && HasFailure()) std::erase_if(shared_contexts, [&](const auto& it) { return it.context == context_; });
     context_.reset();
-    if (shares_ && HasFailure()) shared_context.let_go();
     for (std::size_t i = logged; i < log_->size(); ++i) ADD_FAILURE() << (*log_)[i];
 }
 
