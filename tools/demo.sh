@@ -3,14 +3,14 @@
 # From a checkout to a picture: installs the packages, builds path_tracer and what it links, renders a scene with the
 # faster accelerator of this device, and lets the other one check its rays.
 #   tools/demo.sh [SCENE]         SCENE: .gltf, .glb, .obj, .ply or .stl; without it a sunflower of beads, made by formula
-#   TWINRAY_DEMO_SECONDS=N        how long to render: 60 unless it is set; a coarse picture is there after seconds
+#   TWINRAY_DEMO_SECONDS=N        how long to render: 100 unless it is set; a coarse picture is there after seconds
 set -euo pipefail
 
 bin=build/release/bin
 out=out
 picture=$out/demo.png
 report=$out/demo_cross_check.txt
-seconds=${TWINRAY_DEMO_SECONDS-60}
+seconds=${TWINRAY_DEMO_SECONDS-100}
 
 scene=builtin:sunflower
 if [[ $# -gt 1 || ${1-} == -* ]]; then
@@ -32,7 +32,7 @@ mkdir -p "$out"
 
 section "Render $(basename "$scene") for $seconds s"
 "$bin/path_tracer" "$scene" -o "$picture" --width 960 --height 540 --time "$seconds" --seed 1 \
-    --write-partial-images 10
+    --write-partial-images 30
 
 section "Cross-check: every ray of a small picture by both accelerators, differences against float64"
 fault=0
