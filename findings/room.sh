@@ -1,7 +1,7 @@
 # shellcheck shell=bash
 # SPDX-License-Identifier: MIT
-# The scripts of this folder source it. It makes a room (a minimal Debian in the script's temp $folder), puts packages of
-# pinned versions ($mesa_25 and $mesa_26 for lavapipes) into it, and runs C programs and compute kernels there.
+# The scripts of this folder source it. It makes a room (a minimal Debian in the script's temp $folder), puts packages
+# of pinned versions ($mesa_25 and $mesa_26 for lavapipes) into it, and runs C programs and compute kernels there.
 #   ROOMS=FOLDER     keeps rooms in FOLDER for the next script, one script at a time (remove FOLDER when done)
 #   MIRROR=ADDRESS   takes packages from there, not from the Debian archive that this machine uses; it may be an old one
 # Needs root, debootstrap, an x86-64 machine with AVX2 and 2 GB on the disk.

@@ -5,7 +5,8 @@
 # could not be made, and it says why.
 #   tools/check_drivers.sh [--quick] [--build FOLDER] [--rooms FOLDER] [NAME...]
 #     NAME       mesa-25.0 (backports of Debian 12), mesa-26.1 (of Debian 13), mesa-26.2 (sid), swiftshader
-#                (chromium-common of Debian 12): all of them unless given; newest: what sid has. The table has the version that it was.
+#                (chromium-common of Debian 12): all of them unless given; newest: what sid has. The table has the
+#                version that it was.
 #     --quick    the contract, verify, leaks and the conformance suite: minutes
 #     --build    build/release unless given
 #     --rooms    build/rooms unless given; they stay there. Without its folder a room is made anew, in two minutes.

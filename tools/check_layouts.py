@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Checks in SPIR-V what Vulkan allows no type in Function storage: offsets of members or a stride of elements, which
-are for memory (VUID-StandaloneSpirv-None-10684; spirv-val knows since 2025). glslang before 16 leaves them on copies of a
-struct with an array member that a function which returns a buffer reference gives.
+are for memory (VUID-StandaloneSpirv-None-10684; spirv-val knows since 2025). glslang before 16 leaves them on copies of
+a struct with an array member that a function which returns a buffer reference gives.
 Usage: check_layouts.py MODULE.spv|LIST.txt..., a list having a module a line; prints each type of such variables, and
 exits with 1; else how many variables it has seen."""
 import pathlib

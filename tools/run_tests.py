@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Runs ctest and says how it went: each minute what is left; at the end what passed, failed and was skipped and why, the
-ten slowest, and for each TEST that failed the command that runs it alone. Exit status: ctest's.
+"""Runs ctest and says how it went: each minute what is left; at the end what passed, failed and was skipped and why,
+the ten slowest, and for each TEST that failed the command that runs it alone. Exit status: ctest's.
 Usage: run_tests.py BUILD_FOLDER [what ctest takes]...
 
 A test is a TEST of GoogleTest, whose suites are processes each, or a ctest of another kind.

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Installs the packages, builds and runs the tests; `full` also those that take minutes: the documentation's site and all
-# that its pages show, a shared library, the same bytes with every vector width. `quick` runs those that need no device,
-# and of the others those of the accelerators' common contract, in a minute on two cores.
+# Installs the packages, builds and runs the tests. `full` also runs those that take minutes: the documentation's site
+# and all that its pages show, a shared library, the same bytes with every vector width. `quick` runs those that need no
+# device, and of the others those of the accelerators' common contract, in a minute on two cores.
 #   tools/test.sh [quick|full|release|debug|asan]
 # TWINRAY_REQUIRE names the devices without which tests fail instead of skipping:
 # "vulkan,ray_tracing,descriptor_indexing" unless it is set; with "python" or "docs" in it the Python package must be

@@ -33,7 +33,7 @@ constexpr uint rays_of_batch = 1 << 20;
 struct RayBatch {
     uint first = 0, count = 0;
 };
-// Of at most rays_of_batch.
+// Each has at most rays_of_batch.
 std::vector<RayBatch> ray_batches(std::uint64_t ray_count);
 
 // As long as 1; throws Error for a direction that is 0 or not finite.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a SPIR-V module consists of, with the numbers of its specification.
+// The words of a SPIR-V module, with the numbers of its specification.
 #pragma once
 
 #include <cstddef>
@@ -44,7 +44,7 @@ enum class Op : std::uint32_t {
 constexpr std::uint32_t decoration_spec_id = 1, decoration_builtin = 11, decoration_offset = 35;
 constexpr std::uint32_t storage_workgroup = 4, storage_push_constant = 9;
 
-// Of the first word of an instruction.
+// These read and make the first word of an instruction.
 constexpr Op op_of(std::uint32_t first) { return static_cast<Op>(first & 0xffffu); }
 constexpr std::size_t words_of(std::uint32_t first) { return first >> 16; }
 constexpr std::uint32_t first_word(Op op, std::size_t words) {

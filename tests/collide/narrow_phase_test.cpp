@@ -82,7 +82,7 @@ TEST_F(NarrowPhaseTest, NoPairOfInstancesIsLost) {
     const Soup soup = test::random_soup(20, 0.4f, 4), ball = test::sphere(1);
     const std::vector<MeshView> meshes = {soup.view(), ball.view()};
     std::vector<MeshInstance> instances;
-    for (uint i = 0; i < 40; ++i) instances.push_back({i % 2, test::random_placement(random, 4)});
+    for (uint i = 0; i < 40; ++i) instances.push_back({i % 2, test::random_instance_transform(random, 4)});
     const std::vector<TriangleContact> expected = brute_force(meshes, instances);
     ASSERT_GT(expected.size(), 150u);
     const Contacts found = find(meshes, instances);
@@ -101,7 +101,7 @@ TEST_F(NarrowPhaseTest, CoordinatesOfManySizesAreAlike) {
             std::mt19937 same(5);
             std::vector<MeshInstance> instances;
             for (uint i = 0; i < 12; ++i) {
-                instances.push_back({0, test::random_placement(same, 1.5f)});
+                instances.push_back({0, test::random_instance_transform(same, 1.5f)});
                 for (vec4& row : instances.back().transform.rows) row *= size;
             }
             return instances;

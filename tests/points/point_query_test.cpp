@@ -134,7 +134,8 @@ TEST_F(PointQueryTest, TheNearestTriangleIsFoundWhateverItsShape) {
     const Soup soup = mixed_soup(300, 5);
     const Mesh ball = make_icosphere(2, 0.7f);
     std::mt19937 random(3);
-    set({soup.view(), ball}, {{0, {}}, {1, test::random_placement(random, 2)}, {0, test::random_placement(random, 2)}});
+    set({soup.view(), ball},
+        {{0, {}}, {1, test::random_instance_transform(random, 2)}, {0, test::random_instance_transform(random, 2)}});
     const Errors errors = errors_of(random_points(point_count(), 3, 8));
     RecordProperty("double_ulp", std::to_string(errors.of_double));
     RecordProperty("float_ulp", std::to_string(errors.of_float));
@@ -249,7 +250,7 @@ TEST_F(PointQueryTest, TheLargestDistanceCountsAsNear) {
 TEST_F(PointQueryTest, AllTrianglesWithinTheRadius) {
     const Soup soup = mixed_soup(150, 7);
     std::mt19937 random(1);
-    set({soup.view()}, {{0, {}}, {0, test::random_placement(random, 1)}});
+    set({soup.view()}, {{0, {}}, {0, test::random_instance_transform(random, 1)}});
     const std::vector<dvec3> points = random_points(150, 1.5f, 3);
     std::size_t count = 0;
     const std::vector<NearTriangle> near = query().within(points, 0.6);

@@ -65,6 +65,7 @@ for name, rule in [("plain", ["--spp", "120"]), ("adaptive", ["--target-error", 
 
 # Ctrl-C: a picture and a checkpoint.
 status, shown = stop_when("stopped.png", signal.SIGINT, *box, "--time", "600", "-o", "stopped.png", "--write-partial-images", "0")
+assert "stopped.png: there after" in shown, shown
 assert status == 130 and "interrupted after" in shown and (here / "stopped.png.film").exists(), (status, shown)
 assert (here / "stopped.png").read_bytes()[-8:-4] == b"IEND"
 assert "seed is 1, not 2" in run(*box, "--seed", "2", "--resume", "-o", "stopped.png", status=1)

@@ -40,7 +40,7 @@ struct SharedContext {
                other.use_ray_tracing_pipeline == desc.use_ray_tracing_pipeline && other.tuning == desc.tuning;
     }
 };
-std::vector<SharedContext> shared_contexts;  // parameters of a suite take turns
+std::vector<SharedContext> shared_contexts;  // the parameters of a suite alternate
 
 // Fails on what is said meanwhile.
 void let_go(SharedContext shared) {

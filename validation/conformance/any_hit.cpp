@@ -22,7 +22,7 @@ void offered_once(CaseRun& run) {
 void offered_of_instances(CaseRun& run) {
     SceneInput scene = transparent(run, VK_GEOMETRY_NO_DUPLICATE_ANY_HIT_INVOCATION_BIT_KHR);
     scene.top.instances.resize(3);
-    for (InstanceInput& instance : scene.top.instances) instance.to_world = random_placement(run.draws());
+    for (InstanceInput& instance : scene.top.instances) instance.to_world = random_instance_transform(run.draws());
     run.check_candidates(scene, random_shots(run.draws(), run.rays()));
 }
 

@@ -32,7 +32,7 @@ void boxes_offered(CaseRun& run) {
 void boxes_offered_of_instances(CaseRun& run) {
     SceneInput scene = scene_of(random_boxes(run.draws(), 8));
     scene.top.instances.resize(3);
-    for (InstanceInput& instance : scene.top.instances) instance.to_world = random_placement(run.draws());
+    for (InstanceInput& instance : scene.top.instances) instance.to_world = random_instance_transform(run.draws());
     run.check_candidates(scene, random_shots(run.draws(), run.rays()));
 }
 

@@ -17,7 +17,7 @@ SceneInput copyable(CaseRun& run, VkBuildAccelerationStructureFlagsKHR flags = 0
     scene.bottoms[0].flags |= flags;
     scene.top.flags |= flags;
     scene.top.instances.resize(3);
-    for (std::size_t i = 1; i < 3; ++i) scene.top.instances[i].to_world = random_placement(run.draws());
+    for (std::size_t i = 1; i < 3; ++i) scene.top.instances[i].to_world = random_instance_transform(run.draws());
     return scene;
 }
 

@@ -107,7 +107,7 @@ std::vector<Shot> layer_shots(Draws& draws, std::size_t count) {
     return shots;
 }
 
-Transform random_placement(Draws& draws) {
+Transform random_instance_transform(Draws& draws) {
     for (;;) {
         Transform placement;
         for (vec4& row : placement.rows) {

@@ -45,6 +45,6 @@ std::vector<Shot> random_shots(Draws& draws, std::size_t count, float extent = 1
 std::vector<Shot> layer_shots(Draws& draws, std::size_t count);
 Shot shot_of(const Ray& ray);
 // Rotations, scales, shears and mirrors, of which no inverse loses much.
-Transform random_placement(Draws& draws);
+Transform random_instance_transform(Draws& draws);
 
 }  // namespace twinray::conformance

@@ -27,7 +27,7 @@ Shot aimed(vec3 origin, const dvec3& target) {
 }
 
 Transform sphere_placement(Draws& draws) {
-    return Transform::translation(vec3(draws.point(2))) * random_placement(draws);
+    return Transform::translation(vec3(draws.point(2))) * random_instance_transform(draws);
 }
 
 // Every ray from inside has to hit something.
@@ -99,7 +99,7 @@ void compare(CaseRun& run, std::span<const Shot> shots, std::span<const Answer> 
 SceneInput dense(CaseRun& run) {
     SceneInput scene = scene_of(random_triangles(run.draws(), 48));
     scene.top.instances.resize(3);
-    for (InstanceInput& instance : scene.top.instances) instance.to_world = random_placement(run.draws());
+    for (InstanceInput& instance : scene.top.instances) instance.to_world = random_instance_transform(run.draws());
     return scene;
 }
 

@@ -20,7 +20,7 @@ SceneInput many_instances(CaseRun& run, uint count) {
     for (uint i = 0; i < count; ++i) {
         InstanceInput& instance = scene.top.instances.emplace_back();
         instance.bottom = run.draws().below(2);
-        instance.to_world = random_placement(run.draws());
+        instance.to_world = random_instance_transform(run.draws());
     }
     return scene;
 }
@@ -112,7 +112,7 @@ void many(CaseRun& run) {
     SceneInput scene = scene_of(random_triangles(run.draws(), 2));
     scene.top.instances.resize(48);
     for (InstanceInput& instance : scene.top.instances)
-        instance.to_world = Transform::translation(run.draws().point(3)) * random_placement(run.draws());
+        instance.to_world = Transform::translation(run.draws().point(3)) * random_instance_transform(run.draws());
     run.check_hits(scene, random_shots(run.draws(), run.rays(), 3));
 }
 

@@ -19,7 +19,7 @@ SceneInput mixed_triangles(CaseRun& run) {
     scene.top.instances.resize(3);
     scene.top.instances[1].flags = VK_GEOMETRY_INSTANCE_FORCE_OPAQUE_BIT_KHR;
     scene.top.instances[2].flags = VK_GEOMETRY_INSTANCE_FORCE_NO_OPAQUE_BIT_KHR;
-    for (std::size_t i = 1; i < 3; ++i) scene.top.instances[i].to_world = random_placement(run.draws());
+    for (std::size_t i = 1; i < 3; ++i) scene.top.instances[i].to_world = random_instance_transform(run.draws());
     return scene;
 }
 

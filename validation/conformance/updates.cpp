@@ -86,7 +86,7 @@ void instances_in_place(CaseRun& run) {
     scene.top.instances.resize(4);
     DriverScene built = run.driver().build(scene);
     for (InstanceInput& instance : scene.top.instances) {
-        instance.to_world = random_placement(run.draws());
+        instance.to_world = random_instance_transform(run.draws());
         instance.custom_index = run.draws().below(1u << 24);
         instance.mask = run.draws().below(256);
         instance.flags = run.draws().below(4);

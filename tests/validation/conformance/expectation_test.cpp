@@ -101,7 +101,7 @@ TEST(ConformanceExpectation, AgreesWithTheReference) {
     Draws draws(3);
     SceneInput scene = scene_of(random_triangles(draws, 24));
     scene.top.instances.resize(3);
-    for (InstanceInput& instance : scene.top.instances) instance.to_world = random_placement(draws);
+    for (InstanceInput& instance : scene.top.instances) instance.to_world = random_instance_transform(draws);
     const GeometryInput& geometry = scene.bottoms[0].geometries[0];
     const MeshView mesh("mesh", geometry.positions, geometry.triangles);
     std::vector<ReferenceInstance> instances;

@@ -123,7 +123,7 @@ inline Transform rotation(float angle_x, float angle_y) {
 }
 
 // Scaled, sheared, and moved by up to `spread` along each axis.
-inline Transform random_placement(std::mt19937& random, float spread) {
+inline Transform random_instance_transform(std::mt19937& random, float spread) {
     Transform m = Transform::scaling(vec3(uniform(random, 0.5f, 1.5f)));
     for (vec4& row : m.rows) row += vec4(uniform3(random, -0.5f, 0.5f), uniform(random, -spread, spread));
     return m;
