@@ -50,15 +50,16 @@ python=$(cached _Python3_EXECUTABLE)
 
 # Makes a driver's room, if there is none, with what tests run.
 furnish() { # room, suite, driver
-    local packages=(cmake python3 libvulkan1 vulkan-validationlayers xvfb xauth gnuplot-nox assimp-testmodels)
-    if [[ -e $1/furnished ]]; then return; fi
+    local packages=(cmake python3 gcc libc6-dev libvulkan-dev vulkan-validationlayers xvfb xauth gnuplot-nox
+        assimp-testmodels)
+    if [[ $(cat "$1/furnished" 2>/dev/null) == "${packages[*]}" ]]; then return; fi
     rm -rf --one-file-system "$1"
     make_room "$1" "$2" && install_in_room "$1" "${packages[@]}" || return
     case $3:$2 in
     swiftshader:*) install_in_room "$1" chromium-common ;;
     *-backports) install_in_room "$1" -t "$2" mesa-vulkan-drivers ;;
     *) install_in_room "$1" mesa-vulkan-drivers ;;
-    esac && touch "$1/furnished"
+    esac && echo "${packages[*]}" >"$1/furnished"
 }
 
 # Copies the libraries that programs of the build load here, and the room has not; the tests' Python is the room's.

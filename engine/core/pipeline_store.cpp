@@ -30,6 +30,17 @@ bool is_ours(const fs::path& file) {
     return name.starts_with(prefix) && name.ends_with(suffix);
 }
 
+// Whether data of a pipeline cache begins with the header of this driver (VkPipelineCacheHeaderVersionOne).
+bool is_of_driver(std::span<const std::byte> pipelines, const VkPhysicalDeviceProperties& driver) {
+    VkPipelineCacheHeaderVersionOne header;
+    if (pipelines.size() < sizeof header) return false;
+    std::memcpy(&header, pipelines.data(), sizeof header);
+    return header.headerVersion == VK_PIPELINE_CACHE_HEADER_VERSION_ONE && header.vendorID == driver.vendorID &&
+           header.deviceID == driver.deviceID &&
+           std::equal(std::begin(header.pipelineCacheUUID), std::end(header.pipelineCacheUUID),
+                      driver.pipelineCacheUUID);
+}
+
 void remove_oldest(const fs::path& folder, std::size_t keep) {
     std::vector<std::pair<fs::file_time_type, fs::path>> files;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder))
@@ -48,7 +59,7 @@ Bytes PipelineStore::load(const std::function<void(std::string_view)>& log) cons
     if (file_.empty() || !fs::exists(file_, error)) return {};
     try {
         Bytes pipelines = read_file(file_);
-        if (is_of_driver(pipelines, driver_)) return pipelines;
+        if (is_of_driver(std::as_bytes(std::span(pipelines)), driver_)) return pipelines;
         log(text("'", file_.string(), "': not pipelines of this driver; they are compiled anew"));
     } catch (const std::exception& failure) {
         log(failure.what());
@@ -68,23 +79,13 @@ void PipelineStore::save(std::span<const std::byte> pipelines,
 
 void PipelineStore::replace(std::span<const std::byte> pipelines) const {
     fs::create_directories(file_.parent_path());
-    if (pipelines.size() > most_bytes) {
+    if (pipelines.size() > most_bytes || !is_of_driver(pipelines, driver_)) {
         fs::remove(file_);
         return;
     }
     const std::span<const std::byte> pieces[] = {pipelines};
     write_file(file_, pieces);
     remove_oldest(file_.parent_path(), most_files);
-}
-
-bool is_of_driver(std::span<const std::uint8_t> pipelines, const VkPhysicalDeviceProperties& driver) {
-    VkPipelineCacheHeaderVersionOne header;
-    if (pipelines.size() < sizeof header) return false;
-    std::memcpy(&header, pipelines.data(), sizeof header);
-    return header.headerVersion == VK_PIPELINE_CACHE_HEADER_VERSION_ONE && header.vendorID == driver.vendorID &&
-           header.deviceID == driver.deviceID &&
-           std::equal(std::begin(header.pipelineCacheUUID), std::end(header.pipelineCacheUUID),
-                      driver.pipelineCacheUUID);
 }
 
 fs::path user_pipeline_folder() {

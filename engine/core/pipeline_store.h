@@ -24,7 +24,8 @@ class PipelineStore {
     // What an earlier run of this driver saved; empty where there is none, or what there is belongs to another or
     // cannot be read: `log` gets a sentence then.
     Bytes load(const std::function<void(std::string_view)>& log) const;
-    // Replaces it, whole or not at all. What stands against it goes to `log`.
+    // Replaces it, whole or not at all; removes it where load() would refuse `pipelines`: Mesa 26.2's lavapipe gives
+    // 20 bytes, fewer than Vulkan's header has. What stands against it goes to `log`.
     void save(std::span<const std::byte> pipelines, const std::function<void(std::string_view)>& log) const noexcept;
 
     const std::filesystem::path& file() const { return file_; }
@@ -35,8 +36,5 @@ class PipelineStore {
     std::filesystem::path file_;
     VkPhysicalDeviceProperties driver_{};
 };
-
-// Whether data of a pipeline cache begins with the header of this driver (Vulkan, VkPipelineCacheHeaderVersionOne).
-bool is_of_driver(std::span<const std::uint8_t> pipelines, const VkPhysicalDeviceProperties& driver);
 
 }  // namespace twinray

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <fstream>
 #include <span>
@@ -62,17 +63,26 @@ TEST_F(PipelineStoreTest, GivesBackWhatItsDriverSaved) {
 }
 
 TEST_F(PipelineStoreTest, RefusesWhatIsNotOfItsDriver) {
-    for (const std::size_t bytes : {0u, 31u}) {
-        save(store(), pipelines_of(driver_of(1), bytes));
-        EXPECT_TRUE(load(store()).empty());
-    }
     VkPhysicalDeviceProperties other = driver_of(1);
     other.pipelineCacheUUID[15] = 1;
-    save(store(), pipelines_of(other, 100));
-    said_.clear();
+    save(store(), pipelines_of(driver_of(1), 100));
+    const Bytes others = pipelines_of(other, 100);
+    write_file(store().file(), std::array{std::as_bytes(std::span(others))});
+    EXPECT_EQ(said_, "");
     EXPECT_TRUE(load(store()).empty());
     EXPECT_NE(said_.find("not pipelines of this driver"), std::string::npos) << said_;
     EXPECT_NE(said_.find(store().file().string()), std::string::npos) << said_;
+}
+
+// Mesa 26.2's lavapipe gives 20 bytes.
+TEST_F(PipelineStoreTest, KeepsNothingThatItWouldRefuse) {
+    for (const std::size_t bytes : {0u, 20u, 31u}) {
+        save(store(), pipelines_of(driver_of(1), 100));
+        save(store(), pipelines_of(driver_of(1), bytes));
+        EXPECT_FALSE(fs::exists(store().file())) << bytes;
+        EXPECT_TRUE(load(store()).empty());
+    }
+    EXPECT_EQ(said_, "");
 }
 
 TEST_F(PipelineStoreTest, IsBoundedInBytesAndFiles) {
