@@ -107,7 +107,9 @@ check() { # name
     mkdir -p "$log"
     local good=1
     start=$SECONDS
-    on_driver "$room" "$log/tests.txt" "$source_folder/tools/run_tests.py $build -L '$labels'" || good=0
+    # What a room has no tools for: compilers, documentation, the Python package.
+    on_driver "$room" "$log/tests.txt" \
+        "$source_folder/tools/run_tests.py $build -L '$labels' -E '^(install|docs)\.|python'" || good=0
     counts=$(sed -nE 's/^tests: ([0-9]+) passed, ([0-9]+) failed, ([0-9]+) skipped$/\1 \2 \3/p' "$log/tests.txt")
     on_driver "$room" "$log/conformance.txt" "twinray verify --suite conformance" || good=0
     conformance=$(sed -nE 's/^([0-9]+ of [0-9]+) cases pass.*/\1/p' "$log/conformance.txt")
