@@ -9,7 +9,26 @@
 #                                                      tracing: "<name>.trace_program.h" with the TraceProgramCode <name>
 #   twinray_compile_shader(<target> <name> <file> [option...])   "<name>.spv.h" with <name>_spirv[]; further options
 #                                                      of glslangValidator
+#
+# Functions are inlined and variables become values before a driver sees a module, which then takes a third of the time
+# to compile it, into the same code (docs/decisions.md). No pass touches arithmetic: `precise` stays.
 find_program(TWINRAY_GLSLANG_VALIDATOR glslangValidator DOC "compiler of GLSL to SPIR-V, of package glslang-tools")
+find_program(TWINRAY_SPIRV_OPT spirv-opt DOC "optimiser of SPIR-V, of package spirv-tools")
+set(TWINRAY_SPIRV_PASSES
+    --inline-entry-points-exhaustive
+    --eliminate-dead-functions
+    --private-to-local
+    --scalar-replacement=100
+    --convert-local-access-chains
+    --eliminate-local-single-block
+    --eliminate-local-single-store
+    --ssa-rewrite
+    --eliminate-dead-inserts
+    --eliminate-dead-code-aggressive
+    --merge-blocks
+    CACHE INTERNAL
+    ""
+)
 
 # Where "twinray/glsl/query.glsl" is found, and "shaders/shared/..." which it needs: in the source tree, or installed.
 get_filename_component(twinray_root ${CMAKE_CURRENT_LIST_DIR}/.. ABSOLUTE)
@@ -22,11 +41,14 @@ endif()
 set(TWINRAY_SPIRV_HEADER_SCRIPT ${CMAKE_CURRENT_LIST_DIR}/TwinraySpirvHeader.cmake CACHE INTERNAL "")
 
 function(twinray_compile_shader target name input)
-    if(NOT TWINRAY_GLSLANG_VALIDATOR)
-        message(FATAL_ERROR "twinray: shader ${name} needs glslangValidator (Debian: apt-get install glslang-tools)")
+    if(NOT TWINRAY_GLSLANG_VALIDATOR OR NOT TWINRAY_SPIRV_OPT)
+        message(
+            FATAL_ERROR
+            "twinray: shader ${name} needs glslangValidator and spirv-opt (Debian: apt-get install glslang-tools spirv-tools)"
+        )
     endif()
     set(folder ${CMAKE_CURRENT_BINARY_DIR}/spirv)
-    file(MAKE_DIRECTORY ${folder})
+    file(MAKE_DIRECTORY ${folder}/glslang)
     set(flags
         --quiet
         -V
@@ -37,16 +59,18 @@ function(twinray_compile_shader target name input)
     foreach(include ${TWINRAY_SHADER_FOLDERS})
         list(APPEND flags -I${include})
     endforeach()
+    set(compiled ${folder}/glslang/${name}.spv)
     set(module ${folder}/${name}.spv)
     set(header ${folder}/${name}.spv.h)
     add_custom_command(
-        OUTPUT ${module} ${header}
-        COMMAND ${TWINRAY_GLSLANG_VALIDATOR} ${flags} --depfile ${module}.d -o ${module} ${input}
+        OUTPUT ${compiled} ${module} ${header}
+        COMMAND ${TWINRAY_GLSLANG_VALIDATOR} ${flags} --depfile ${compiled}.d -o ${compiled} ${input}
+        COMMAND ${TWINRAY_SPIRV_OPT} ${TWINRAY_SPIRV_PASSES} ${compiled} -o ${module}
         COMMAND
             ${CMAKE_COMMAND} -DMODULE=${module} -DNAME=${name}_spirv -DHEADER=${header} -P
             ${TWINRAY_SPIRV_HEADER_SCRIPT}
         DEPENDS ${input} ${TWINRAY_SPIRV_HEADER_SCRIPT}
-        DEPFILE ${module}.d
+        DEPFILE ${compiled}.d
         COMMENT "shader ${name}"
         VERBATIM
     )

@@ -28,12 +28,17 @@ def lines(file):
 
 
 first = here / "first"
-report("--only", "N07,B10,N06", "-o", str(first), "--json", str(here / "all.jsonl"))
-records = lines("first/report.jsonl")
+for seconds in ("10", "60"):  # again, where a busy machine began none of N07 in time
+    shutil.rmtree(first, ignore_errors=True)
+    (here / "all.jsonl").unlink(missing_ok=True)
+    report("--only", "N07,B10,N06", "-o", str(first), "--json", str(here / "all.jsonl"), seconds=seconds)
+    records = lines("first/report.jsonl")
+    judged = [r for r in records if r["case"] == "N07" and r["status"] == "run" and r["backend"] == "sw"]
+    if judged:
+        break
 assert records and lines("all.jsonl") == records
 assert {r["case"] for r in records} == {"N07", "B10", "N06"}
 assert all(r["schema"] == "twinray-report/1" and r["device"]["driver"] and r["git"] for r in records)
-judged = [r for r in records if r["case"] == "N07" and r["status"] == "run" and r["backend"] == "sw"]
 assert judged and all(r["pass"] and r["n"] == 144 and r["faults"] == 0 for r in judged), judged
 assert all(r["reason"] for r in records if r["status"] == "not run")
 
