@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Installs the packages, builds and runs the tests. `full` also runs those that take minutes: the documentation's site
-# and all that its pages show, a shared library, the same bytes with every vector width. `quick` runs those that need no
-# device, and of the others those of the accelerators' common contract, in a minute on two cores.
+# Installs the packages, builds and runs the tests. `full` also runs those that take minutes: the documentation's site,
+# its tutorials and all that its pages show, a shared library, a second CPU driver, the layouts that are no default,
+# pictures of many paths a pixel. `quick` runs those that need no device, and of the others those of the accelerators'
+# common contract, in a minute on two cores.
 #   tools/test.sh [quick|full|release|debug|asan]
 # TWINRAY_REQUIRE names the devices without which tests fail instead of skipping:
 # "vulkan,ray_tracing,descriptor_indexing" unless it is set; with "python" or "docs" in it the Python package must be
@@ -15,7 +16,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 preset=${1-release}
 which=(--label-exclude full)
 if [[ $preset == quick ]]; then
-    which+=(--label-regex 'cpu|quick' --exclude-regex '^(install|spirv|samples|docs)\.|^Furnace$')
+    which+=(--label-regex 'cpu|quick' --exclude-regex '^(install|spirv|samples|docs)\.')
 elif [[ $preset == full ]]; then
     which=()
 fi

@@ -64,7 +64,8 @@ class Churn : public test::AccelTest {
     std::vector<Placed> placed_;
     std::size_t vertex_edits_ = 0;
 };
-TWINRAY_OVER_EVERY_ACCEL(Churn);
+INSTANTIATE_TEST_SUITE_P(Every, Churn, testing::Values(Kind::software, Kind::pipeline), test::name_of_kind);
+INSTANTIATE_TEST_SUITE_P(Full, Churn, testing::Values(Kind::ray_query), test::name_of_kind);
 
 void Churn::push() {
     Placed placed{{}, random_mesh(), random_transforms(random_() % 4)};

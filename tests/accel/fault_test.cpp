@@ -63,7 +63,8 @@ class Faults : public ::testing::TestWithParam<Kind> {
     inline static Counts points_;  // by accelerator
 };
 
-TWINRAY_OVER_EVERY_ACCEL(Faults);
+INSTANTIATE_TEST_SUITE_P(Every, Faults, testing::Values(Kind::software, Kind::ray_query), test::name_of_kind);
+INSTANTIATE_TEST_SUITE_P(Full, Faults, testing::Values(Kind::pipeline), test::name_of_kind);
 
 void Faults::check_end(World& world) {
     world.destroy();

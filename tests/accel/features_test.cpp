@@ -131,10 +131,11 @@ std::string name_of_features(const ::testing::TestParamInfo<std::tuple<Layout, L
     const char* names[] = {"_fast", "_watertight", "_refined", "_certified"};
     return std::string(name_of(std::get<0>(info.param))) + names[static_cast<std::size_t>(std::get<1>(info.param))];
 }
-INSTANTIATE_TEST_SUITE_P(Every, Features,
-                         ::testing::Combine(::testing::Values(Layout::compressed4, Layout::bvh2, Layout::compressed8),
-                                            ::testing::Values(Level::fast, Level::watertight, Level::refined,
-                                                              Level::certified)),
+const auto every_level = ::testing::Values(Level::fast, Level::watertight, Level::refined, Level::certified);
+INSTANTIATE_TEST_SUITE_P(Every, Features, ::testing::Combine(::testing::Values(Layout::compressed4), every_level),
+                         name_of_features);
+INSTANTIATE_TEST_SUITE_P(Full, Features,
+                         ::testing::Combine(::testing::Values(Layout::bvh2, Layout::compressed8), every_level),
                          name_of_features);
 
 TEST_P(Features, LeanProgramsFindWhatTheGeneralOneFinds) {

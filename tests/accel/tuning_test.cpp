@@ -80,9 +80,9 @@ class Tunings : public ::testing::TestWithParam<Setting> {
     }
 };
 
-std::vector<Setting> every_setting() {
+std::vector<Setting> every_level_of(const std::vector<Layout>& layouts) {
     std::vector<Setting> settings;
-    for (const Layout layout : all_layouts)
+    for (const Layout layout : layouts)
         for (const Level level : {Level::fast, Level::watertight, Level::refined, Level::certified})
             settings.push_back({layout, level});
     return settings;
@@ -91,7 +91,9 @@ std::string name_of_setting(const ::testing::TestParamInfo<Setting>& info) {
     const char* levels[] = {"fast", "watertight", "refined", "certified"};
     return text(name_of(info.param.layout), '_', levels[static_cast<std::size_t>(info.param.level)]);
 }
-INSTANTIATE_TEST_SUITE_P(Every, Tunings, ::testing::ValuesIn(every_setting()), name_of_setting);
+INSTANTIATE_TEST_SUITE_P(Every, Tunings, ::testing::ValuesIn(every_level_of({Layout::compressed4})), name_of_setting);
+INSTANTIATE_TEST_SUITE_P(Full, Tunings, ::testing::ValuesIn(every_level_of({Layout::bvh2, Layout::compressed8})),
+                         name_of_setting);
 
 TEST_P(Tunings, GiveTheSameHitsToTheLastBit) {
     const auto gpu = trace_all(TuningRow::gpu), cpu = trace_all(TuningRow::cpu_driver);

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
 # After a program of GoogleTest is built: writes FILE, by which ctest runs each suite of it in one process. A test of it
 # alone is run by the program, with --gtest_filter.
-#   cmake -D PROGRAM=FILE -D LABEL=NAME -D QUICK=REGEX -D RESULTS=FOLDER -D FILE=FILE -P list_suites.cmake
+#   cmake -D PROGRAM=FILE -D LABEL=NAME -D QUICK=REGEX -D FULL=REGEX -D RESULTS=FOLDER -D FILE=FILE
+#         -P list_suites.cmake
 #     QUICK      suites that get the label LABEL.quick instead
+#     FULL       suites that get the label full, too
 #     RESULTS    where each suite leaves an XML file of what its tests did
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE listing COMMAND_ERROR_IS_FATAL ANY)
 string(REGEX MATCHALL "(^|\n)[^ \n]+\\.[ \n]" suites "${listing}")
@@ -13,11 +15,14 @@ foreach(suite ${suites})
     if(QUICK AND suite MATCHES "${QUICK}")
         string(APPEND label .quick)
     endif()
+    if(suite MATCHES "${FULL}")
+        string(APPEND label "\;full")
+    endif()
     string(REPLACE / . result "${suite}")
     string(
         APPEND tests
         "add_test([=[${suite}]=] [=[${PROGRAM}]=] [=[--gtest_filter=${suite}.*]=])\n"
-        "set_tests_properties([=[${suite}]=] PROPERTIES LABELS ${label} TIMEOUT 900\n"
+        "set_tests_properties([=[${suite}]=] PROPERTIES LABELS [=[${label}]=] TIMEOUT 900\n"
         "    ENVIRONMENT [=[GTEST_OUTPUT=xml:${RESULTS}/${result}.xml]=])\n"
     )
 endforeach()

@@ -28,15 +28,19 @@ class SwBuildTest : public VulkanTest, public testing::WithParamInterface<How> {
     }
 };
 
-inline auto every_build() {
+inline auto builds_of_the_default_layout() {
+    using enum KernelShape;
+    return testing::Values(How{Layout::compressed4, BuildQuality::fast, of_device},
+                           How{Layout::compressed4, BuildQuality::high, of_device},
+                           How{Layout::compressed4, BuildQuality::high, of_gpu},
+                           How{Layout::compressed4, BuildQuality::ploc, of_device});
+}
+inline auto builds_of_other_layouts() {
     using enum KernelShape;
     return testing::Values(
-        How{Layout::compressed4, BuildQuality::fast, of_device},
-        How{Layout::compressed4, BuildQuality::high, of_device}, How{Layout::bvh2, BuildQuality::high, of_device},
-        How{Layout::compressed4, BuildQuality::high, of_gpu}, How{Layout::bvh2, BuildQuality::fast, of_gpu},
-        How{Layout::compressed4, BuildQuality::ploc, of_device}, How{Layout::bvh2, BuildQuality::ploc, of_gpu},
-        How{Layout::compressed8, BuildQuality::fast, of_device}, How{Layout::compressed8, BuildQuality::high, of_gpu},
-        How{Layout::compressed8, BuildQuality::ploc, of_device});
+        How{Layout::bvh2, BuildQuality::high, of_device}, How{Layout::bvh2, BuildQuality::fast, of_gpu},
+        How{Layout::bvh2, BuildQuality::ploc, of_gpu}, How{Layout::compressed8, BuildQuality::fast, of_device},
+        How{Layout::compressed8, BuildQuality::high, of_gpu}, How{Layout::compressed8, BuildQuality::ploc, of_device});
 }
 inline std::string name_of_build(const testing::TestParamInfo<How>& how) {
     return text(name_of(std::get<Layout>(how.param)), '_', name_of(std::get<BuildQuality>(how.param)),

@@ -24,7 +24,8 @@ class SwBuild : public SwBuildTest {
         return tree;
     }
 };
-INSTANTIATE_TEST_SUITE_P(Every, SwBuild, every_build(), name_of_build);
+INSTANTIATE_TEST_SUITE_P(Every, SwBuild, builds_of_the_default_layout(), name_of_build);
+INSTANTIATE_TEST_SUITE_P(Full, SwBuild, builds_of_other_layouts(), name_of_build);
 
 // n copies of one triangle: all centroids equal.
 Mesh equal_triangles(std::size_t n) {

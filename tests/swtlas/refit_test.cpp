@@ -13,7 +13,8 @@ namespace {
 using namespace test;
 
 class SwRefit : public SwBuildTest {};
-INSTANTIATE_TEST_SUITE_P(Every, SwRefit, every_build(), name_of_build);
+INSTANTIATE_TEST_SUITE_P(Every, SwRefit, builds_of_the_default_layout(), name_of_build);
+INSTANTIATE_TEST_SUITE_P(Full, SwRefit, builds_of_other_layouts(), name_of_build);
 
 void expect_same_topology(const BuiltTree& after, const BuiltTree& before) {
     ASSERT_EQ(after.nodes.size(), before.nodes.size());

@@ -109,7 +109,7 @@ TEST_F(ConformanceSuite, FullSharesItsRaysOutToTheCases) {
 TEST(ConformanceOfAHungDevice, TellsTheCaseAndEnds) {
     faults::FaultInjector driver;
     const std::unique_ptr<Context> context =
-        test::make_context({.most_wait_seconds = 0.01, .get_instance_proc_addr = driver.entry()});
+        test::make_context({.most_wait_seconds = 60, .get_instance_proc_addr = driver.entry()});
     if (!context) return;
     const DeviceProperties& device = context->properties();
     if (!device.ray_query || !device.ray_tracing_pipeline) TWINRAY_LACKS("ray_tracing", "no ray tracing");
@@ -119,7 +119,7 @@ TEST(ConformanceOfAHungDevice, TellsTheCaseAndEnds) {
         if (recorder.records().size() == 8) driver.inject({"vkWaitSemaphores", 1, faults::every_call, VK_TIMEOUT});
         if (record.fault_of == "driver" && recorder.records().size() == 9) hung = record.reason;
     });
-    EXPECT_NE(hung.find("it has ended none of its submissions for 0.01 s"), std::string::npos) << hung;
+    EXPECT_NE(hung.find("it has ended none of its submissions for 60 s"), std::string::npos) << hung;
     for (const Record& record : std::span(recorder.records()).subspan(9)) {
         EXPECT_FALSE(record.was_run);
         EXPECT_EQ(record.reason, "the device was lost in K03");

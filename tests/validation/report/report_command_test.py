@@ -13,13 +13,17 @@ import xml.etree.ElementTree
 twinray, here = sys.argv[1], pathlib.Path(tempfile.mkdtemp())
 
 
-def report(*arguments, status=0, seconds="10"):
-    # In so few seconds what is least certain is not asked again.
+def report(*arguments, status=0, seconds="8"):
+    """In so few seconds what is least certain is not asked again; a busy machine gets more for its first round."""
     run = subprocess.run(
         [twinray, "report", "--quiet", "--validation", "--budget", seconds, *arguments], capture_output=True, text=True
     )
     assert run.returncode == status, f"{arguments}: status {run.returncode}\n{run.stdout}{run.stderr}"
     assert "VUID" not in run.stderr and "SYNC-HAZARD" not in run.stderr, run.stderr
+    if "-o" in arguments and "--resume" not in arguments and status == 0 and seconds != "60":
+        records = pathlib.Path(arguments[arguments.index("-o") + 1], "report.jsonl").read_text()
+        if "was spent before its turn" in records:
+            return report(*arguments, status=status, seconds="60")
     return run.stdout
 
 
@@ -28,17 +32,12 @@ def lines(file):
 
 
 first = here / "first"
-for seconds in ("10", "60"):  # again, where a busy machine began none of N07 in time
-    shutil.rmtree(first, ignore_errors=True)
-    (here / "all.jsonl").unlink(missing_ok=True)
-    report("--only", "N07,B10,N06", "-o", str(first), "--json", str(here / "all.jsonl"), seconds=seconds)
-    records = lines("first/report.jsonl")
-    judged = [r for r in records if r["case"] == "N07" and r["status"] == "run" and r["backend"] == "sw"]
-    if judged:
-        break
-assert records and lines("all.jsonl") == records
+report("--only", "N07,B10,N06", "-o", str(first), "--json", str(here / "all.jsonl"), seconds="10")
+records = lines("first/report.jsonl")
+assert records and lines("all.jsonl")[-len(records):] == records
 assert {r["case"] for r in records} == {"N07", "B10", "N06"}
 assert all(r["schema"] == "twinray-report/1" and r["device"]["driver"] and r["git"] for r in records)
+judged = [r for r in records if r["case"] == "N07" and r["status"] == "run" and r["backend"] == "sw"]
 assert judged and all(r["pass"] and r["n"] == 144 and r["faults"] == 0 for r in judged), judged
 assert all(r["reason"] for r in records if r["status"] == "not run")
 
@@ -57,7 +56,7 @@ if shutil.which("gnuplot"):
     assert len(page.findall(".//{http://www.w3.org/2000/svg}svg[@aria-label]")) == 2
 
 # The device's arithmetic: on a CPU driver every bit is that of the CPU reference.
-report("--only", "F06,F07,F08,F09", "--accels", "sw", "-o", str(here / "floats"), seconds="60")
+report("--only", "F06,F07,F08,F09", "--accels", "sw", "-o", str(here / "floats"))
 floats = [r for r in lines("floats/report.jsonl") if r["status"] == "run"]
 assert {r["case"] for r in floats} == {"F06", "F07", "F08", "F09"}
 if "llvmpipe" in floats[0]["device"]["name"]:
@@ -108,8 +107,7 @@ report("--compare", str(first), str(here / "none"), status=1)
 
 # Negative controls show faults in both layouts, or the report fails.
 for layout in ("compressed4", "bvh2"):
-    report("--only", "W14,W15", "--accels", "sw", "--layout", layout, "-o", str(here / ("controls_" + layout)),
-           seconds="20")
+    report("--only", "W14,W15", "--accels", "sw", "--layout", layout, "-o", str(here / ("controls_" + layout)))
     assert sum(r["variant"].startswith("control: ") and bool(r["pass"])
                for r in lines("controls_" + layout + "/report.jsonl")) >= 2
 # A run that was cut short goes on.
@@ -118,7 +116,7 @@ del progress["cases"]["B10"]
 (first / "progress.json").write_text(json.dumps(progress))
 whole = (first / "report.jsonl").read_text()
 (first / "report.jsonl").write_text(whole[:-20])
-report("--only", "N07,B10,N06", "-o", str(first), "--resume")
+report("--only", "N07,B10,N06", "-o", str(first), "--resume", seconds="10")
 began = records[0]["run"]
 gone_on = sorted((r["case"], r["backend"], r["level"], r["run"] == began) for r in lines("first/report.jsonl"))
 assert gone_on == sorted((r["case"], r["backend"], r["level"], r["case"] != "B10") for r in records)
