@@ -9,26 +9,8 @@
 #                                                      tracing: "<name>.trace_program.h" with the TraceProgramCode <name>
 #   twinray_compile_shader(<target> <name> <file> [option...])   "<name>.spv.h" with <name>_spirv[]; further options
 #                                                      of glslangValidator
-#
-# Functions are inlined and variables become values before a driver sees a module, which then takes a third of the time
-# to compile it, into the same code (docs/decisions.md). No pass touches arithmetic: `precise` stays.
 find_program(TWINRAY_GLSLANG_VALIDATOR glslangValidator DOC "compiler of GLSL to SPIR-V, of package glslang-tools")
 find_program(TWINRAY_SPIRV_OPT spirv-opt DOC "optimiser of SPIR-V, of package spirv-tools")
-set(TWINRAY_SPIRV_PASSES
-    --inline-entry-points-exhaustive
-    --eliminate-dead-functions
-    --private-to-local
-    --scalar-replacement=100
-    --convert-local-access-chains
-    --eliminate-local-single-block
-    --eliminate-local-single-store
-    --ssa-rewrite
-    --eliminate-dead-inserts
-    --eliminate-dead-code-aggressive
-    --merge-blocks
-    CACHE INTERNAL
-    ""
-)
 
 # Where "twinray/glsl/query.glsl" is found, and "shaders/shared/..." which it needs: in the source tree, or installed.
 get_filename_component(twinray_root ${CMAKE_CURRENT_LIST_DIR}/.. ABSOLUTE)
@@ -65,10 +47,9 @@ function(twinray_compile_shader target name input)
     add_custom_command(
         OUTPUT ${compiled} ${module} ${header}
         COMMAND ${TWINRAY_GLSLANG_VALIDATOR} ${flags} --depfile ${compiled}.d -o ${compiled} ${input}
-        COMMAND ${TWINRAY_SPIRV_OPT} ${TWINRAY_SPIRV_PASSES} ${compiled} -o ${module}
         COMMAND
-            ${CMAKE_COMMAND} -DMODULE=${module} -DNAME=${name}_spirv -DHEADER=${header} -P
-            ${TWINRAY_SPIRV_HEADER_SCRIPT}
+            ${CMAKE_COMMAND} -DSPIRV_OPT=${TWINRAY_SPIRV_OPT} -DCOMPILED=${compiled} -DMODULE=${module}
+            -DNAME=${name}_spirv -DHEADER=${header} -P ${TWINRAY_SPIRV_HEADER_SCRIPT}
         DEPENDS ${input} ${TWINRAY_SPIRV_HEADER_SCRIPT}
         DEPFILE ${compiled}.d
         COMMENT "shader ${name}"
