@@ -26,7 +26,8 @@ function(twinray_compile_shader target name input)
     if(NOT TWINRAY_GLSLANG_VALIDATOR OR NOT TWINRAY_SPIRV_OPT)
         message(
             FATAL_ERROR
-            "twinray: shader ${name} needs glslangValidator and spirv-opt (Debian: apt-get install glslang-tools spirv-tools)"
+            "twinray: shader ${name} needs glslangValidator and spirv-opt "
+            "(Debian: apt-get install glslang-tools spirv-tools)"
         )
     endif()
     set(folder ${CMAKE_CURRENT_BINARY_DIR}/spirv)

@@ -1,6 +1,7 @@
 # Writes a compiled SPIR-V module, optimised, as a module and as a C++ header with `const uint32_t <NAME>[]`, its
 # little-endian words:
-#   cmake -DSPIRV_OPT=PROGRAM -DCOMPILED=FILE.spv -DMODULE=FILE.spv -DNAME=name -DHEADER=FILE.h -P TwinraySpirvHeader.cmake
+#   cmake -DSPIRV_OPT=PROGRAM -DCOMPILED=FILE.spv -DMODULE=FILE.spv -DNAME=name -DHEADER=FILE.h
+#         -P TwinraySpirvHeader.cmake
 # Functions are inlined and variables become values before a driver sees a module, which then takes a third to a half of
 # the time to compile it, into the same code (docs/decisions.md). No pass touches arithmetic: `precise` stays.
 set(passes

@@ -107,7 +107,7 @@ check() { # name
     mkdir -p "$log"
     local good=1
     start=$SECONDS
-    # What a room has no tools for: compilers, documentation, the Python package.
+    # A room has no CMake hosts, no documentation and no Python package.
     on_driver "$room" "$log/tests.txt" \
         "$source_folder/tools/run_tests.py $build -L '$labels' -E '^(install|docs)\.|python'" || good=0
     counts=$(sed -nE 's/^tests: ([0-9]+) passed, ([0-9]+) failed, ([0-9]+) skipped$/\1 \2 \3/p' "$log/tests.txt")

@@ -45,7 +45,7 @@ TEST(ContextPipelines, AreKeptBetweenRuns) {
     EXPECT_EQ(said, "") << "what the first run wrote is of the driver of the second";
     const auto files = std::filesystem::directory_iterator(folder);
     const auto count = std::distance(begin(files), end(files));
-    if (count == 0) GTEST_SKIP() << "this driver gives a pipeline cache without Vulkan's header";
+    if (count == 0) TWINRAY_LACKS("pipeline_caches", "this driver gives a pipeline cache without Vulkan's header");
     ASSERT_EQ(count, 1);
     const std::filesystem::path file = std::filesystem::directory_iterator(folder)->path();
     std::ofstream(file) << "damaged";
