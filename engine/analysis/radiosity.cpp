@@ -57,15 +57,18 @@ class System {
         identity.setIdentity();
         matrix_ += identity;
         solver_.compute(matrix_);
-        solver_.setTolerance(1e-12);
+        solver_.setTolerance(1e-8);
     }
 
-    // Correction by correction, until one makes it no better.
+    // Correction by correction, until one makes it no better. Each is of a right side of length 1: Eigen 5's tolerance is
+    // absolute, that of Eigen 3.4 relative.
     Vector solve(const Vector& b) {
         Vector x = Vector::Zero(b.size()), residual = b;
         iterations_ = 0;
         for (int round = 0; round < 30; ++round) {
-            const Vector better = x + solver_.solve(residual);
+            const double length = residual.stableNorm();
+            if (length == 0) break;
+            const Vector better = x + solver_.solve(residual / length) * length;
             iterations_ += static_cast<int>(solver_.iterations());
             const Vector left = b - matrix_ * better;
             if (!(left.lpNorm<Eigen::Infinity>() < residual.lpNorm<Eigen::Infinity>())) break;

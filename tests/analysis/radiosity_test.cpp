@@ -97,6 +97,19 @@ TEST(Radiosity, SamplingBoundsWhatTheErrorOfFactorsDoes) {
     EXPECT_LT(found.sampling[0], 0.2 * found.values[0]) << "and is not much too wide";
 }
 
+TEST(Radiosity, EmissionInAnyUnitGivesTheSameLight) {
+    const std::vector<double> emission = {1, 0, 0.5, 0, 0, 0.25}, rho(6, 0.9);
+    const Radiosity one = solve_radiosity(cube_factors(known_parallel), emission, rho);
+    for (const double unit : {0x1p-100, 0x1p-30, 0x1p30, 0x1p100}) {
+        std::vector<double> scaled = emission;
+        for (double& value : scaled) value *= unit;
+        const Radiosity found = solve_radiosity(cube_factors(known_parallel), scaled, rho);
+        for (std::size_t i = 0; i < 6; ++i)
+            EXPECT_NEAR(found.values[i] / unit, one.values[i], 1e-13 * one.values[i]) << unit;
+        EXPECT_LT(found.relative_residual, 1e-14) << unit;
+    }
+}
+
 TEST(Radiosity, WhatHasNoSolutionIsAnError) {
     EXPECT_THROW(
         solve_radiosity(cube_factors(known_parallel), std::vector<double>(6, 1.0), std::vector<double>(6, 1.0)), Error);
