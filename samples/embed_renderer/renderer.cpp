@@ -59,8 +59,7 @@ constexpr VkPipelineStageFlags compute = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT;
 }  // namespace
 
 Renderer::Renderer(const Device& device, const Stage& stage, const Options& options)
-    : device_(device),
-      stage_(stage),
+    : stage_(stage),
       context_(device.adopted()),
       choice_(choose_accel(context_.properties(), options.accel)),
       accel_(samples::make_accel(context_, choice_)),

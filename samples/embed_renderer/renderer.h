@@ -44,7 +44,6 @@ class Renderer {
     void composite(VkCommandBuffer commands);
     void over_pixels(VkCommandBuffer commands) const;
 
-    const Device& device_;
     const Stage& stage_;
     Context context_;
     AccelChoice choice_;

@@ -48,9 +48,9 @@ TEST_F(KernelAddressesOnDevice, ThatAreAbsentCanBeRead) {
     args.rays = rays.ref<Ray>();
     args.count = 7;
     const TraceArgs given = readable(context(), args);
-    EXPECT_EQ(given.rays.address, rays.address());
-    EXPECT_EQ(given.order.address, context().absent());
-    EXPECT_EQ(given.indirect_count.address, context().absent());
+    EXPECT_EQ(VkDeviceAddress{given.rays.address}, rays.address());
+    EXPECT_EQ(VkDeviceAddress{given.order.address}, context().absent());
+    EXPECT_EQ(VkDeviceAddress{given.indirect_count.address}, context().absent());
     EXPECT_EQ(given.count, 7u);
     EXPECT_TRUE(is_absent(given.order));
     EXPECT_FALSE(is_absent(given.rays));

@@ -43,7 +43,7 @@ Bytes changed(Bytes bytes, std::mt19937& random) {
         const auto last = first + std::min<std::ptrdiff_t>(1 + below(16), bytes.end() - first);
         const auto kind = below(8);
         if (kind < 5)
-            *first = kind < 2 ? static_cast<std::uint8_t>(random()) : kind < 4 ? *first ^ (1u << below(8)) : 0xff;
+            *first = static_cast<std::uint8_t>(kind < 2 ? random() : kind < 4 ? *first ^ (1u << below(8)) : 0xff);
         else if (kind == 5)
             bytes.erase(first, below(8) == 0 ? bytes.end() : last);
         else if (kind == 6) {

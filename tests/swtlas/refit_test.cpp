@@ -151,7 +151,7 @@ TEST_P(SwRefit, ARefittedGeometryIsSoundAndKeepsItsTopology) {
         const BuiltTree after = download_geometry(accel, handles[i]);
         expect_sound(after, meshes[i], &pushed[i]);
         expect_same_topology(after, before[i]);
-        EXPECT_EQ(after.bvh.nodes.address, before[i].bvh.nodes.address);
+        EXPECT_EQ(VkDeviceAddress{after.bvh.nodes.address}, VkDeviceAddress{before[i].bvh.nodes.address});
         const std::vector<vec3> positions = built(meshes[i], &pushed[i]);
         if (has_records(after)) {
             expect_leaves_of(after.records, positions, meshes[i].triangles);
