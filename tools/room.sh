@@ -78,9 +78,10 @@ install_in_room() { # room, what apt-get install takes
     rm "$log"
 }
 
-# Copies the working tree into a folder, in which what was built stays.
+# Copies the working tree, but what git ignores, into a folder, in which what was built stays.
 copy_checkout() { # folder
     mkdir -p "$1"
     find "$1" -mindepth 1 -maxdepth 1 ! -name build -exec rm -rf {} +
-    tar -c --exclude=./.git --exclude='./build*' --exclude=./out . | tar -x -C "$1" --no-same-owner
+    git ls-files -z --cached --others --exclude-standard --deduplicate |
+        tar -c --null --files-from=- --ignore-failed-read | tar -x -C "$1" --no-same-owner
 }
