@@ -215,6 +215,9 @@ template <class T>
 struct Ref {
     Address address = 0;
 
+    constexpr Ref() = default;
+    constexpr Ref(std::uint64_t at) : address(at) {}  // an address on the device, in bytes
+
     T& operator[](std::size_t i) const { return reinterpret_cast<T*>(address)[i]; }   // of memory of the host
     static Ref to(const T* host) { return {reinterpret_cast<std::uint64_t>(host)}; }  // of memory of the host
 };
