@@ -36,7 +36,8 @@ VkPhysicalDeviceRayTracingPipelinePropertiesKHR limits_of(const Context& context
 // The shader stages of a pipeline; their modules live until the pipeline has been made from them.
 class Stages {
   public:
-    explicit Stages(Context& context) : context_(context) {}
+    Stages(Context& context, std::span<const SpecializationConstant> constants)
+        : context_(context), constants_(constants) {}
     ~Stages() {
         for (const VkPipelineShaderStageCreateInfo& stage : stages_)
             context_.state().vk().vkDestroyShaderModule(context_.device(), stage.module, nullptr);
@@ -51,18 +52,16 @@ class Stages {
         VkPipelineShaderStageCreateInfo info{};
         info.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
         info.stage = stage;
-        info.module = create_shader_module(context_, spirv, name);
+        info.module = create_shader_module(context_, spirv, constants_, name);
         info.pName = "main";
         stages_.push_back(info);
         return static_cast<std::uint32_t>(stages_.size() - 1);
     }
-    std::span<const VkPipelineShaderStageCreateInfo> specialized(const VkSpecializationInfo& specialization) {
-        for (VkPipelineShaderStageCreateInfo& stage : stages_) stage.pSpecializationInfo = &specialization;
-        return stages_;
-    }
+    std::span<const VkPipelineShaderStageCreateInfo> all() const { return stages_; }
 
   private:
     Context& context_;
+    std::span<const SpecializationConstant> constants_;
     std::vector<VkPipelineShaderStageCreateInfo> stages_;
 };
 
@@ -119,21 +118,13 @@ RayTracingPipeline::~RayTracingPipeline() {
 }
 
 void RayTracingPipeline::create_pipeline(const RayTracingPipelineDesc& desc) {
-    std::vector<VkSpecializationMapEntry> entries;
-    std::vector<std::uint32_t> values;
-    for (const SpecializationConstant& constant : desc.constants) {
-        entries.push_back({constant.id, static_cast<std::uint32_t>(values.size() * 4), 4});
-        values.push_back(constant.value);
-    }
-    const VkSpecializationInfo specialization{static_cast<std::uint32_t>(entries.size()), entries.data(),
-                                              values.size() * 4, values.data()};
-    Stages shaders(context_);
+    Stages shaders(context_, desc.constants);
     const std::uint32_t generation = shaders.add(VK_SHADER_STAGE_RAYGEN_BIT_KHR, desc.ray_generation, name_ + " rgen");
     const std::uint32_t miss = shaders.add(VK_SHADER_STAGE_MISS_BIT_KHR, desc.miss, name_ + " rmiss");
     const std::uint32_t closest = shaders.add(VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR, desc.closest_hit, name_ + " rchit");
     const std::uint32_t any = shaders.add(VK_SHADER_STAGE_ANY_HIT_BIT_KHR, desc.any_hit, name_ + " rahit");
     const std::uint32_t box = shaders.add(VK_SHADER_STAGE_INTERSECTION_BIT_KHR, desc.intersection, name_ + " rint");
-    const std::span<const VkPipelineShaderStageCreateInfo> modules = shaders.specialized(specialization);
+    const std::span<const VkPipelineShaderStageCreateInfo> modules = shaders.all();
     const std::array<VkRayTracingShaderGroupCreateInfoKHR, group_count> groups = {
         general_group(generation), general_group(miss), hit_group(closest, any, VK_SHADER_UNUSED_KHR),
         hit_group(closest, any, box)};

@@ -60,8 +60,8 @@ class System {
         solver_.setTolerance(1e-8);
     }
 
-    // Correction by correction, until one makes it no better. Each is of a right side of length 1: Eigen 5's tolerance is
-    // absolute, that of Eigen 3.4 relative.
+    // Correction by correction, until one makes it no better. Each is of a right side of length 1: Eigen 5's tolerance
+    // is absolute, that of Eigen 3.4 relative.
     Vector solve(const Vector& b) {
         Vector x = Vector::Zero(b.size()), residual = b;
         iterations_ = 0;

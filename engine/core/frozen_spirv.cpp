@@ -69,6 +69,9 @@ class Freezer {
                 spec_ids_[instruction[1]] = instruction[3];
                 return;
             case TypeBool: booleans_.insert(instruction[1]); return keep(instruction);
+            case TypeInt:
+                if (instruction[2] == 32) numbers_.insert(instruction[1]);
+                return keep(instruction);
             case ConstantTrue:
             case SpecConstantTrue: return define(instruction, value_or(instruction[2], 1));
             case ConstantFalse:
@@ -98,7 +101,7 @@ class Freezer {
     // A constant of the type and id of an instruction.
     void define(Words instruction, std::uint32_t value) {
         const std::uint32_t type = instruction[1], id = instruction[2];
-        known_[id] = value;
+        if (booleans_.contains(type) || numbers_.contains(type)) known_[id] = value;
         if (booleans_.contains(type))
             frozen_.insert(frozen_.end(), {first_word(value ? Op::ConstantTrue : Op::ConstantFalse, 3), type, id});
         else
@@ -122,8 +125,8 @@ class Freezer {
 
     std::map<std::uint32_t, std::uint32_t> given_;     // by SpecId
     std::map<std::uint32_t, std::uint32_t> spec_ids_;  // by result
-    std::map<std::uint32_t, std::uint32_t> known_;     // values of 32 bits, by result
-    std::set<std::uint32_t> booleans_;                 // types
+    std::map<std::uint32_t, std::uint32_t> known_;     // values of the following types, by result
+    std::set<std::uint32_t> booleans_, numbers_;       // types: of truth, of whole numbers of 32 bits
     std::vector<std::uint32_t> frozen_;
 };
 

@@ -11,7 +11,7 @@
 namespace twinray {
 
 // The module with these values, and its own defaults, in place of its specialisation constants and of what is computed
-// of them: for drivers that compile both sides of a branch on one.
+// of them.
 std::vector<std::uint32_t> freeze_constants(std::span<const std::uint32_t> spirv,
                                             std::span<const SpecializationConstant> constants);
 

@@ -5,7 +5,10 @@
 #include <optional>
 
 #include "engine/core/error.h"
+#include "engine/core/frozen_spirv.h"
 #include "engine/core/kernel_addresses.h"
+#include "engine/core/pruned_spirv.h"
+#include "engine/core/spirv_words.h"
 
 namespace twinray {
 namespace {
@@ -15,11 +18,14 @@ constexpr std::uint64_t groups_per_row = 32768;
 
 }  // namespace
 
-VkShaderModule create_shader_module(Context& context, std::span<const std::uint32_t> spirv, const std::string& name) {
+VkShaderModule create_shader_module(Context& context, std::span<const std::uint32_t> spirv,
+                                    std::span<const SpecializationConstant> constants, const std::string& name) {
+    if (!spirv::is_module(spirv)) fail("shader '", name, "': its ", spirv.size(), " words are no SPIR-V module");
+    const std::vector<std::uint32_t> needed = prune_branches(freeze_constants(spirv, constants));
     VkShaderModuleCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
-    info.codeSize = spirv.size_bytes();
-    info.pCode = spirv.data();
+    info.codeSize = 4 * needed.size();
+    info.pCode = needed.data();
     VkShaderModule module = VK_NULL_HANDLE;
     const VkResult result = context.state().vk().vkCreateShaderModule(context.device(), &info, nullptr, &module);
     if (result != VK_SUCCESS) fail("shader '", name, "': ", name_of(result));

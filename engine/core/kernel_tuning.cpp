@@ -60,7 +60,6 @@ KernelTuning tuning_for(const DeviceProperties& device, std::optional<TuningRow>
     tuning.row = row.value_or(row_of(device));
     if (tuning.row == TuningRow::cpu_driver) shape_for_cpu_driver(tuning, device);
     tuning.has_fused_fma = has_fused_fma(device.driver_id);
-    tuning.folds_constants = device.driver_id != VK_DRIVER_ID_GOOGLE_SWIFTSHADER;
     tuning.builds_in_input_order = device.driver_id == VK_DRIVER_ID_MESA_LLVMPIPE;
     return tuning;
 }

@@ -43,7 +43,6 @@ struct KernelTuning {
 
     // Of the driver, whatever the row.
     bool has_fused_fma = false;          // GLSL's fma() is known to round once, which gives the error of a product
-    bool folds_constants = true;         // it does not compile what a specialisation constant switches off
     bool builds_in_input_order = false;  // without spatial sorting, so that presorted input pays
 };
 

@@ -30,29 +30,14 @@ std::vector<SpecializationConstant> constants_of(const Context& context, const K
     return constants;
 }
 
-VkShaderModule new_module(Context& context, const KernelDesc& desc, std::span<const SpecializationConstant> constants) {
-    if (context.state().tuning().folds_constants) return create_shader_module(context, desc.spirv, desc.name);
-    return create_shader_module(context, freeze_constants(desc.spirv, constants), desc.name);
-}
-
 VkPipeline new_pipeline(Context& context, const KernelDesc& desc, VkPipelineLayout layout, Telling telling) {
-    const std::vector<SpecializationConstant> constants = constants_of(context, desc);
-    std::vector<VkSpecializationMapEntry> entries;
-    std::vector<std::uint32_t> values;
-    for (const SpecializationConstant& constant : constants) {
-        entries.push_back({constant.id, static_cast<std::uint32_t>(values.size() * 4), 4});
-        values.push_back(constant.value);
-    }
-    const VkSpecializationInfo specialization{static_cast<std::uint32_t>(entries.size()), entries.data(),
-                                              values.size() * 4, values.data()};
-    const VkShaderModule module = new_module(context, desc, constants);
+    const VkShaderModule module = create_shader_module(context, desc.spirv, constants_of(context, desc), desc.name);
     VkComputePipelineCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
     info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
     info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
     info.stage.module = module;
     info.stage.pName = "main";
-    info.stage.pSpecializationInfo = &specialization;
     info.layout = layout;
     if (telling == Telling::statistics) info.flags = VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR;
     VkPipeline pipeline = VK_NULL_HANDLE;

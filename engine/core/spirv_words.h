@@ -13,9 +13,12 @@ using Words = std::span<const std::uint32_t>;
 constexpr std::size_t header_words = 5;
 
 enum class Op : std::uint32_t {
+    Undef = 1,
     Name = 5,
     MemberName = 6,
+    Line = 8,
     Extension = 10,
+    ExtInstImport = 11,
     EntryPoint = 15,
     ExecutionMode = 16,
     Capability = 17,
@@ -37,9 +40,28 @@ enum class Op : std::uint32_t {
     SpecConstantComposite = 51,
     SpecConstantOp = 52,
     Function = 54,
+    FunctionEnd = 56,
+    FunctionCall = 57,
     Variable = 59,
     Decorate = 71,
     MemberDecorate = 72,
+    GroupDecorate = 74,
+    LogicalOr = 166,
+    LogicalAnd = 167,
+    LogicalNot = 168,
+    Phi = 245,
+    LoopMerge = 246,
+    SelectionMerge = 247,
+    Label = 248,
+    Branch = 249,
+    BranchConditional = 250,
+    Unreachable = 255,
+    NoLine = 317,
+    DecorateId = 332,
+    TypeCooperativeMatrix = 4456,
+    TypeRayQuery = 4472,
+    TypeAccelerationStructure = 5341,
+    DecorateString = 5632,
 };
 constexpr std::uint32_t decoration_spec_id = 1, decoration_builtin = 11, decoration_offset = 35;
 constexpr std::uint32_t storage_workgroup = 4, storage_push_constant = 9;
@@ -49,6 +71,26 @@ constexpr Op op_of(std::uint32_t first) { return static_cast<Op>(first & 0xffffu
 constexpr std::size_t words_of(std::uint32_t first) { return first >> 16; }
 constexpr std::uint32_t first_word(Op op, std::size_t words) {
     return static_cast<std::uint32_t>(words) << 16 | static_cast<std::uint32_t>(op);
+}
+
+// Of those that define a type, each with the type's id first.
+constexpr bool is_type(Op op) {
+    using enum Op;
+    return (op >= static_cast<Op>(19) && op <= static_cast<Op>(38)) || op == TypeCooperativeMatrix ||
+           op == TypeRayQuery || op == TypeAccelerationStructure;
+}
+// Whether what follows is the id of whatever it says something of.
+constexpr bool is_annotation(Op op) {
+    using enum Op;
+    return op == Name || op == Decorate || op == DecorateId || op == DecorateString;
+}
+
+// Whether instructions fill it, one after the other.
+constexpr bool is_module(Words words) {
+    if (words.size() < header_words || words[0] != 0x07230203 || words[3] > 0x3fffff) return false;
+    std::size_t at = header_words;
+    while (at < words.size() && words_of(words[at]) != 0) at += words_of(words[at]);
+    return at == words.size();
 }
 
 }  // namespace twinray::spirv

@@ -67,7 +67,6 @@ TEST(KernelTuning, WhatADriverDoesIsTheSameInEitherRow) {
         EXPECT_TRUE(tuning_for(device_of(VK_DRIVER_ID_MESA_RADV, DeviceKind::discrete), row).has_fused_fma);
         EXPECT_FALSE(tuning_for(device_of(VK_DRIVER_ID_MESA_LLVMPIPE, DeviceKind::cpu), row).has_fused_fma);
         EXPECT_TRUE(tuning_for(device_of(VK_DRIVER_ID_MESA_LLVMPIPE, DeviceKind::cpu), row).builds_in_input_order);
-        EXPECT_FALSE(tuning_for(device_of(VK_DRIVER_ID_GOOGLE_SWIFTSHADER, DeviceKind::cpu), row).folds_constants);
     }
 }
 

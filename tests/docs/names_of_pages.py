@@ -20,7 +20,7 @@ import code_blocks
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAMS = ("twinray", "path_tracer", "particles", "embed_renderer")
-OF_OTHERS = {"--fix", "--freeze-spec-const", "--merge-return"}  # options of tools/lint.sh and of spirv-opt
+OF_OTHERS = {"--fix", "--eliminate-dead-branches", "--freeze-spec-const", "--merge-return"}  # tools/lint.sh, spirv-opt
 FOLDERS_OF_TYPES = ("include", "engine", "swtlas", "hwtlas", "validation", "samples", "cli", "viewer", "bench")
 SOURCES = {".h", ".cpp"}
 TYPE = re.compile(r"\b(?:struct|class|namespace) ([A-Z]\w*)")
