@@ -39,7 +39,7 @@ TEST(Filter, SamplesAreDistributedAsTheFilterSays) {
     const std::pair<uint, std::function<double(double)>> filters[] = {
         {FILTER_BOX, box}, {FILTER_TRIANGLE, triangle}, {FILTER_GAUSSIAN, gaussian}};
     for (const auto& [kind, distribution] : filters) {
-        const auto points = points_of([kind](vec2 u) { return filter_offset(kind, u); });
+        const auto points = points_of([kind = kind](vec2 u) { return filter_offset(kind, u); });
         for (const int axis : {0, 1}) {
             std::vector<float> values;
             for (const vec2& point : points) values.push_back(point[axis]);

@@ -35,7 +35,7 @@ TEST(RecordCheck, NamesWhatIsWrong) {
     EXPECT_TRUE(check_tree(bvh, good, boxes).violations.empty());
     EXPECT_FALSE(check_tree({tree.box.lo, tree.box.hi, {}, 1, 20}, good, boxes).violations.empty());
     EXPECT_FALSE(check_tree({tree.box.lo, tree.box.lo, {}, 0, 20}, good, boxes).violations.empty());
-    const auto wrong = [&](const std::function<void(CompressedRecord&)>& spoil) {
+    const auto wrong = [&, &boxes = boxes](const std::function<void(CompressedRecord&)>& spoil) {
         std::vector<CompressedRecord> bad = good;
         spoil(bad.front());
         const TreeCheck check = check_tree(bvh, bad, boxes);

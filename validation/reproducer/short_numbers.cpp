@@ -43,8 +43,7 @@ std::vector<float> shorter_numbers(float value) {
         if (std::abs(value) < 0x1p20f) candidates.push_back(step * std::nearbyint(value / step));
     std::erase_if(candidates, [&](float c) { return !std::isfinite(c) || length_of(c) >= length_of(value); });
     std::ranges::stable_sort(candidates, {}, length_of);
-    const auto repeated = std::ranges::unique(candidates);
-    candidates.erase(repeated.begin(), repeated.end());
+    candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
     return candidates;
 }
 

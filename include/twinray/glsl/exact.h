@@ -13,22 +13,23 @@ FUNC float high_part(float x) { return uintBitsToFloat(floatBitsToUint(x) & 0xff
 // The rounding error of the product p = fl(a b): a b = p + error, exactly, barring over- and underflow. Dekker, "A
 // floating-point technique for extending the available precision", 1971, but numbers are cut, not rounded, in two.
 FUNC float product_error(float a, float b, float p) {
+    PRECISE float error = 0.0f;
     if (FUSED_FMA) {
-        PRECISE float fused = FUSED(a, b, -p);
-        return fused;
+        error = FUSED(a, b, -p);
+    } else {
+        float a_high = high_part(a);
+        float b_high = high_part(b);
+        PRECISE float a_low = a - a_high;
+        PRECISE float b_low = b - b_high;
+        PRECISE float high_high = a_high * b_high;
+        PRECISE float high_low = a_high * b_low;
+        PRECISE float low_high = a_low * b_high;
+        PRECISE float low_low = a_low * b_low;
+        error = high_high - p;
+        error = error + high_low;
+        error = error + low_high;
+        error = error + low_low;
     }
-    float a_high = high_part(a);
-    float b_high = high_part(b);
-    PRECISE float a_low = a - a_high;
-    PRECISE float b_low = b - b_high;
-    PRECISE float high_high = a_high * b_high;
-    PRECISE float high_low = a_high * b_low;
-    PRECISE float low_high = a_low * b_high;
-    PRECISE float low_low = a_low * b_low;
-    PRECISE float error = high_high - p;
-    error = error + high_low;
-    error = error + low_high;
-    error = error + low_low;
     return error;
 }
 

@@ -60,11 +60,12 @@ FUNC vec4 scaled_row(vec4 row, float scale) { return vec4(row.x * scale, row.y *
 
 // The instance of what was built, not of what was given.
 FUNC InstanceRecord in_built_units(InstanceRecord instance) {
-    if (!has_geometry(instance)) return instance;
-    float scale = AT(REF(GeometrySource)(address_after(instance.geometry, GEOMETRY_SOURCE_OFFSET)), 0).scale;
-    instance.object_to_world.r0 = scaled_row(instance.object_to_world.r0, scale);
-    instance.object_to_world.r1 = scaled_row(instance.object_to_world.r1, scale);
-    instance.object_to_world.r2 = scaled_row(instance.object_to_world.r2, scale);
+    if (has_geometry(instance)) {
+        float scale = AT(REF(GeometrySource)(address_after(instance.geometry, GEOMETRY_SOURCE_OFFSET)), 0).scale;
+        instance.object_to_world.r0 = scaled_row(instance.object_to_world.r0, scale);
+        instance.object_to_world.r1 = scaled_row(instance.object_to_world.r1, scale);
+        instance.object_to_world.r2 = scaled_row(instance.object_to_world.r2, scale);
+    }
     return instance;
 }
 

@@ -22,12 +22,21 @@ struct PictureArgs {
 FUNC vec3 to_sun() { return vec3(-0.36f, 0.9f, 0.246f); }
 FUNC vec3 eye() { return vec3(1.92f, 2.4f, 2.56f); }
 
+FUNC Ray endless_ray(vec3 origin, vec3 direction) {
+    Ray ray;
+    ray.origin = origin;
+    ray.t_min = 0.0f;
+    ray.direction = direction;
+    ray.t_max = uintBitsToFloat(0x7f800000u);
+    return ray;
+}
+
 // `reach`: half of what is seen, as a tangent.
 FUNC Ray camera_ray(uint pixel, uint size, float reach) {
     vec3 forward = vec3(-0.48f, -0.6f, -0.64f), right = vec3(0.8f, 0.0f, -0.6f), up = vec3(-0.36f, 0.8f, -0.48f);
     float x = reach * (float(2u * (pixel % size) + 1u) / float(size) - 1.0f);
     float y = reach * (1.0f - float(2u * (pixel / size) + 1u) / float(size));
-    return Ray(eye(), 0.0f, forward + right * x + up * y, uintBitsToFloat(0x7f800000u));
+    return endless_ray(eye(), forward + right * x + up * y);
 }
 
 // [light]
@@ -43,7 +52,7 @@ FUNC vec3 normal_of(Ray ray, Hit hit) {
 FUNC Ray ray_to_sun(Ray ray, Hit hit) {
     vec3 point = ray.origin + ray.direction * hit.t;
     if (hit.custom_index == CAGE) point = point + normal_of(ray, hit) * 0.04f;
-    return Ray(point, 0.0f, to_sun(), uintBitsToFloat(0x7f800000u));
+    return endless_ray(point, to_sun());
 }
 
 FUNC vec3 color_of(Ray ray, Hit hit, bool is_lit) {
