@@ -22,8 +22,8 @@ struct Block {
     std::size_t begin, last, end;  // its OpLabel, its terminator, what follows it
     std::size_t merge = none;      // its OpSelectionMerge or OpLoopMerge
     bool is_live = false;
-    bool is_needed = false;        // as a merge block or continue target of a live one
-    std::optional<Id> loop = {};   // whose continue target it is
+    bool is_needed = false;       // as a merge block or continue target of a live one
+    std::optional<Id> loop = {};  // whose continue target it is
 };
 
 struct Function {
@@ -243,8 +243,10 @@ class Pruner {
     void write_function(const Function& function) {
         put(module_.subspan(function.begin, function.body - function.begin));
         for (const Block& block : function.blocks)
-            if (block.is_live) write_live(function, block);
-            else if (block.is_needed) write_unreachable(block);
+            if (block.is_live)
+                write_live(function, block);
+            else if (block.is_needed)
+                write_unreachable(block);
         put({first_word(Op::FunctionEnd, 1)});
     }
 
@@ -295,9 +297,9 @@ class Pruner {
     Words module_;
     std::uint32_t ids_;  // less than it, each
     std::size_t first_function_ = 0;
-    std::vector<bool> is_type_, is_gone_;      // by id
-    std::vector<std::optional<bool>> truth_;   // by id of a boolean, where it is known
-    std::vector<std::size_t> index_;           // of a function, and of a block in its function, by id
+    std::vector<bool> is_type_, is_gone_;     // by id
+    std::vector<std::optional<bool>> truth_;  // by id of a boolean, where it is known
+    std::vector<std::size_t> index_;          // of a function, and of a block in its function, by id
     std::vector<Id> entries_;
     std::vector<Function> functions_;
     std::vector<Undefined> undefined_;  // what a back edge that is never taken brings

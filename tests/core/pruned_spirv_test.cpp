@@ -79,12 +79,12 @@ class PrunedSpirv : public ::testing::Test {
             %at = OpAccessChain %to_float %out %zero
             %value = OpLoad %float %at
             %unknown = OpFOrdLessThan %bool %value %one
-            )" << main << "\nOpFunctionEnd\n"
-                                              << functions;
+            )" << main << "\nOpFunctionEnd\n" << functions;
         run(SPIRV_AS " --target-env vulkan1.2 before.txt -o before.spv && " SPIRV_VAL
                      " --target-env vulkan1.2 before.spv");
         write("after.spv", prune_branches(read("before.spv")));
-        run(SPIRV_VAL " --target-env vulkan1.2 after.spv && " SPIRV_DIS " --no-header --no-indent after.spv -o after.txt");
+        run(SPIRV_VAL " --target-env vulkan1.2 after.spv && " SPIRV_DIS
+                      " --no-header --no-indent after.spv -o after.txt");
         const Bytes bytes = read_file(folder_ / "after.txt");
         return {bytes.begin(), bytes.end()};
     }
