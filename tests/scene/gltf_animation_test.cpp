@@ -297,7 +297,7 @@ const Fault shape_faults[] = {
      "target 0: POSITION has 1 elements, but POSITION has 3"},
     {"NoSuchVariant",
      [](auto& g) {
-         g.root["materials"] = {json::object()};
+         g.root["materials"] = json::array({json::object()});
          g.primitive()["extensions"]["KHR_materials_variants"]["mappings"] = {{{"material", 0}, {"variants", {4}}}};
      },
      "KHR_materials_variants names variant 4; the file has 0"},

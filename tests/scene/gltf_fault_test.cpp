@@ -237,7 +237,7 @@ TEST(GltfFile, DamagedGlbIsNamed) {
 TEST(GltfFile, DamagedBuffersAreNamed) {
     GltfBuilder gltf = one_triangle();
     const auto error_with = [&](const json& buffer) {
-        gltf.root["buffers"] = {buffer};
+        gltf.root["buffers"] = json::array({buffer});
         return error_of_file("a.gltf", gltf.root.dump());
     };
     expect_contains(error_with({{"byteLength", 44}, {"uri", "gone.bin"}}), "gone.bin': file not found");

@@ -12,7 +12,7 @@ std::string png_uri(const std::string& rgba) { return "data:image/png;base64," +
 // One triangle with material 0; texture 0 shows image 0.
 GltfBuilder textured_triangle(const json& material) {
     GltfBuilder gltf = one_triangle();
-    gltf.root["materials"] = {material};
+    gltf.root["materials"] = json::array({material});
     gltf.root["images"] = {{{"uri", png_uri("\x01\x02\x03\x04")}}};
     gltf.root["textures"] = {{{"source", 0}}};
     gltf.primitive()["material"] = 0;
@@ -305,7 +305,7 @@ TEST(GltfMaterial, FiltersComeFromTheSampler) {
     GltfBuilder gltf = with_base_color_texture();
     gltf.root["textures"][0]["sampler"] = 0;
     const auto filter = [&](const json& sampler) {
-        gltf.root["samplers"] = {sampler};
+        gltf.root["samplers"] = json::array({sampler});
         return gltf.load().materials[0].base_color_texture.filter;
     };
     EXPECT_EQ(filter({{"magFilter", 9728}, {"minFilter", 9987}}), Filter::nearest);
