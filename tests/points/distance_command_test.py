@@ -48,7 +48,10 @@ assert [(r["schema"], r["query"], r["n"], r["found"]) for r in records] == [
 
 run("solid.ply", "--grid", "3", "--signed", "--quiet", "-o", "out.npz")
 with zipfile.ZipFile(here / "out.npz") as archive:
-    assert b"'shape': (3, 3, 3, )" in archive.read("distance.npy")[:128], archive.read("distance.npy")[:128]
+    distances = archive.read("distance.npy")
+    assert b"'descr': '<f8'" in distances[:128] and b"'shape': (3, 3, 3, )" in distances[:128], distances[:128]
+    # At 0.4, 2 and 3.6 along each axis, the centres of cells in the box with a tenth around it.
+    assert [round(d, 6) for d in struct.unpack_from("<27d", distances, len(distances) - 27 * 8)[:2]] == [-0.4, -0.4]
 run("open.ply", "--random", "5", "--quiet", "-o", "out.csv")
 assert len(lines("out.csv")) == 6
 
