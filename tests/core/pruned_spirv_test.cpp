@@ -11,6 +11,7 @@
 #include <random>
 #include <set>
 
+#include "engine/accel/features_of.h"
 #include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "engine/core/frozen_spirv.h"
@@ -278,7 +279,7 @@ TEST_F(PrunedSpirv, EveryModuleOfTheBuildIsValidAfterwards) {
         for (int lot = 0; lot < 3; ++lot) {
             std::vector<SpecializationConstant> constants;
             for (std::uint32_t id = 0; id < 128 && lot > 0; ++id)
-                if (id != GROUP_SIZE_CONSTANT)
+                if (id != GROUP_SIZE_CONSTANT && id != RAY_GROUP_CONSTANT)
                     constants.push_back({id, lot == 1 ? 0u : static_cast<std::uint32_t>(random() & 1)});
             const Words after = prune_branches(freeze_constants(before, constants));
             if (!seen.insert(after).second) continue;
