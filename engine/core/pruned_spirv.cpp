@@ -59,8 +59,11 @@ class Pruner {
         for (; place < module_.size() && op_at(place) != Op::Function; place += words_of(module_[place]))
             if (!read_global(at(place))) return false;
         first_function_ = place;
-        while (place < module_.size()) place = read_function(place);
-        return true;
+        while (place < module_.size()) {
+            place = read_function(place);
+            if (functions_.back().blocks.empty()) return false;
+        }
+        return !functions_.empty();
     }
 
     bool read_global(Words instruction) {
@@ -84,7 +87,7 @@ class Pruner {
     std::size_t read_function(std::size_t begin) {
         Function function{begin, none, begin};
         std::size_t place = begin;
-        for (Op op = Op::Function; op != Op::FunctionEnd; place += words_of(module_[place])) {
+        for (Op op = Op::Function; op != Op::FunctionEnd && place < module_.size(); place += words_of(module_[place])) {
             op = op_at(place);
             std::vector<Block>& blocks = function.blocks;
             if (op == Op::Label) {
@@ -131,7 +134,7 @@ class Pruner {
         }
     }
 
-    // Where a condition that is known leads. Branches back to the head of a loop stay, since a loop must have one.
+    // The block that a known condition leads to. Branches back to the head of a loop stay, since a loop must have one.
     std::optional<Id> only_successor(const Block& block) const {
         const Words branch = at(block.last);
         if (op_of(branch[0]) != Op::BranchConditional || !truth_[branch[1]]) return {};
@@ -139,7 +142,7 @@ class Pruner {
         return *truth_[branch[1]] ? branch[2] : branch[3];
     }
 
-    // Of each word of a terminator that names a block; a case of a switch may do so by chance.
+    // The blocks that words of a terminator name; a case of a switch may name one by chance.
     std::vector<std::size_t> successors(const Function& function, const Block& block) const {
         if (const std::optional<Id> only = only_successor(block)) return {index_[*only]};
         std::vector<std::size_t> found;

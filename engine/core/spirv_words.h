@@ -73,7 +73,7 @@ constexpr std::uint32_t first_word(Op op, std::size_t words) {
     return static_cast<std::uint32_t>(words) << 16 | static_cast<std::uint32_t>(op);
 }
 
-// Of those that define a type, each with the type's id first.
+// Whether it defines a type, whose id is the first operand.
 constexpr bool is_type(Op op) {
     using enum Op;
     return (op >= static_cast<Op>(19) && op <= static_cast<Op>(38)) || op == TypeCooperativeMatrix ||

@@ -16,6 +16,7 @@
 #include "engine/core/files.h"
 #include "engine/core/frozen_spirv.h"
 #include "engine/core/sort_args.h"
+#include "engine/core/spirv_words.h"
 
 namespace twinray {
 namespace {
@@ -265,6 +266,21 @@ TEST_F(PrunedSpirv, FunctionsThatAreNotCalledGo) {
     EXPECT_EQ(count(left, "gone"), 0u) << left;
     EXPECT_EQ(count(left, "OpFunctionEnd"), 2u) << left;
     EXPECT_EQ(count(left, "%kept = OpFAdd"), 1u) << left;
+}
+
+TEST(SpirvWords, FillAModuleInstructionByInstruction) {
+    const Words header = {0x07230203, 0x00010500, 0, 32, 0}, boolean = {2u << 16 | 20, 1};
+    const auto with = [&](const Words& more) {
+        Words words = header;
+        words.insert(words.end(), more.begin(), more.end());
+        return words;
+    };
+    EXPECT_TRUE(spirv::is_module(with(boolean)));
+    EXPECT_EQ(prune_branches(with(boolean)), with(boolean)) << "it has no function";
+    EXPECT_FALSE(spirv::is_module(with({3u << 16 | 20, 1}))) << "cut short";
+    EXPECT_FALSE(spirv::is_module(with({0}))) << "an instruction of no words";
+    EXPECT_FALSE(spirv::is_module({}));
+    EXPECT_FALSE(spirv::is_module(Words{1, 2, 3, 4, 5})) << "another magic number";
 }
 
 // With their own constants, with all but sizes of groups 0, and with random ones.
