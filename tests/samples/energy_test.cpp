@@ -92,6 +92,25 @@ TEST_F(Energy, ARectangularLightGivesItsAnalyticIrradianceByEveryStrategy) {
     }
 }
 
+// The same lamp before a sky, and a point light: each is chosen with its share.
+TEST_F(Energy, AnEnvironmentALampAndAPointLightAddUpByEveryStrategy) {
+    const double view_factor = 0.554126423979571987;
+    for (const uint strategy : strategies) {
+        Scene scene;
+        add(scene, make_quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}), lambert(1));
+        add(scene, make_quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}), lamp(2));
+        scene.lights = {{.name = "light", .kind = Light::Kind::point, .color = vec3(0.5f), .position = {0, 0.5f, 0}}};
+        RenderSetup setup;
+        setup.environment = sky(0.5f);
+        setup.settings.max_depth = 1;
+        setup.settings.strategy = strategy;
+        setup.settings.camera = camera_rays(look({0, 0.5f, 0}, vec3(0), 1e-4f), 1);
+        const double by_point = strategy == STRATEGY_BSDF ? 0 : 0.5 / 0.25 / static_cast<double>(PI);
+        expect_mean(render(context(), scene, setup), 2 * view_factor + 0.5 * (1 - view_factor) + by_point,
+                    name_of_strategy(strategy));
+    }
+}
+
 TEST_F(Energy, ALightShinesFromItsFrontOnlyUnlessItIsTwoSided) {
     for (const bool is_two_sided : {false, true}) {
         Scene scene;
