@@ -17,9 +17,10 @@ set(passes
     --eliminate-dead-code-aggressive
     --merge-blocks
 )
-# It warns of each function with two returns that it leaves as it is.
+# It warns of each function with two returns that it leaves as it is. That of SPIRV-Tools 2025.1 first refuses arrays
+# that scalarBlockLayout allows, unless it is told of that feature.
 execute_process(
-    COMMAND ${SPIRV_OPT} ${passes} ${COMPILED} -o ${MODULE}
+    COMMAND ${SPIRV_OPT} --scalar-block-layout ${passes} ${COMPILED} -o ${MODULE}
     RESULT_VARIABLE result
     OUTPUT_VARIABLE said
     ERROR_VARIABLE said
