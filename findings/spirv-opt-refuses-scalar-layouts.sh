@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 # A good guess: spirv-opt optimises whatever module it is given, and checking is what spirv-val is for.
 # Seen: spirv-opt validates the module first, without an option for that. An array of 24-byte structs, which Vulkan
-# 1.2's scalarBlockLayout allows, is then refused by SPIRV-Tools 2025.1 for the default target, universal; 2026.4 takes it
-# there and refuses it with --target-env=vulkan1.2 alone. Both take it with --scalar-block-layout.
+# 1.2's scalarBlockLayout allows, is then refused by SPIRV-Tools 2025.1 for the default target, universal; 2026.4
+# takes it there and refuses it with --target-env=vulkan1.2 alone. Both take it with --scalar-block-layout.
 # Seen with spirv-tools 2025.1~rc1-1, 2026.4~rc2-1 and glslang-tools 16.6.0-1 on 2026-11-28.
 folder=$(mktemp -d)
 # shellcheck source=findings/room.sh
