@@ -28,7 +28,7 @@ done
 
 # What is neither ours, Vulkan's, the compiler's nor the C library's.
 others=$(cat "$work"/*.d | grep -oE "(^| )/[^ :]+" | tr -d " " | sort -u |
-    grep -vE "^$folder/|/vulkan/|/vk_video/|/c\+\+/|/lib/(gcc|llvm|clang)|^/usr/include/([a-z0-9_-]+-linux-gnu/|sys/|bits/|asm[a-z-]*/|linux/|gnu/)?[A-Za-z0-9_-]+(/[A-Za-z0-9_-]+)*\.h$" || true)
+    grep -vE "^$folder/|/vulkan/|/vk_video/|/c\+\+/|/lib/(gcc|llvm|clang|linux)|^/usr/include/([a-z0-9_-]+-linux-gnu/|sys/|bits/|asm[a-z-]*/|linux/|gnu/)?[A-Za-z0-9_-]+(/[A-Za-z0-9_-]+)*\.h$" || true)
 others+=$(cat "$work"/*.d | tr ' ' '\n' | grep -E '/(glm|nlohmann|CLI|OpenEXR|Imath|eigen3|Eigen)/|(vk_mem_alloc|volk|stb_[a-z_]*|tiny_gltf[a-z_0-9]*|zlib|gmp(xx)?)\.h' || true)
 if [[ -n $others ]]; then
     printf '%s\n' "$others" >&2
