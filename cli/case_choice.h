@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// --only: which cases of a suite run.
+// --only and --list: which cases of a suite run.
 #pragma once
 
+#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,11 +12,20 @@
 namespace twinray::cli {
 
 Option only_option(std::vector<std::string>& patterns);
+Option list_option(bool& lists);
+
+struct NamedCase {
+    std::string id, title;
+};
+std::vector<NamedCase> cases_of_conformance();
+// Those included, and those of scenes of the user's.
+std::vector<NamedCase> cases_of_report(std::span<const std::filesystem::path> scenes = {});
 
 // Whether a pattern fits the id; without patterns all are chosen.
 bool is_chosen(std::span<const std::string> patterns, const std::string& id);
-
-// UsageError, if a pattern fits none of the ids, which `where` has all of.
-void check_choice(std::span<const std::string> patterns, std::span<const std::string> ids, const std::string& where);
+// UsageError, if a pattern fits none of them, which `where` has all of.
+void check_choice(std::span<const std::string> patterns, std::span<const NamedCase> cases, const std::string& where);
+// Prints those that are chosen, a line each: "W01  closed icosphere, ...".
+void list_cases(std::span<const std::string> patterns, std::span<const NamedCase> cases);
 
 }  // namespace twinray::cli

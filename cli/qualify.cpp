@@ -4,6 +4,7 @@
 #include <iostream>
 #include <optional>
 
+#include "cli/case_choice.h"
 #include "cli/command/values.h"
 #include "cli/commands.h"
 #include "cli/common.h"
@@ -20,14 +21,13 @@
 namespace twinray::cli {
 namespace {
 
-constexpr double default_seconds = 60;
-
 struct QualifyOptions {
     CommonOptions common;
     std::filesystem::path folder = "twinray_qualify";
     std::string devices = "one";
     std::filesystem::path junit, tap, sarif;
     std::optional<double> budget;  // seconds for each device
+    std::vector<std::string> only;
 };
 
 // On the device of this process.
@@ -39,12 +39,13 @@ std::vector<Record> records_here(const QualifyOptions& options) {
     std::cout << "qualify " << context.properties().name << ", " << context.properties().driver << '\n';
     suite::SuiteState state;
     suite::run(suite::catalogue(),
-               {.seed = options.common.seed,
-                .seconds = options.budget.value_or(default_seconds),
+               {.only = options.only,
+                .seed = options.common.seed,
+                .seconds = options.budget.value_or(0),
                 .takes_times = false,
                 .replays_in = options.folder},
                devices, recorder, state, options.common.quiet);
-    run_conformance(options.common, {}, false, recorder);
+    run_conformance(options.common, options.only, false, recorder);
     recorder.rewrite();
     report::print_summary(std::cout, recorder.records());
     return recorder.records();
@@ -61,9 +62,11 @@ std::vector<Record> records_of_all(const QualifyOptions& options) {
                                               "-o",
                                               folder.string(),
                                               "--seed",
-                                              std::to_string(options.common.seed),
-                                              "--budget",
-                                              std::to_string(options.budget.value_or(default_seconds))};
+                                              std::to_string(options.common.seed)};
+        if (!options.only.empty()) arguments.push_back("--only");
+        for (const std::string& pattern : options.only)
+            (&pattern == &options.only.front() ? arguments.emplace_back() : arguments.back() += ',') += pattern;
+        if (options.budget) arguments.insert(arguments.end(), {"--budget", std::to_string(*options.budget)});
         if (options.common.quiet) arguments.push_back("--quiet");
         if (options.common.validation) arguments.push_back("--validation");
         const int status = run_twinray(arguments, device.environment);
@@ -82,6 +85,7 @@ void write(const std::filesystem::path& file, const std::string& text) {
 
 // Exit status: 1 where a check fails.
 int run(const QualifyOptions& options) {
+    check_choice(options.only, cases_of_report(), "`twinray report --list`");
     for (const std::filesystem::path& file : {options.junit, options.tap, options.sarif}) check_writable(file);
     const std::vector<Record> records = options.devices == "all" ? records_of_all(options) : records_here(options);
     const std::vector<report::Check> checks = report::checks_of(records, options.common.strict);
@@ -111,7 +115,8 @@ Command qualify_command() {
                   "SwiftShader where a browser brought it; each in a process of its own"},
          {.name = "--budget",
           .value = number(options->budget, {.least = 1}),
-          .help = "seconds for each device; 60 if not given"}}};
+          .help = "after every case at its least, more of the least certain ones for so many seconds a device"},
+         only_option(options->only)}};
     const Section output = {
         "Output",
         {output_option(folder(options->folder), "folder of report.jsonl and replays; with --devices all one for each"),

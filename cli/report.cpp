@@ -31,7 +31,7 @@ struct ReportOptions {
     std::filesystem::path folder = "twinray_report";
     std::string suite = "quick";
     std::optional<double> budget;  // seconds
-    bool resume = false;
+    bool resume = false, lists = false;
     std::vector<std::string> only;
     std::vector<suite::Backend> accels;
     std::vector<Level> levels;
@@ -41,15 +41,13 @@ struct ReportOptions {
     AccelOptions trees = {};
 };
 
-constexpr double quick_seconds = 76;  // of the suite; what follows takes some more
-
 // With a budget, a full suite begins as a quick one does, and gets as far as the time is enough for.
 suite::Settings settings_of(const ReportOptions& options) {
     const bool is_full = options.suite == "full";
     suite::Settings settings{.effort = is_full && !options.budget ? 1.0 : 0.0,
                              .only = options.only,
                              .seed = options.common.seed,
-                             .seconds = options.budget.value_or(is_full ? 0 : quick_seconds),
+                             .seconds = options.budget.value_or(0),
                              .replays_in = options.folder};
     if (!options.accels.empty()) settings.backends = options.accels;
     if (!options.levels.empty()) settings.levels = options.levels;
@@ -73,13 +71,6 @@ void run_conformance(const ReportOptions& options, Recorder& recorder) {
     if (std::none_of(cases.begin(), cases.end(), [&](const auto& row) { return is_chosen(options.only, row.id); }))
         return;
     run_conformance(options.common, options.only, options.suite == "full" && !options.budget, recorder);
-}
-
-void check_only(const ReportOptions& options, std::span<const suite::SuiteCase> cases) {
-    std::vector<std::string> ids;
-    for (const suite::SuiteCase& row : cases) ids.push_back(row.id);
-    for (const suite::SuiteCase& row : conformance_cases()) ids.push_back(row.id);
-    check_choice(options.only, ids, "the catalogue of the report");
 }
 
 // What a run must have in common with one that it goes on with.
@@ -137,9 +128,14 @@ std::vector<std::string> write_reproducers(const ReportOptions& options, std::sp
 
 // Exit status: 1 where there is a fault of ours.
 int run(const ReportOptions& options) {
+    const std::vector<NamedCase> all = cases_of_report(options.scenes);
+    check_choice(options.only, all, "`twinray report --list`");
+    if (options.lists) {
+        list_cases(options.only, all);
+        return 0;
+    }
     std::vector<suite::SuiteCase> cases = suite::catalogue();
     for (suite::SuiteCase& of_scene : suite::scene_cases(options.scenes)) cases.push_back(std::move(of_scene));
-    check_only(options, cases);
     for (const std::filesystem::path& scene : options.scenes) load_scene(scene, options.common);
     // Read before anything is written: it may be the report that this one replaces.
     const JsonLines baseline = options.baseline.empty() ? JsonLines() : read_json_lines(options.baseline);
@@ -186,11 +182,12 @@ Command report_command() {
           .help = "quick takes 90 s on a CPU driver with two cores"},
          {.name = "--budget",
           .value = number(options->budget, {.least = 1}),
-          .help = "every case at its least, then the least certain ones with more effort until so much time is spent"},
+          .help = "after every case at its least, the least certain ones with more effort until so much time is spent"},
          {.name = "--resume",
           .value = flag(options->resume),
           .help = "go on with the run in the folder that was cut short"},
          only_option(options->only),
+         list_option(options->lists),
          {.name = "--scenes",
           .value = file_list(options->scenes),
           .help = "scenes of yours, on which each level is measured as case L11, ..."},

@@ -34,7 +34,7 @@ struct VerifyOptions {
     std::filesystem::path reproducers, reproducer;  // folders of faults of the driver
     std::string suite;                              // in place of a scene
     std::vector<std::string> only;                  // of its cases
-    bool is_full = false;
+    bool is_full = false, lists = false;
     std::size_t random = 100'000;
     std::size_t aimed = 10'000;
     Level level = Level::watertight;
@@ -186,6 +186,8 @@ Command verify_command() {
           .needs = {"--replay"}}}};
     Option only = only_option(options->only);
     only.needs = {"--suite"};
+    Option list = list_option(options->lists);
+    list.needs = {"--suite"};
     const Section suite = {
         "Suite",
         {{.name = "--suite",
@@ -193,6 +195,7 @@ Command verify_command() {
           .help = "instead of a scene: cases about the driver's own structures, each with a control that must fail; "
                   "with --strict a driver that fails what Vulkan demands is a fault, too"},
          only,
+         list,
          {.name = "--full",
           .value = flag(options->is_full),
           .help = "with 100 million rays, not 400,000",
@@ -213,8 +216,12 @@ Command verify_command() {
             .run = [options] {
                 if (!options->scene.empty() + !options->replay.empty() + !options->suite.empty() != 1)
                     throw UsageError("one of SCENE, --replay FILE and --suite conformance is required");
-                if (!options->suite.empty())
-                    return verify_conformance(options->common, options->only, options->is_full);
+                if (!options->suite.empty()) {
+                    check_choice(options->only, cases_of_conformance(), "`twinray verify --suite conformance --list`");
+                    if (!options->lists) return verify_conformance(options->common, options->only, options->is_full);
+                    list_cases(options->only, cases_of_conformance());
+                    return 0;
+                }
                 if (options->random + options->aimed == 0)
                     throw UsageError("--random 0 and --aimed 0 leave nothing to compare");
                 return (options->replay.empty() ? run(*options) > 0 : run_replay(*options)) ? 1 : 0;

@@ -45,7 +45,7 @@ SEES = {  # besides itself, include and, unless AS_HOSTS, shaders/shared
 MOST_HEADERS = {  # of this project behind a header, directly or not; lower them whenever they fall
     "include/twinray/tlas.h": 12, "engine/accel/accel_backend.h": 76,
 }
-MOST_PUBLIC = {"headers": 15, "lines": 3640}  # of include/twinray, its GLSL apart
+MOST_PUBLIC = {"headers": 15, "lines": 3660}  # of include/twinray, its GLSL apart
 MOST_LINES = {"include/twinray/abstract_accel.h": 270}
 GLSL = re.compile(r"\.(glsl|comp|rgen|rmiss|rchit|rahit|rint|rcall|vert|frag)$")  # outside shaders/, sees them all
 SOURCE = re.compile(r"\.(h|hpp|c|cc|cpp|inl)$|" + GLSL.pattern)

@@ -270,8 +270,13 @@ InstanceRecord AccelBackend::checked_record(const PushedGeometry& pushed, std::s
     std::string fault = fault_of(transform);
     if (options.custom_index > max_custom_index)
         fault = text("custom index ", options.custom_index, " exceeds 24 bits (at most ", max_custom_index, ")");
-    if (!fault.empty()) fail(name_, ": mesh '", pushed.held->geometry.name, "', instance ", index, ": ", fault);
     InstanceRecord record = make_instance_record(transform, options);
+    // Kernels place what was built, in the units in which it was.
+    const float unit = pushed.held->geometry.scale;
+    const Rows built = scaled_map(record.object_to_world, unit);
+    if (fault.empty() && !is_usable(built, inverse_of(built)))
+        fault = text("transform times the mesh's size, in units of ", unit, ", exceeds float32");
+    if (!fault.empty()) fail(name_, ": mesh '", pushed.held->geometry.name, "', instance ", index, ": ", fault);
     record.geometry = pushed.held->block.address();
     return record;
 }

@@ -15,6 +15,7 @@ InstanceState state_of(const InstanceRecord& record) { return {transform_of(reco
 void AccelBackend::update_transform(AccelHandle handle, const Transform& transform) {
     if (const std::size_t n = live(handle, "update_transform").instances.records.size(); n != 1)
         fail(name_, ": update_transform: handle ", handle.id, " has ", n, " instances, not 1; use update_transforms");
+    check_movable("update_transform");
     update_transform_at(handle, 0, transform);
 }
 

@@ -2,6 +2,9 @@
 // From hits to surfaces and handles, for hosts.
 #include "engine/accel/surface_kernels.h"
 
+#include <algorithm>
+#include <numeric>
+
 #include "engine/accel/accel_backend.h"
 #include "engine/core/device_list.h"
 #include "engine/core/error.h"
@@ -43,19 +46,39 @@ std::size_t AccelBackend::index_in_handle(const Hit& hit) const {
 std::vector<HitExact> AccelBackend::exact_hits(std::span<const Ray64> rays, const TraceDesc& desc) {
     if (!refinement_)
         fail(name_, ": exact_hits: made for level ", name_of(options_.level), "; it takes refined or more");
+    std::vector<std::size_t> asked(rays.size());
+    std::iota(asked.begin(), asked.end(), std::size_t{0});
+    std::vector<Ray64> given(rays.begin(), rays.end());
     std::vector<Ray> rounded;
     for (const Ray64& ray : rays)
         rounded.push_back(
             {vec3(ray.origin), static_cast<float>(ray.t_min), vec3(ray.direction), static_cast<float>(ray.t_max)});
     TraceDesc at_level = desc;
     at_level.level = options_.level;
-    const std::vector<Hit> hits = closest_hits(rounded, at_level);
-    const std::vector<HitDouble> exact = refinement_->exact(rays, hits);
-    std::vector<HitExact> found(hits.size());
-    for (std::size_t i = 0; i < hits.size(); ++i)
-        if (const Hit& hit = hits[i]; hit.hit)
-            found[i] = {1,          hit.primitive_index, hit.custom_index, hit.instance_index, handle_of(hit),
-                        exact[i].t, exact[i].u,          exact[i].v};
+    std::vector<HitExact> found(rays.size());
+    // Where float64 finds a hit outside the ray's interval, the ray goes on behind it, in steps that double from what
+    // rounding moves the origin by: float32 may find the same triangle again until it is past it.
+    std::vector<float> steps;
+    for (const Ray& ray : rounded)
+        steps.push_back(std::max(largest_entry(ray.origin) / largest_entry(ray.direction) * 0x1p-24f, 0x1p-100f));
+    while (!asked.empty()) {
+        const std::vector<Hit> hits = closest_hits(rounded, at_level);
+        const std::vector<HitDouble> exact = refinement_->exact(given, hits);
+        std::size_t left = 0;
+        for (std::size_t i = 0; i < hits.size(); ++i) {
+            const Hit& hit = hits[i];
+            if (!hit.hit) continue;
+            if (exact[i].t > given[i].t_min && exact[i].t < given[i].t_max) {
+                found[asked[i]] = {
+                    1,          hit.primitive_index, hit.custom_index, hit.instance_index, handle_of(hit),
+                    exact[i].t, exact[i].u,          exact[i].v};
+                continue;
+            }
+            asked[left] = asked[i], given[left] = given[i], rounded[left] = rounded[i], steps[left] = 2 * steps[i];
+            rounded[left++].t_min = hit.t + steps[i];
+        }
+        asked.resize(left), given.resize(left), rounded.resize(left), steps.resize(left);
+    }
     return found;
 }
 

@@ -185,6 +185,7 @@ void AccelBackend::warn_of_unusable_instances() {
 }
 
 Bounds AccelBackend::world_bound() const {
+    if (!synced_.value) check_synced("world_bound");
     context_.wait(synced_);
     return world_bound_if_ready().value_or(Bounds{});
 }

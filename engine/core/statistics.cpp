@@ -40,13 +40,12 @@ double regularised_beta(double a, double b, double x) {
     return 1 - std::exp(log_front) * beta_fraction(b, a, 1 - x) / b;
 }
 
-// The p in [low, 1] at which more than `count` of `trials` events have the chance `chance`.
-double probability_of_more(double count, double trials, double chance) {
-    double low = count / trials;
+// The x in [low, 1] at which the beta distribution has the chance `chance` below it.
+double beta_quantile(double a, double b, double chance, double low = 0) {
     double high = 1;
     for (int i = 0; i < 60; ++i) {
         const double p = low + (high - low) / 2;
-        (regularised_beta(count + 1, trials - count, p) < chance ? low : high) = p;
+        (regularised_beta(a, b, p) < chance ? low : high) = p;
     }
     return high;
 }
@@ -56,7 +55,8 @@ double upper_bound(std::uint64_t count, std::uint64_t trials, double chance) {
     if (count >= trials) return 1;
     const double n = static_cast<double>(trials);
     if (count == 0) return -std::expm1(std::log1p(-chance) / n);
-    return probability_of_more(static_cast<double>(count), n, chance);
+    const double k = static_cast<double>(count);
+    return beta_quantile(k + 1, n - k, chance, k / n);
 }
 
 // Of a binomial distribution of n trials: the smallest k with P(at most k) >= chance.
@@ -127,6 +127,48 @@ Interval rate_interval(std::uint64_t count, std::uint64_t trials, double miss) {
     if (trials == 0) return {0, 1};
     const double chance = 1 - miss / 2;
     return {1 - upper_bound(trials - count, trials, chance), upper_bound(count, trials, chance)};
+}
+
+namespace {
+
+// A weighted mean of rates, the variance of the sum that it is, and the most that one event adds to it.
+struct Moments {
+    double mean = 0, variance = 0, largest = 0;
+};
+
+Moments moments_of(std::span<const Stratum> strata) {
+    double weights = 0;
+    for (const Stratum& stratum : strata) weights += stratum.trials ? stratum.weight : 0;
+    Moments moments;
+    for (const Stratum& stratum : strata) {
+        if (stratum.trials == 0) continue;
+        const double of_event = stratum.weight / weights / static_cast<double>(stratum.trials);
+        const double events = static_cast<double>(stratum.count);
+        moments.mean += of_event * events;
+        moments.variance += of_event * of_event * events;
+        moments.largest = std::max(moments.largest, of_event);
+    }
+    return moments;
+}
+
+}  // namespace
+
+double mean_rate(std::span<const Stratum> strata) {
+    const Moments moments = moments_of(strata);
+    return moments.largest > 0 ? moments.mean : std::numeric_limits<double>::quiet_NaN();
+}
+
+Interval mean_rate_interval(std::span<const Stratum> strata, double miss) {
+    const Moments seen = moments_of(strata);
+    if (seen.largest == 0) return {0, 1};
+    const auto bound = [](double mean, double variance, double chance) {
+        const double trials = mean / variance, events = mean * trials;
+        return beta_quantile(events, std::max(trials - events + 1, 1.0), chance);
+    };
+    // From above it is as if one event more had happened, where one adds most.
+    const double mean = seen.mean + seen.largest, variance = seen.variance + seen.largest * seen.largest;
+    const double low = seen.mean > 0 ? bound(seen.mean, seen.variance, miss / 2) : 0;
+    return {low, seen.mean < 1 ? bound(mean, variance, 1 - miss / 2) : 1};
 }
 
 double paired_margin(double squared_differences, double most, double miss) {

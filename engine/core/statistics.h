@@ -35,6 +35,17 @@ inline Interval rate_interval_95(std::uint64_t count, std::uint64_t trials) {
     return rate_interval(count, trials, 0.05);
 }
 
+// Trials that share a rate, and how much it counts in a mean.
+struct Stratum {
+    std::uint64_t count = 0, trials = 0;
+    double weight = 1;  // over the sum of all weights
+};
+// The weighted mean of the rates, whatever the numbers of trials. Strata without a trial are left out; NaN for none.
+double mean_rate(std::span<const Stratum> strata);
+// The interval that misses it with the chance `miss`, by Fay and Feuer (1997), with the beta distribution of as many
+// effective trials in place of their gamma distribution: for one stratum it is rate_interval. [0, 1] for none.
+Interval mean_rate_interval(std::span<const Stratum> strata, double miss);
+
 // How far a sum of independent numbers within [0, most] is from its expectation, but for the chance `miss`: Bernstein's
 // inequality (1924) with a variance that is bounded by what was seen of it. `squared_differences`: the numbers are put
 // into pairs, in an order that does not depend on them, and the squares of their differences are summed; one without

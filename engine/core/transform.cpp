@@ -5,9 +5,13 @@
 #include <twinray/geometry.h>
 
 #include "engine/core/error.h"
-#include "twinray/glsl/vector_math.h"
+#include "twinray/glsl/cpp.h"
 
 namespace twinray {
+#include "twinray/glsl/cpp_begin.h"
+#include "twinray/glsl/instance.h"
+#include "twinray/glsl/cpp_end.h"
+
 namespace {
 
 using dmat3 = glm::dmat3;  // column-major: m[column][row]
@@ -70,11 +74,10 @@ std::string fault_of(const Transform& transform) {
             if (!std::isfinite(row[column])) return text("transform entry ", row[column], " is not finite");
     const double det = determinant(transform);
     if (det == 0.0) return "transform is singular (its determinant is 0)";
-    for (const vec4& row : rounded_inverse(transform).rows)
-        for (int column = 0; column < 4; ++column)
-            if (!std::isfinite(row[column]))
-                return text("transform has no inverse in float32 (its determinant is ", det, ")");
-    return "";
+    // As kernels ask it.
+    const Rows to_world{transform.rows[0], transform.rows[1], transform.rows[2]};
+    if (is_usable(to_world, inverse_of(to_world))) return "";
+    return text("transform has no inverse in float32 without denormal numbers (its determinant is ", det, ")");
 }
 
 Transform inverse(const Transform& transform, const char* object) {

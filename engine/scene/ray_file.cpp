@@ -117,9 +117,10 @@ std::string npy_header_of_hits(std::size_t count) {
 
 void write_lines(std::ostream& out, const std::vector<Hit>& hits) {
     out << "hit,t,primitive_index,custom_index,u,v,instance_index\n" << std::setprecision(9);
+    const float zero = 0;  // -0 plus it is 0
     for (const Hit& hit : hits)
-        out << hit.hit << ',' << hit.t << ',' << hit.primitive_index << ',' << hit.custom_index << ',' << hit.u << ','
-            << hit.v << ',' << hit.instance_index << '\n';
+        out << hit.hit << ',' << hit.t << ',' << hit.primitive_index << ',' << hit.custom_index << ',' << hit.u + zero
+            << ',' << hit.v + zero << ',' << hit.instance_index << '\n';
 }
 
 }  // namespace

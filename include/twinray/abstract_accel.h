@@ -134,9 +134,9 @@ class AbstractAccel {
     // sync. Throws Error if edits are pending.
     Bounds object_bound(AccelHandle handle) const;
     // A box around all live instances at the last sync: the box of each geometry under its transform, rounded outward.
-    // Empty for an empty accelerator. Waits for the last sync if it is not done.
+    // Empty for an empty accelerator. Waits for the last sync. Throws Error while edits wait for the first one.
     Bounds world_bound() const;
-    // The same without waiting: nothing while the last sync is not done.
+    // The same without waiting: nothing while the last sync is not done, empty before the first.
     std::optional<Bounds> world_bound_if_ready() const;
     // The same on the device, for kernels that run after the last sync.
     Ref<WorldBound> world_bound_on_device() const;
@@ -170,7 +170,8 @@ class AbstractAccel {
     // The same for whichever hit is found first.
     std::vector<Hit> any_hits(std::span<const Ray> rays, const TraceDesc& desc = {});
     // Closest hits at the accelerator's own level, which must be refined or certified; then t, u and v of what each met
-    // in float64, of the ray in float64. What is met is found with the ray rounded to float32.
+    // in float64, of the ray in float64: t is within its interval. What is met is found with the ray rounded to
+    // float32, which misses what lies nearer to it, or to an end of the interval, than that moves it.
     std::vector<HitExact> exact_hits(std::span<const Ray64> rays, const TraceDesc& desc = {});
     // What lies where each ray met what its hit names, as twinray/glsl/surface.glsl finds it; of misses and boxes
     // all is 0. Waits, for what sync(Commands&) has recorded too, which must be submitted. Wants
@@ -241,6 +242,8 @@ class QueryKernel {
         accel.check_kernel_queries(desc_.name);
         desc_.spirv = accel.is_software() ? software : hardware;
     }
+    QueryKernel(const AbstractAccel&&, KernelDesc, std::span<const std::uint32_t>,
+                std::span<const std::uint32_t>) = delete;
 
     // As Kernel::dispatch. Throws Error if edits are pending.
     void dispatch(Commands& commands, const Args& args, std::uint64_t count, VkDescriptorSet images = VK_NULL_HANDLE) {

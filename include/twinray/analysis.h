@@ -207,6 +207,8 @@ class ViewFactors {
     // `known` replaces what rays met; rows that contours fill get 1024 rays at most.
     ViewFactors(AbstractAccel& accel, const Faces& faces, const ViewFactorOptions& options,
                 std::span<const KnownExchange> known = {});
+    // Faces must outlive it.
+    ViewFactors(AbstractAccel&, const Faces&&, const ViewFactorOptions&, std::span<const KnownExchange> = {}) = delete;
     ~ViewFactors();
 
     std::size_t row_count() const;             // as many as groups

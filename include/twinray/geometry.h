@@ -186,7 +186,8 @@ Transform operator*(const Transform& a, const Transform& b);
 double determinant(const Transform& transform);
 
 // Why the map cannot place an instance, "" if it can: an entry is not finite, the linear part is singular (a
-// determinant of exactly 0), or the inverse exceeds float32.
+// determinant of exactly 0), the inverse exceeds float32, or a row or column of the linear part is denormal, which many
+// devices take for 0.
 std::string fault_of(const Transform& transform);
 
 // The inverse, computed in float64 and rounded once. Throws Error, naming `object`, when there is a
@@ -230,6 +231,11 @@ using Uints = Ref<uint>;
 #include "twinray/glsl/ray.h"
 #include "twinray/glsl/cpp_end.h"
 static_assert(sizeof(Ray) == 32 && sizeof(Hit) == 32);
+// In every field; NaN is equal to nothing.
+constexpr bool operator==(const Hit& a, const Hit& b) {
+    return a.hit == b.hit && a.t == b.t && a.primitive_index == b.primitive_index && a.custom_index == b.custom_index &&
+           a.u == b.u && a.v == b.v && a.instance_index == b.instance_index && a.flags == b.flags;
+}
 
 // An indexed triangle mesh with what shading needs. Triangle i keeps its index i everywhere.
 // normals, tangents, uvs, second_uvs and colors are empty or have one entry per position; materials is empty (all 0) or

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -204,6 +205,7 @@ struct AccelView {
 
     // That of a kernel with twinray/glsl/query.glsl, for its KernelDesc::constants.
     SpecializationConstant features_constant() const;
+    bool operator==(const AccelView&) const = default;
 };
 
 // What an accelerator may be able to do.
@@ -284,3 +286,11 @@ constexpr std::size_t max_instances = (1u << 24) - 1;  // what Vulkan guarantees
 constexpr uint max_custom_index = (1u << 24) - 1;
 
 }  // namespace twinray
+
+namespace std {
+// By its id.
+template <>
+struct hash<twinray::AccelHandle> {
+    size_t operator()(const twinray::AccelHandle& handle) const noexcept { return hash<uint64_t>()(handle.id); }
+};
+}  // namespace std

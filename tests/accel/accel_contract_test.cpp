@@ -9,6 +9,7 @@
 #include "validation/reference/aimed_rays.h"
 #include "validation/reference/classify.h"
 #include "tests/accel/accel_fixture.h"
+#include "tests/validation/reference/meshes.h"
 
 namespace twinray {
 namespace {
@@ -654,6 +655,37 @@ TEST_P(Accel, UnusableTransformsFromTheDeviceAreInactiveAndCounted) {
     accel().update_transform_at(handle, 2, Transform::translation({0, 0, 2}));
     accel().sync();
     EXPECT_TRUE(was_logged("3 instances have a transform that is singular or not finite"));
+}
+
+// Scales along axes, then a rotation, in either order.
+TEST_P(Accel, EveryTransformThatPushAcceptsIsActive) {
+    std::mt19937 random(1);
+    const AccelHandle base = accel().push(make_box(vec3(-1), vec3(1)));
+    int accepted = 0;
+    for (const double most : {14.0, 20.0, 36.0})
+        for (int i = 0; i < 200; ++i) {
+            std::uniform_real_distribution<double> exponent(-most, most);
+            std::uniform_real_distribution<float> angle(-4, 4);
+            const auto power = [&] { return static_cast<float>(std::pow(10.0, exponent(random))); };
+            const Transform scaling = Transform::scaling({power(), power(), power()}),
+                            turned = test::rotation(angle(random), angle(random));
+            for (const Transform& transform : {turned * scaling, scaling * turned})
+                if (const std::string fault =
+                        error_if_any([&] { accel().push_instances_of(base, std::span(&transform, 1)); });
+                    fault.empty())
+                    ++accepted;
+                else
+                    EXPECT_NE(fault.find("transform has no inverse in float32"), std::string::npos) << fault;
+        }
+    EXPECT_GT(accepted, 1000) << "of 1200";
+    for (const float tiny : {1e-38f, 1e-40f})
+        EXPECT_NE(error_if_any([&] { accel().push(square(0), Transform::scaling(vec3(tiny))); }).find("denormal"),
+                  std::string::npos);
+    accel().sync();
+    accel().wait_for_gpu();
+    accel().update_transform_at(base, 0, Transform::translation({0, 0, 1}));
+    accel().sync();
+    EXPECT_FALSE(was_logged("inactive"));
 }
 
 TEST_P(Accel, InstancesTellTheirState) {

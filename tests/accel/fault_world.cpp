@@ -133,7 +133,8 @@ World::State World::state() {
     state.has_tower = accel().is_valid(tower_);
     state.has_guest = accel().is_valid(guest_);
     state.is_clean = faults::outcome_of([&] { accel().view(); }) == faults::Outcome::done;
-    for (const vec3& corner : {accel().world_bound().lo, accel().world_bound().hi})
+    const Bounds bound = accel().revision() ? accel().world_bound() : Bounds{};  // there is none before the first sync
+    for (const vec3& corner : {bound.lo, bound.hi})
         state.world_bound.insert(state.world_bound.end(), {corner.x, corner.y, corner.z});
     state.live = faults_.live_objects();
     state.allocated_bytes = context().allocated_bytes();

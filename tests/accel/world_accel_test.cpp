@@ -182,5 +182,37 @@ TEST_P(WorldAccelTest, ExactHitsAreInFloat64) {
     EXPECT_NE(error_if_any([&] { plain->exact_hits(rays); }).find("takes refined or more"), std::string::npos);
 }
 
+// A plane met from nearer than float32 tells apart there, at slopes down to 10^-5: some of the rounded rays begin on
+// its other side.
+TEST_P(WorldAccelTest, ExactHitsKeepToTheRaysInterval) {
+    if (!context().properties().shader_float64) TWINRAY_LACKS("float64", "no float64");
+    WorldAccel world(accel(), {});
+    const Mesh plane = make_quad(vec3(-100, -100, 0), vec3(200, 0, 0), vec3(0, 200, 0));
+    world.push(plane, Transform64::translation({0, 0, 1000}));
+    world.push(plane, Transform64::translation({0, 0, 1001}));
+    std::vector<Ray64> rays;
+    for (int i = 0; i < 4000; ++i)
+        rays.push_back({.origin = {50 * unit_(random_), 50 * unit_(random_), 1000 + 1e-4 * unit_(random_)},
+                        .t_min = i % 2 ? 0.0 : 1e-5,
+                        .direction = {unit_(random_), unit_(random_), (i % 3 ? 1e-5 : 1.0) * unit_(random_)},
+                        .t_max = i % 5 ? INFINITY : 20.0});
+    const std::vector<HitExact> hits = world.exact_hits(rays);
+    std::size_t near = 0, behind = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const Ray64& ray = rays[i];
+        const double to_first = (1000 - ray.origin.z) / ray.direction.z;
+        const double to_second = (1001 - ray.origin.z) / ray.direction.z;
+        if (!hits[i].hit) continue;
+        EXPECT_GT(hits[i].t, ray.t_min) << i;
+        EXPECT_LT(hits[i].t, ray.t_max) << i;
+        const bool is_first = hits[i].instance_index == 0;
+        EXPECT_NEAR(hits[i].t, is_first ? to_first : to_second, 1e-6 * std::abs(is_first ? to_first : to_second)) << i;
+        near += is_first;
+        behind += !is_first && std::abs(ray.direction.z) > 0.1;
+    }
+    EXPECT_GT(near, 100u);
+    EXPECT_GT(behind, 100u) << "rays go on behind what they do not meet";
+}
+
 }  // namespace
 }  // namespace twinray

@@ -59,6 +59,7 @@ const Family families[] = {
     {"all_hits_"},
     {"headless_dispatch_"},
     {"feature_costs_program_"},
+    {"broken_program_"},
     {"crossings_"},
     {"host_kernel_"},
     {"cube_"},

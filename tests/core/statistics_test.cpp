@@ -60,6 +60,45 @@ TEST(Quantile, IntervalCoversTheTruthInAtLeast95OfAHundredTrials) {
 }
 
 // Reference values: scipy's binomtest(k, n).proportion_ci() by bisection on the exact binomial tails.
+TEST(MeanRate, IsTheRateOfOneStratumAndTheMeanOfMany) {
+    for (const auto& [count, trials] : {std::pair{0u, 100u}, {5u, 100u}, {99u, 100u}, {100u, 100u}}) {
+        const std::vector<Stratum> one = {{count, trials, 3}};
+        const Interval mean = mean_rate_interval(one, 0.05), rate = rate_interval_95(count, trials);
+        EXPECT_NEAR(mean.low, rate.low, 1e-12);
+        EXPECT_NEAR(mean.high, rate.high, 1e-12);
+        EXPECT_DOUBLE_EQ(mean_rate(one), count / 100.0);
+    }
+    const std::vector<Stratum> many = {{10, 100, 1}, {0, 1'000'000, 1}, {0, 0, 5}};
+    EXPECT_DOUBLE_EQ(mean_rate(many), 0.05) << "whatever the numbers of trials";
+    EXPECT_EQ(mean_rate_interval({}, 0.05), (Interval{0, 1}));
+    EXPECT_TRUE(std::isnan(mean_rate({})));
+}
+
+// Strata of unlike rates, weights and sizes, of which the largest rate has the fewest trials.
+TEST(MeanRate, ItsIntervalHoldsTheTruthAsOftenAsItSays) {
+    std::mt19937_64 random(1);
+    for (const double scale : {0.0, 1e-4, 1e-3, 1e-2, 0.3}) {
+        constexpr int repeats = 2000;
+        int held = 0;
+        for (int repeat = 0; repeat < repeats; ++repeat) {
+            double truth = 0;
+            std::vector<Stratum> strata;
+            for (int i = 0; i < 6; ++i) {
+                const double rate = scale * i;
+                if (rate > 1) continue;
+                const std::uint64_t trials = 8192u >> i;
+                strata.push_back({std::binomial_distribution<std::uint64_t>(trials, rate)(random), trials, 1.0 + i});
+                truth += rate * (1.0 + i);
+            }
+            double weights = 0;
+            for (const Stratum& stratum : strata) weights += stratum.weight;
+            const Interval interval = mean_rate_interval(strata, 0.05);
+            held += interval.low <= truth / weights && truth / weights <= interval.high;
+        }
+        EXPECT_GE(held, 0.95 * repeats) << scale;
+    }
+}
+
 TEST(RateInterval95, IsClopperPearsons) {
     EXPECT_NEAR(rate_interval_95(5, 100).low, 0.0164319, 1e-6);
     EXPECT_NEAR(rate_interval_95(5, 100).high, 0.1128349, 1e-6);

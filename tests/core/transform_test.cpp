@@ -8,6 +8,7 @@
 
 #include "engine/core/error.h"
 #include "swtlas/structures.h"
+#include "tests/validation/reference/meshes.h"
 
 namespace twinray {
 namespace {
@@ -59,6 +60,48 @@ TEST(Transform, TheShadersInverseIsAccurateToARoundingForWellConditionedMaps) {
                 EXPECT_NEAR(computed[r][c], exact.rows[static_cast<std::size_t>(r)][c], norm_w * 0x1p-22)
                     << "transform " << i;
     }
+}
+
+// Scales along axes, beside a rotation: condition numbers up to 10^72, which say nothing of the maps. Where the scales
+// come after it, an entry of the rotation that is 0 leaves them apart, and low parts of products vanish.
+TEST(Transform, TheShadersInverseHoldsForScalesFarApart) {
+    std::mt19937 random(5);
+    int refused = 0;
+    for (const double most : {14.0, 20.0, 36.0})
+        for (int i = 0; i < 1000; ++i) {
+            std::uniform_real_distribution<double> exponent(-most, most);
+            std::uniform_real_distribution<float> angle(-4, 4);
+            const auto power = [&] { return static_cast<float>(std::pow(10.0, exponent(random))); };
+            const Transform scaling = Transform::scaling({power(), power(), power()}),
+                            turned = test::rotation(angle(random), angle(random));
+            for (const bool scaled_first : {true, false}) {
+                const Transform m = scaled_first ? turned * scaling : scaling * turned;
+                if (!fault_of(m).empty()) {
+                    EXPECT_FALSE(scaled_first && most <= 20) << "scaled by 10^" << most;
+                    ++refused;
+                    continue;
+                }
+                const Transform exact = inverse(m, "test");
+                const Rows rows = inverse_of({m.rows[0], m.rows[1], m.rows[2]});
+                const vec4 computed[] = {rows.r0, rows.r1, rows.r2};
+                for (int r = 0; r < 3; ++r)
+                    for (int c = 0; c < 3; ++c) {
+                        const float size =
+                            1 / scaling.rows[static_cast<std::size_t>(scaled_first ? r : c)][scaled_first ? r : c];
+                        EXPECT_NEAR(computed[r][c], exact.rows[static_cast<std::size_t>(r)][c],
+                                    size * (scaled_first ? 0x1p-20f : 0x1p-15f))
+                            << "scaled by 10^" << most << (scaled_first ? " before" : " after") << " the rotation";
+                    }
+            }
+        }
+    EXPECT_LT(refused, 600) << "of 6000";
+}
+
+TEST(Transform, DenormalColumnsAndRowsAreRefused) {
+    EXPECT_EQ(fault_of(Transform::scaling(vec3(1.2e-38f))), "");
+    for (const vec3 factors : {vec3(1e-38f), vec3(1, 1e-38f, 1)})
+        EXPECT_NE(fault_of(Transform::scaling(factors)).find("denormal"), std::string::npos)
+            << fault_of(Transform::scaling(factors));
 }
 
 TEST(Transform, TheFloat32InverseHoldsWhereProductsCannotBeSplit) {

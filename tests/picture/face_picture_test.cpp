@@ -2,7 +2,9 @@
 #include "validation/picture/face_picture.h"
 
 #include <twinray/scene.h>
+#include "twinray/glsl/vector_math.h"
 #include "validation/picture/marks.h"
+#include "validation/picture/ray_picture.h"
 
 #include "tests/accel/accel_fixture.h"
 #include "tests/scene/temp_dir.h"
@@ -98,6 +100,31 @@ TEST_P(FacePictureTest, StrokesAreHiddenWhereSomethingIsInFront) {
         const bool is_in_front = x >= 4 && x < 12;  // of both triangles, which are broad down there
         EXPECT_EQ(picture.raster.at(x, 11) == mark_color, x >= 2 && x < 14 && !is_in_front) << x;
     }
+}
+
+TEST_P(FacePictureTest, LabelsOfOnePlaceLieApart) {
+    const std::vector<Rgb> colors(4, behind_color);
+    const auto ink_of = [&](std::size_t count) {
+        FacePicture picture = draw_faces(accel(), scene_, colors, {.width = 240, .height = 200, .camera = camera_});
+        draw_labels(picture, std::vector<Note>(count, {.position = {0, 0, 1}, .label = "3: 12.5", .detail = ""}));
+        return std::ranges::count(picture.raster.pixels, ink);
+    };
+    EXPECT_GT(ink_of(1), 10);
+    EXPECT_EQ(ink_of(4), 4 * ink_of(1));
+}
+
+TEST_P(FacePictureTest, RaysAreSeenFromTheSideThatTheyComeFrom) {
+    const auto direction_of = [&](const std::vector<Ray>& rays) {
+        return picture_of_rays({}, scene_, rays, std::vector<Hit>(rays.size())).direction;
+    };
+    for (const vec3 along : {vec3(0, 0, 1), vec3(0, 0, -1), vec3(0, -2, 0), vec3(1, 1, 1)}) {
+        const std::optional<vec3> seen = direction_of({{vec3(0), 0, along, INFINITY}, {vec3(1), 0, along, INFINITY}});
+        ASSERT_TRUE(seen);
+        EXPECT_GT(dot(normalize(*seen), normalize(along)), 0.7f);
+        EXPECT_LT(dot(normalize(*seen), normalize(along)), 0.95f) << "strokes are not points";
+    }
+    EXPECT_FALSE(direction_of({{vec3(0), 0, vec3(0, 0, 1), INFINITY}, {vec3(0), 0, vec3(0, 0, -1), INFINITY}}));
+    EXPECT_FALSE(direction_of({}));
 }
 
 TEST_P(FacePictureTest, RefusesAnotherScene) {

@@ -70,6 +70,24 @@ Sample random_sample(TexelFormat format, uint channels, uint width, uint height,
     return sample;
 }
 
+// What docs/multi-type-set.md says of them; a device's samplers may make infinity or NaN of it between texels.
+TEST_P(TextureFormats, ExtremeNumbersStay) {
+    for (const float number : {INFINITY, -INFINITY, 3e38f, -0.0f})
+        for (const Filter filter : {Filter::nearest, Filter::linear}) {
+            const std::vector<float> numbers(20 * 20, number);
+            const TextureRef texture =
+                store().push(Texels::of("extreme", 20, 20, 1, TexelFormat::float32, std::span<const float>(numbers)),
+                             {.filter = filter});
+            store().sync();
+            const TextureAnswer answer = answers_to({{texture, 7, 7, vec2(0.37f), 0}}).front();
+            EXPECT_EQ(answer.texel.x, number);
+            if (filter == Filter::nearest || std::isfinite(number) || GetParam() == TextureStorage::buffers)
+                EXPECT_TRUE(answer.color.x == number || std::abs(answer.color.x / number - 1) < 1e-6f) << number;
+            else
+                EXPECT_FALSE(std::isfinite(answer.color.x)) << number;
+        }
+}
+
 TEST_P(TextureFormats, EachTexelIsItsNumbers) {
     for (const TexelFormat format : all_formats)
         for (uint channels = 1; channels <= 4; ++channels) {

@@ -30,6 +30,7 @@ struct LeakTest::State {
 
 LeakTest::LeakTest(AbstractAccel& accel, const Mesh& mesh, Level level, std::uint64_t seed) {
     check_level(accel, "LeakTest", level);
+    accel.check_kernel_queries("LeakTest");
     state_ = std::make_unique<State>(accel, mesh, level, seed);
 }
 

@@ -69,6 +69,27 @@ void draw(FacePicture& picture, const Stretch& stretch) {
         }
 }
 
+constexpr int label_border = 3;
+
+bool overlap(const Rect& a, const Rect& b) {
+    return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
+}
+
+// Beside a point: on its right where there is room, else on its left, and off the others, if need be above or below.
+Rect label_box(const Raster& raster, const Placed& at, int text_wide, std::span<const Rect> taken) {
+    constexpr int away = 8, most_steps = 16;
+    const int dot = static_cast<int>(at.at.x), width = text_wide + 2 * label_border,
+              height = text_height + 2 * label_border;
+    const bool has_room = dot + away + width <= static_cast<int>(raster.width);
+    Rect box{has_room ? dot + away : dot - away - width, static_cast<int>(at.at.y) - height / 2, width, height};
+    const int level = box.y;
+    for (int step = 1; step <= most_steps; ++step) {
+        if (std::ranges::none_of(taken, [&](const Rect& other) { return overlap(box, other); })) break;
+        box.y = level + (step % 2 ? 1 : -1) * (step + 1) / 2 * height;
+    }
+    return box;
+}
+
 }  // namespace
 
 std::optional<vec2> place_of(const FacePicture& picture, dvec3 position) {
@@ -90,15 +111,14 @@ void draw_strokes(FacePicture& picture, std::span<const Stroke> strokes) {
 }
 
 void draw_labels(FacePicture& picture, std::span<const Note> notes) {
-    constexpr int border = 3, away = 8;
+    std::vector<Rect> taken;
     for (const Note& note : notes) {
         const std::optional<Placed> at = place(picture, note.position);
         if (!at || note.label.empty()) continue;
-        const int dot = static_cast<int>(at->at.x), width = text_width(note.label);
-        const bool has_room = dot + away + width + border <= static_cast<int>(picture.raster.width);
-        const int x = has_room ? dot + away : dot - away - width, y = static_cast<int>(at->at.y) - text_height / 2;
-        fill(picture.raster, {x - border, y - border, width + 2 * border, text_height + border}, paper);
-        draw_text(picture.raster, x, y, note.label);
+        const Rect box = label_box(picture.raster, *at, text_width(note.label), taken);
+        taken.push_back(box);
+        fill(picture.raster, box, paper);
+        draw_text(picture.raster, box.x + label_border, box.y + label_border, note.label);
     }
 }
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <optional>
 #include <set>
 
 #include "engine/core/error.h"
@@ -115,6 +117,19 @@ class HitColors {
     ValueScale scale_;
 };
 
+// Along the rays, but from the left and from above, so that strokes are not seen as points; none where they share no
+// direction.
+std::optional<vec3> direction_along(std::span<const Ray> rays) {
+    dvec3 sum(0);
+    std::size_t count = 0;
+    for (const Ray& ray : rays)
+        if (const double size = length(dvec3(ray.direction)); size > 0 && std::isfinite(size))
+            sum += dvec3(ray.direction) / size, ++count;
+    if (count == 0 || length(sum) < 0.5 * static_cast<double>(count)) return std::nullopt;
+    const dvec3 along = normalize(sum), up = std::abs(along.y) > 0.9 ? dvec3(0, 0, -1) : dvec3(0, 1, 0);
+    return vec3(along + 0.6 * normalize(cross(along, up)) - 0.35 * up);
+}
+
 // The field's usual order: ray, distance, what was hit.
 std::string detail_of(const Scene& scene, std::size_t index, const Ray& ray, const Hit& hit) {
     return text("ray ", index, ": t ", hit.t, ", distance ", distance_of(ray, hit), ", instance ", hit.instance_index,
@@ -131,6 +146,7 @@ ScenePicture picture_of_rays(const PictureOptions& options, const Scene& scene, 
     const double size = length(dvec3(bounds_of(scene).size()));
     ScenePicture picture;
     picture.frames_marks = true;
+    picture.direction = direction_along(rays);
     picture.page.legend = color_of.legend(hits);
     picture.page.legend.entries.push_back({miss_color, "no hit"});
     picture.colors.assign(count_triangles(scene), plain_color);

@@ -21,7 +21,8 @@ struct RayPictureDesc {
 
 // The scene's faces grey, with a stroke from each ray's origin to its hit, a dot there in the hit's colour, and a grey
 // stroke for a ray that misses, as long as the scene is large or as its t_max allows. Marks behind faces are seen
-// through them, fainter. Throws Error for hits of another number, or that name what the scene does not have.
+// through them, fainter. Where rays share a direction, the picture is taken from the side that they come from, slightly
+// aslant. Throws Error for hits of another number, or that name what the scene does not have.
 ScenePicture picture_of_rays(const PictureOptions& options, const Scene& scene, std::span<const Ray> rays,
                              std::span<const Hit> hits, const RayPictureDesc& desc = {});
 

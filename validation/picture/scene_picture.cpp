@@ -32,7 +32,8 @@ Camera camera_of(const PictureOptions& options, const Scene& scene, const SceneP
     const float aspect = static_cast<float>(options.size[0]) / static_cast<float>(options.size[1]);
     if (!options.view.empty())
         return frame_scene(scene, aspect, vec3(options.view[0], options.view[1], options.view[2]), points);
-    return scene.cameras.empty() || picture.frames_marks ? frame_scene(scene, aspect, {}, points) : scene.cameras[0];
+    if (!scene.cameras.empty() && !picture.frames_marks) return scene.cameras[0];
+    return frame_scene(scene, aspect, picture.direction, points);
 }
 
 GlbMarks glb_marks(const ScenePicture& picture) {

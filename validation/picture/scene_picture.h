@@ -30,7 +30,8 @@ struct ScenePicture {
     std::vector<Dot> dots;
     std::vector<Stroke> strokes;
     std::vector<Note> notes;
-    bool frames_marks = false;  // the camera that is chosen sees all marks, whatever camera the scene has
+    bool frames_marks = false;           // the camera that is chosen sees all marks, whatever camera the scene has
+    std::optional<vec3> direction = {};  // in which it looks then; none: as suits the scene
 };
 // Colours of values, NaN: there is none; the scale goes into the legend, which is called `what`.
 ScenePicture picture_of_values(const PictureOptions& options, std::span<const double> values, const std::string& what,

@@ -60,7 +60,9 @@ struct TimeFigures {
     double min = 0;
     std::uint64_t reps = 0;
     std::map<std::string, double> phases_ms = {};  // apart from it: compile, build, refit, copy
+    double others = 0;  // the share of the processors that other programs took meanwhile, where it is known
 
+    bool is_disturbed() const { return others > 0.1; }
     bool operator==(const TimeFigures&) const = default;
 };
 

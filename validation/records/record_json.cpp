@@ -51,7 +51,8 @@ Json json_of(const ErrorFigures& error) {
 
 Json json_of(const TimeFigures& time) {
     Json json = {{"metric", time.metric},   {"median", number(time.median)}, {"median_95", json_of(time.median_95)},
-                 {"mad", number(time.mad)}, {"min", number(time.min)},       {"reps", time.reps}};
+                 {"mad", number(time.mad)}, {"min", number(time.min)},       {"reps", time.reps},
+                 {"others", time.others}};
     for (const auto& [phase, ms] : time.phases_ms) json[phase + "_ms"] = number(ms);
     return json;
 }
@@ -84,6 +85,7 @@ TimeFigures time_of(const Json& json) {
                      number_of(json.at("mad")),
                      number_of(json.at("min")),
                      unsigned_of<std::uint64_t>(json.at("reps"))};
+    time.others = json.value("others", 0.0);  // reports of before had none
     for (const auto& [name, value] : json.items())
         if (name.ends_with("_ms")) time.phases_ms[name.substr(0, name.size() - 3)] = number_of(value);
     return time;

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "validation/records/machine_load.h"
 #include "validation/records/record.h"
 
 namespace twinray {
@@ -33,10 +34,12 @@ class Recorder {
     // Leaves those lines in the file that records() has, at once. Throws Error naming the file.
     void rewrite();
     const Run& run() const { return run_; }
+    const MachineLoad& load() const { return load_; }  // since it was made
     const std::vector<Record>& records() const { return records_; }
 
   private:
     Run run_;
+    MachineLoad load_;
     std::filesystem::path path_;
     std::ofstream file_;
     std::vector<Record> records_;

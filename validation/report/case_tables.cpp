@@ -23,6 +23,9 @@ struct Group {
     std::uint64_t faults() const {
         return sum([](const Record& record) { return record.faults; });
     }
+    bool is_disturbed() const {
+        return std::ranges::any_of(records, [](const Record* r) { return r->time && r->time->is_disturbed(); });
+    }
     // The worst of them: of ours before of the driver's, before what passed.
     const Record& worst() const {
         const auto rank = [](const Record* record) {
@@ -90,8 +93,8 @@ void write_row(std::ostream& out, const Key& key, const Group& group, std::set<s
         << range(group, [](const Record& r) { return r.error ? std::optional(r.error->p99) : std::nullopt; })
         << escaped(unit_of(group, false)) << "</td><td>"
         << range(group, [](const Record& r) { return r.time ? std::optional(r.time->median) : std::nullopt; })
-        << escaped(unit_of(group, true)) << "</td><td class=\"" << style_of(worst) << "\">" << escaped(result_of(worst))
-        << "</td></tr>\n";
+        << escaped(unit_of(group, true)) << (group.is_disturbed() ? " &#8224;" : "") << "</td><td class=\""
+        << style_of(worst) << "\">" << escaped(result_of(worst)) << "</td></tr>\n";
     if (worst.pass.value_or(true) || (worst.reason.empty() && worst.example.empty())) return;
     const std::string fault = fault_text(worst);
     out << "<tr><td colspan=\"8\">" << (told.insert(fault).second ? fault : "as above");

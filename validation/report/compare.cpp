@@ -31,11 +31,6 @@ std::string name_of(const Record& record) {
 
 std::string group_of(const Record& record) { return record.backend + ' ' + record.level; }
 
-// Whether it could not be run, for another reason than time.
-bool is_lost(const Record& record) {
-    return !record.was_run && record.reason.find("was spent before its turn") == std::string::npos;
-}
-
 // Whether they are of one case, accelerator and level, whatever their settings.
 bool asks_of_one(const Record& a, const Record& b) {
     return a.case_id == b.case_id && a.backend == b.backend && a.level == b.level;
@@ -135,7 +130,7 @@ class Comparing {
         result_.only_now = only_now.size();
         // What is not run has no settings, so that it corresponds to nothing that has.
         for (const Record* record : only_now)
-            if (is_lost(*record) && std::ranges::any_of(known, [&](const auto& was) {
+            if (!record->was_run && std::ranges::any_of(known, [&](const auto& was) {
                     return was.second->was_run && asks_of_one(*was.second, *record);
                 }))
                 add_lost(*record);
@@ -173,7 +168,7 @@ class Comparing {
     void look_at(const Pair& pair) {
         const auto& [before, now] = pair;
         if (before->was_run != now->was_run) {
-            if (is_lost(*now)) add_lost(*now);
+            if (!now->was_run) add_lost(*now);
             return;
         }
         if (!now->was_run) return;

@@ -31,7 +31,7 @@ std::string listed(const std::set<std::string>& ids) {
 void print_rows(std::ostream& out, std::span<const Record> records) {
     const std::vector<Finding> findings = findings_of(records);
     const std::vector<Speed> speeds = speeds_of(records);
-    const OwnStructures own = own_structures_of(records);
+    const CaseResults own = results_of(records, "K");
     for (const std::string_view backend : {"sw", "hw", "hw-pipeline"}) {
         std::set<std::string> cases;
         for (const Record& record : records)
@@ -43,12 +43,18 @@ void print_rows(std::ostream& out, std::span<const Record> records) {
             const auto found = std::ranges::find_if(findings, [&](const Finding& finding) {
                 return finding.backend == backend && finding.mistake == mistake;
             });
-            out << ' ' << (found == findings.end() ? "" : rate_text(found->faults, found->n)) << " |";
+            out << ' ' << (found == findings.end() ? "" : text_of(*found)) << " |";
         }
         const auto speed = std::ranges::find_if(
             speeds, [&](const Speed& one) { return one.backend == backend && one.level == "watertight"; });
-        out << ' ' << (backend == "sw" || own.all.empty() ? "" : listed(own.musts) + "; " + listed(own.shoulds))
-            << " | " << (speed == speeds.end() ? "" : with_interval(speed->ratio, speed->ratio_95)) << " |\n";
+        out << ' '
+            << (backend == "sw" || own.run.empty() ? ""
+                                                   : listed(own.failed_by_driver) + "; " + listed(own.not_as_advised))
+            << " | "
+            << (speed == speeds.end()
+                    ? ""
+                    : with_interval(speed->ratio, speed->ratio_95) + (speed->is_disturbed ? " (disturbed)" : ""))
+            << " |\n";
     }
 }
 

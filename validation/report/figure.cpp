@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "engine/accel/trace_desc.h"
 #include "engine/core/error.h"
 #include "validation/report/verdict.h"
 #include "validation/report/wording.h"
@@ -17,12 +18,6 @@ std::string short_name(std::string_view backend) {
     if (backend == "hw") return "ray query";
     if (backend == "hw-pipeline") return "pipeline";
     return std::string(backend);
-}
-
-double number_at(const Values& values, const std::string& name) {
-    const auto found = values.find(name);
-    const double* number = found == values.end() ? nullptr : std::get_if<double>(&found->second.is);
-    return number ? *number : 0;
 }
 
 std::string text_at(const Values& values, const std::string& name) {
@@ -89,38 +84,27 @@ Figure leaks_figure(std::span<const Record> records) {
                   .title = "Rays lost at shared edges and vertices",
                   .sentence =
                       "Each ray is aimed at an edge or a vertex of a closed surface and must hit. An arrow to the "
-                      "left: none was lost, and the mark is the largest rate that this leaves possible (95 %).",
+                      "left: none was lost, and the mark is the largest rate that this leaves possible (95 %). Each "
+                      "case counts as one.",
                   .x_label = "lost rays per million",
                   .is_log_y = false};
-    std::map<std::pair<std::size_t, std::string>, std::pair<std::uint64_t, std::uint64_t>> sums;
-    std::map<std::size_t, std::string> names;
-    for (const Record& record : records) {
-        if (!record.was_run || !record.case_id.starts_with('W') || record.reference != "f64" || record.counts.empty())
-            continue;
-        if (!is_users_kernel(record) && record.level != "fast") continue;
-        auto& [lost, n] = sums[{color_of(record.backend), record.level}];
-        for (const char* kind : {"SW_LEAK", "HW_LEAK"})
-            if (const auto found = record.counts.find(kind); found != record.counts.end()) lost += found->second;
-        n += record.n;
-        names[color_of(record.backend)] = short_name(record.backend);
-    }
-    for (const auto& [key, sum] : sums) {
-        const auto [lost, n] = sum;
-        const Interval rate = rate_interval_95(lost, n);
-        const double row = static_cast<double>(figure.rows.size());
-        figure.rows.push_back(names[key.first] + ' ' + key.second);
-        FigurePoint point{1e6 * static_cast<double>(lost) / static_cast<double>(n),
-                          row,
-                          {1e6 * rate.low, 1e6 * rate.high},
-                          {row, row},
-                          rate_text(lost, n)};
-        if (lost == 0) {
-            point.x = 1e6 * upper_bound_95(0, n);
-            point.x_95 = {point.x, point.x};
-            point.is_bound = true;
+    for (const char* backend : {"sw", "hw", "hw-pipeline"})
+        for (const Level level : all_levels) {
+            const Finding finding = finding_at(records, backend, name_of(level), Mistake::leak);
+            if (finding.n() == 0) continue;
+            const double row = static_cast<double>(figure.rows.size()), rate = 1e6 * finding.rate();
+            const Interval rate_95 = finding.rate_95();
+            figure.rows.push_back(short_name(backend) + ' ' + std::string(name_of(level)));
+            FigurePoint point{
+                rate, row, {1e6 * rate_95.low, 1e6 * rate_95.high}, {row, row}, rate_text(finding.rate(), rate_95)};
+            if (rate == 0) {
+                point.x = 1e6 * rate_95.high;
+                point.x_95 = {point.x, point.x};
+                point.is_bound = true;
+                point.label = text("0 of ", count_text(finding.n()), " (below ", share_text(rate_95.high), ')');
+            }
+            figure.series.push_back({"", color_of(backend), false, {point}});
         }
-        figure.series.push_back({"", key.first, false, {point}});
-    }
     return figure;
 }
 
@@ -145,22 +129,41 @@ Figure paths_figure(std::span<const Record> records) {
     return figure;
 }
 
-Figure factors_figure(std::span<const Record> records) {
-    Figure figure{.id = "factors",
-                  .title = "Error of view factors against rays",
-                  .sentence =
-                      "Two parallel squares as far apart as they are wide, whose view factor is known: points on "
-                      "both (areas) need the fewest rays there, and Sobol's sequence fewer than random numbers.",
-                  .x_label = "rays",
-                  .y_label = "relative error (root mean square over seeds)"};
+namespace {
+
+// What a case's records are estimates of, in the plot; "" for those that are not in it.
+std::string estimated_by(const Record& record) {
+    const auto is = [&](const char* id, const char* setting, std::string_view value) {
+        return record.case_id == id && (!setting || text_at(record.params, setting) == value);
+    };
+    if (is("V01", "distance", "1")) return "view factor, " + record.variant;
+    if (is("G01", "light", "from above")) return "illumination";
+    if (is("G04", nullptr, "")) return "sky light";
+    if (is("G05", nullptr, "")) return "hours of sun";
+    if (is("G06", nullptr, "")) return "centroid";
+    return "";
+}
+
+}  // namespace
+
+Figure estimates_figure(std::span<const Record> records) {
+    Figure figure{
+        .id = "estimates",
+        .title = "Error of estimates against run time",
+        .sentence =
+            "By SwTlas, of what is known in closed form: view factors of two squares, light on a square in part "
+            "in shadow, the light of the sky and hours of sun there, the mean height of what is seen. Lower and "
+            "further left is better; a steeper line gains more from more rays.",
+        .x_label = "milliseconds an estimate",
+        .y_label = "relative error (root mean square over seeds)"};
     std::map<std::string, std::size_t> colors;
     for (const Record& record : records) {
-        const double rays = number_at(record.params, "rays"), error = number_at(record.results, "rms");
-        if (!record.was_run || record.case_id != "V01" || number_at(record.params, "distance") != 1 || rays <= 0 ||
-            error <= 0 || record.backend != "sw")
-            continue;
-        const std::size_t color = colors.emplace(record.variant, colors.size()).first->second;
-        series_of(figure.series, record.variant, color).points.push_back({rays, error, {rays, rays}, {error, error}});
+        const std::string label = record.backend == "sw" && record.was_run ? estimated_by(record) : "";
+        const double error = number_at(record.results, "rms");
+        if (label.empty() || error <= 0 || !record.time || record.time->median <= 0) continue;
+        const std::size_t color = colors.emplace(label, colors.size()).first->second;
+        const TimeFigures& time = *record.time;
+        series_of(figure.series, label, color).points.push_back({time.median, error, time.median_95, {error, error}});
     }
     add_slopes(figure.series);
     return figure;
@@ -196,7 +199,7 @@ Figure features_figure(std::span<const Record> records) {
 std::vector<Figure> figures_of(std::span<const Record> records) {
     std::vector<Figure> figures;
     for (Figure& figure : std::vector{leaks_figure(records), levels_figure(records), paths_figure(records),
-                                      factors_figure(records), features_figure(records)})
+                                      estimates_figure(records), features_figure(records)})
         if (std::any_of(figure.series.begin(), figure.series.end(), [](const auto& s) { return !s.points.empty(); }))
             figures.push_back(std::move(figure));
     return figures;

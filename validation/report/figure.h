@@ -43,13 +43,13 @@ std::size_t color_of(std::string_view backend);
 //           no other beats in both
 //   leaks: rays lost at edges and vertices, with 95 % intervals
 //   paths: error of the path tracer's pictures against seconds, with the slope
-//   factors: error of view factors against rays
+//   estimates: error of view factors, light and centroids against milliseconds, with the slope
 //   features: time of a trace with features that its scene does not need, over the time without
 std::vector<Figure> figures_of(std::span<const Record> records);
 Figure levels_figure(std::span<const Record> records);
 Figure leaks_figure(std::span<const Record> records);
 Figure paths_figure(std::span<const Record> records);
-Figure factors_figure(std::span<const Record> records);
+Figure estimates_figure(std::span<const Record> records);
 Figure features_figure(std::span<const Record> records);
 
 // Of points, those that no other beats in both x and y, by ascending x.

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "validation/report/page.h"
 
+#include <algorithm>
+#include <array>
 #include <fstream>
 #include <map>
 #include <sstream>
+#include <utility>
 
 #include "engine/core/error.h"
 #include "validation/report/case_tables.h"
@@ -27,7 +30,7 @@ h2 { font-size: 1.2rem; margin: 2.2rem 0 .4rem; } h3 { font-size: 1rem; margin: 
 ul.verdict { list-style: none; padding: 0; margin: 0; } ul.verdict li { padding: .3rem 0 .3rem 1.7rem; position: relative;
   border-top: 1px solid var(--line); } ul.verdict .mark { position: absolute; left: .2rem; font-weight: 700; }
 .pass, .right .mark { color: var(--good); } .twinray, .bad { color: var(--bad); } .driver, .wrong .mark { color: var(--bad); }
-.slower { color: var(--warn); } .measured .mark, td.measured { color: var(--soft); }
+.slower { color: var(--warn); } .measured .mark, td.measured { color: var(--soft); } .not-measured .mark { color: var(--warn); }
 figure { margin: 1.6rem 0; } figcaption { font-weight: 600; } figcaption span { display: block; font-weight: 400;
   color: var(--soft); font-size: .92rem; } svg { width: 100%; height: auto; max-height: 34rem; }
 details { border-top: 1px solid var(--line); padding: .25rem 0; } summary { cursor: pointer; font-size: .92rem; }
@@ -43,6 +46,18 @@ dt { color: var(--soft); } dd { margin: 0; }
   h2, h3 { break-after: avoid; } }
 )";
 
+constexpr std::array<std::string_view, 4> exact_cases = {"D01", "D07", "D08", "T15"};
+
+std::string_view mark_of(Sentence::Kind kind) {
+    switch (kind) {
+        case Sentence::Kind::right: return "&#10003;";
+        case Sentence::Kind::wrong: return "&#10007;";
+        case Sentence::Kind::measured: return "&#183;";
+        case Sentence::Kind::not_measured: return "?";
+    }
+    return "";
+}
+
 void write_verdict(std::ostream& out, const PageInput& input, const Verdict& verdict) {
     const Record& first = input.records.front();
     const bool is_right = verdict.is_driver_right && verdict.are_we_right;
@@ -50,43 +65,41 @@ void write_verdict(std::ostream& out, const PageInput& input, const Verdict& ver
         << ", " << escaped(first.device.driver) << "</p>\n<p class=\"headline " << (is_right ? "pass" : "bad") << "\">"
         << escaped(verdict.headline) << "</p>\n<ul class=\"verdict\">\n";
     for (const Sentence& sentence : verdict.sentences) {
-        const bool is_wrong = sentence.kind == Sentence::Kind::wrong,
-                   is_right_one = sentence.kind == Sentence::Kind::right;
-        out << "<li class=\""
-            << (is_wrong       ? "wrong"
-                : is_right_one ? "right"
-                               : "measured")
-            << "\"><span class=\"mark\">"
-            << (is_wrong       ? "&#10007;"
-                : is_right_one ? "&#10003;"
-                               : "&#183;")
-            << "</span><b>" << escaped(sentence.about) << "</b>: " << escaped(sentence.text) << "</li>\n";
+        std::string style(word_of(sentence.kind));
+        std::ranges::replace(style, ' ', '-');
+        out << "<li class=\"" << style << "\"><span class=\"mark\">" << mark_of(sentence.kind) << "</span><b>"
+            << escaped(sentence.about) << "</b>: " << escaped(sentence.text) << "</li>\n";
     }
     out << "</ul>\n";
 }
 
+// The largest share of the processors that other programs took during a time that is disturbed; 0 where none is.
+double most_of_others(std::span<const Record> records) {
+    double most = 0;
+    for (const Record& record : records)
+        if (record.time && record.time->is_disturbed()) most = std::max(most, record.time->others);
+    return most;
+}
+
 void write_method(std::ostream& out, const PageInput& input) {
     std::map<std::string, std::size_t> sums;
-    std::map<std::string, bool> cases;  // whether they ran
-    for (const Record& record : input.records) {
-        ++sums[result_of(record)];
-        cases[record.case_id] = cases[record.case_id] || record.was_run;
-    }
-    std::size_t reached = 0;
-    for (const auto& [id, was_run] : cases) reached += was_run;
+    for (const Record& record : input.records) ++sums[result_of(record)];
     out << "<p class=\"soft\">SwTlas is twinray's own traversal in compute shaders; fast, watertight, refined and "
            "certified are levels of its triangle test. Every answer was checked by a float64 reference, and by "
            "rational "
            "arithmetic where that cannot tell. In brackets are 95 % intervals. "
-        << reached << " of " << cases.size() << " cases ran";
-    if (input.seconds > 0) out << " in " << number(input.seconds, 3) << " s";
-    out << " (suite " << escaped(input.suite) << "). By accelerator and level, measurements: ";
+        << "Suite " << escaped(input.suite);
+    if (input.seconds > 0) out << ", " << number(input.seconds, 3) << " s";
+    out << ". By accelerator and level, measurements: ";
     const char* separator = "";
     for (const auto& [kind, count] : sums) {
         out << separator << count_text(count) << ' ' << escaped(kind);
         separator = ", ";
     }
     out << '.';
+    if (const double others = most_of_others(input.records); others > 0)
+        out << " Times with &#8224; were disturbed: other programs used up to " << number(100 * others, 2)
+            << " % of the processors meanwhile.";
     for (const std::string& kind : input.reproducers)
         out << (&kind == &input.reproducers.front() ? " For the driver's tracker: " : ", ") << "<a href=\"reproducers/"
             << escaped(kind) << "/report.md\">" << escaped(kind) << " in a C program</a>";
@@ -123,6 +136,52 @@ void write_figures(std::ostream& out, const PageInput& input) {
                 << figure.id << ".gp</code> draws it.</p>\n";
         out << svg << "</figure>\n";
     }
+}
+
+std::string title_of(const PageInput& input, const std::string& case_id) {
+    for (const suite::SuiteCase& row : input.catalogue)
+        if (row.id == case_id) return case_id + ": " + row.title;
+    return case_id;
+}
+
+// Of each estimator, what an error of 1 % and of 0.1 % takes.
+void write_costs(std::ostream& out, const PageInput& input) {
+    bool has_head = false;
+    for (const Record& record : input.records) {
+        const double percent = number_at(record.results, "ms_at_1_percent");
+        if (percent <= 0) continue;
+        if (!std::exchange(has_head, true))
+            out << "<h3 id=\"costs\">What an error of 1 % and of 0.1 % costs</h3>\n<p class=\"soft\">By the law of "
+                   "error "
+                   "over time that fits the measured amounts of work.</p>\n<div class=\"wide\"><table><tr><th>case</th>"
+                   "<th>by</th><th>error over rays, slope</th><th>ms at 1 %</th><th>ms at 0.1 %</th></tr>\n";
+        out << "<tr><td>" << escaped(title_of(input, record.case_id)) << ' ' << escaped(record.variant) << "</td><td>"
+            << escaped(record.backend) << "</td><td>" << number(number_at(record.results, "slope"), 2) << "</td><td>"
+            << number(percent, 2) << "</td><td>" << number(number_at(record.results, "ms_at_0.1_percent"), 2)
+            << (record.time && record.time->is_disturbed() ? " &#8224;" : "") << "</td></tr>\n";
+    }
+    if (has_head) out << "</table></div>\n";
+}
+
+// What has no error but rounding: whatever the amount of work, the error beside the time.
+void write_exact(std::ostream& out, const PageInput& input) {
+    bool has_head = false;
+    for (const Record& record : input.records) {
+        const bool is_shown = std::ranges::count(exact_cases, record.case_id) > 0 && record.was_run && record.error &&
+                              record.time && record.backend != "hw-pipeline";
+        if (!is_shown) continue;
+        if (!std::exchange(has_head, true))
+            out << "<h3 id=\"exact\">What is exact but for rounding</h3>\n<div "
+                   "class=\"wide\"><table><tr><th>case</th><th>by"
+                   "</th><th>settings</th><th>n</th><th>error, 99th "
+                   "percentile</th><th>largest</th><th>time</th></tr>\n";
+        out << "<tr><td>" << escaped(title_of(input, record.case_id)) << "</td><td>" << escaped(record.backend)
+            << "</td><td>" << escaped(settings_text(record)) << "</td><td>" << count_text(record.n) << "</td><td>"
+            << number(record.error->p99, 2) << ' ' << escaped(record.error->metric) << "</td><td>"
+            << number(record.error->max, 2) << "</td><td>" << number(record.time->median, 3) << ' '
+            << escaped(record.time->metric) << (record.time->is_disturbed() ? " &#8224;" : "") << "</td></tr>\n";
+    }
+    if (has_head) out << "</table></div>\n";
 }
 
 void write_facts(std::ostream& out, const PageInput& input) {
@@ -170,6 +229,8 @@ std::string page(const PageInput& input) {
         write_method(out, input);
         write_changes(out, input);
         write_figures(out, input);
+        write_costs(out, input);
+        write_exact(out, input);
         out << "<h2 id=\"cases\">All cases</h2>\n<p class=\"soft\">Folded; the browser's search looks inside. Each row "
                "is an accelerator and a level over all settings of the case; the error is the 99th percentile, of t in "
                "ulp, the time in ns a ray, unless it says otherwise.</p>\n";

@@ -11,12 +11,9 @@ void print_summary(std::ostream& out, std::span<const Record> records) {
     const Verdict verdict = verdict_of(records);
     out << verdict.headline << '\n';
     for (const Sentence& sentence : verdict.sentences) {
-        const bool is_wrong = sentence.kind == Sentence::Kind::wrong, is_right = sentence.kind == Sentence::Kind::right;
-        out << "  "
-            << (is_wrong   ? "wrong"
-                : is_right ? "right"
-                           : "     ")
-            << "  " << sentence.about << ": " << sentence.text << '\n';
+        const bool is_judged = sentence.kind == Sentence::Kind::wrong || sentence.kind == Sentence::Kind::right;
+        out << "  " << (is_judged ? word_of(sentence.kind) : "     ") << "  " << sentence.about << ": " << sentence.text
+            << '\n';
     }
     std::map<std::string, std::size_t> sums;
     for (const Record& record : records) {

@@ -5,14 +5,24 @@
 #include <cmath>
 #include <map>
 #include <numeric>
-#include <set>
 
 #include "engine/core/error.h"
+#include "validation/conformance/suite.h"
 #include "validation/records/bootstrap.h"
 #include "validation/report/wording.h"
+#include "validation/suite/claims.h"
+#include "validation/suite/suite.h"
 
 namespace twinray::report {
 namespace {
+
+suite::Subject subject_of(Mistake mistake) {
+    switch (mistake) {
+        case Mistake::leak: return suite::Subject::aimed_rays;
+        case Mistake::counted_wrong: return suite::Subject::crossings;
+        default: return suite::Subject::hits;
+    }
+}
 
 // Names of classes that are this mistake: of SwTlas, of the driver.
 bool is_class_of(Mistake mistake, std::string_view kind) {
@@ -26,11 +36,11 @@ bool is_class_of(Mistake mistake, std::string_view kind) {
     return false;
 }
 
-bool counts_for(Mistake mistake, const Record& record) {
-    if (!record.was_run || !is_users_kernel(record) || record.level == "fast") return false;
-    if (mistake == Mistake::counted_wrong) return record.params.contains("counted");
-    if (record.reference != "f64" || record.counts.empty()) return false;
-    return mistake != Mistake::leak || record.case_id.starts_with('W');
+// Whether the record's rays were looked at for it. Level fast is its own negative control.
+bool can_show(Mistake mistake, const Record& record) {
+    if (!record.was_run || !(is_users_kernel(record) || record.level == "fast")) return false;
+    if (record.params.contains("counted")) return mistake == Mistake::counted_wrong;
+    return mistake != Mistake::counted_wrong && record.reference == "f64" && !record.counts.empty();
 }
 
 std::uint64_t count_of(Mistake mistake, const Record& record) {
@@ -44,14 +54,67 @@ double share(std::uint64_t count, std::uint64_t n) {
     return n ? static_cast<double>(count) / static_cast<double>(n) : 0.0;
 }
 
-void add(Finding& finding, const Record& record) {
-    const std::uint64_t faults = count_of(finding.mistake, record);
-    finding.faults += faults;
-    finding.n += record.n;
-    if (share(faults, record.n) <= share(finding.worst_faults, finding.worst_n)) return;
-    finding.worst_case = record.case_id;
-    finding.worst_faults = faults;
-    finding.worst_n = record.n;
+// How many of these cases have rays among them.
+std::size_t cases_run_of(std::span<const std::string_view> ids, std::span<const RayKind> kinds) {
+    return static_cast<std::size_t>(std::ranges::count_if(ids, [&](std::string_view id) {
+        return std::ranges::any_of(kinds, [&](const RayKind& kind) { return kind.case_id == id; });
+    }));
+}
+
+// Each kind of rays as a stratum, so that all of one case together weigh as much as another.
+std::vector<Stratum> strata_of(std::span<const RayKind> kinds) {
+    std::map<std::string, std::size_t> kinds_of_case;
+    for (const RayKind& kind : kinds) ++kinds_of_case[kind.case_id];
+    std::vector<Stratum> strata;
+    for (const RayKind& kind : kinds)
+        strata.push_back({kind.faults, kind.n, 1.0 / static_cast<double>(kinds_of_case[kind.case_id])});
+    return strata;
+}
+
+std::uint64_t faults_in(std::span<const RayKind> kinds) {
+    std::uint64_t sum = 0;
+    for (const RayKind& kind : kinds) sum += kind.faults;
+    return sum;
+}
+
+// Of the levels that promise not to, the one with the most faults.
+Finding finding_of(std::span<const Record> records, std::string_view backend, Mistake mistake) {
+    std::vector<std::string> levels;
+    for (const Record& record : records)
+        if (record.backend == backend && record.level != "fast" && can_show(mistake, record) &&
+            std::ranges::count(levels, record.level) == 0)
+            levels.push_back(record.level);
+    Finding worst;
+    std::uint64_t most = 0;
+    for (const std::string& level : levels) {
+        Finding finding = finding_at(records, backend, level, mistake);
+        const std::uint64_t faults = faults_in(finding.kinds) + faults_in(finding.elsewhere);
+        if (!worst.level.empty() && faults <= most) continue;
+        worst = std::move(finding);
+        most = faults;
+    }
+    return worst;
+}
+
+// "W04 {aim vertex}, 4.6 % (4.2 to 5)": the interval holds for all kinds together.
+std::string worst_of(const Finding& finding) {
+    const RayKind& worst =
+        *std::ranges::max_element(finding.kinds, {}, [](const RayKind& kind) { return share(kind.faults, kind.n); });
+    const double miss = 0.05 / static_cast<double>(finding.kinds.size());
+    return worst.case_id + (worst.settings.empty() ? "" : " {" + worst.settings + '}') + ", " +
+           rate_text(share(worst.faults, worst.n), rate_interval(worst.faults, worst.n, miss));
+}
+
+// "N01 28 of 8,192, S02 ...": the three with the highest rates.
+std::string text_of_elsewhere(std::vector<RayKind> kinds) {
+    std::ranges::sort(kinds, std::greater(), [](const RayKind& kind) { return share(kind.faults, kind.n); });
+    std::vector<std::string> parts;
+    for (const RayKind& kind : kinds) {
+        if (parts.size() == 3) break;
+        parts.push_back(kind.case_id + ' ' + count_text(kind.faults) + " of " + count_text(kind.n));
+    }
+    if (kinds.size() > parts.size()) parts.push_back(text(kinds.size() - parts.size(), " more"));
+    return joined(parts);
 }
 
 constexpr std::uint64_t fewest_rays = 2048;  // below, times are mostly those of a dispatch
@@ -73,27 +136,75 @@ std::string driver_backend(std::span<const Record> records) {
     return "";
 }
 
-Sentence sentence_of(const Finding& finding, const Finding* ours) {
-    std::string about(name_of(finding.mistake));
+// Of one who answers or of two: the first has more to show.
+Sentence sentence_of(const Finding& first, const Finding* second) {
+    std::string about(name_of(first.mistake));
     about.front() = static_cast<char>(std::toupper(about.front()));
-    std::string sentence = "by " + answerer(finding.backend) + ' ' + rate_text(finding.faults, finding.n);
-    if (finding.faults && share(finding.worst_faults, finding.worst_n) > 1.5 * share(finding.faults, finding.n))
-        sentence += ", up to " + number(100 * share(finding.worst_faults, finding.worst_n), 2) + " % in case " +
-                    finding.worst_case;
-    if (ours) sentence += "; by SwTlas " + rate_text(ours->faults, ours->n);
-    const bool is_right = finding.faults == 0 && (!ours || ours->faults == 0);
-    return {is_right ? Sentence::Kind::right : Sentence::Kind::wrong, about, sentence + '.'};
+    std::string said = "by " + answerer(first.backend) + ' ' + text_of(first);
+    if (second) said += "; by " + answerer(second->backend) + ' ' + text_of(*second);
+    said += '.';
+    if (first.has_faults() || (second && second->has_faults())) return {Sentence::Kind::wrong, about, said};
+    const Finding& fewer = second && second->cases_run < first.cases_run ? *second : first;
+    if (fewer.is_complete()) return {Sentence::Kind::right, about, said};
+    return {Sentence::Kind::not_measured, about,
+            text("not measured (", fewer.cases_run, " of ", fewer.cases, " cases ran): ", said)};
 }
 
-void add_own_structures(Verdict& verdict, const OwnStructures& cases) {
-    if (cases.all.empty()) return;
-    const auto listed = [](const std::set<std::string>& ids) {
-        return text(ids.size(), ids.empty() ? "" : " (" + joined({ids.begin(), ids.end()}) + ')');
-    };
+const std::set<std::string>& catalogued() {
+    static const std::set<std::string> ids = [] {
+        std::set<std::string> all;
+        for (const suite::SuiteCase& row : suite::catalogue()) all.insert(row.id);
+        for (const conformance::Case& row : conformance::catalogue()) all.insert(row.id);
+        return all;
+    }();
+    return ids;
+}
+
+bool is_of(std::string_view sections, const std::string& case_id) {
+    return sections.find(case_id.front()) != sections.npos;
+}
+
+std::size_t catalogued(std::string_view sections) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(catalogued(), [&](const std::string& id) { return is_of(sections, id); }));
+}
+
+std::string ids_text(const std::set<std::string>& ids) {
+    return text(ids.size(), ids.empty() ? "" : " (" + joined({ids.begin(), ids.end()}) + ')');
+}
+
+Sentence::Kind kind_of(const CaseResults& results, std::size_t cases) {
+    if (!results.failed_by_us.empty() || !results.failed_by_driver.empty()) return Sentence::Kind::wrong;
+    return results.run.size() < cases ? Sentence::Kind::not_measured : Sentence::Kind::right;
+}
+
+void add_results(Verdict& verdict, std::span<const Record> records, std::string_view sections, std::string about) {
+    const CaseResults results = results_of(records, sections);
+    if (results.run.empty()) return;
+    const std::size_t cases = catalogued(sections);
+    const Sentence::Kind kind = kind_of(results, cases);
+    std::string said = text(results.run.size(), " of ", cases, " cases ran; ");
+    said += kind == Sentence::Kind::wrong ? text(ids_text(results.failed_by_us), " fail by twinray, ",
+                                                 ids_text(results.failed_by_driver), " by the driver.")
+                                          : "none of them fails.";
+    if (kind == Sentence::Kind::not_measured) said = "not measured: " + said;
+    verdict.sentences.push_back({kind, std::move(about), said});
+}
+
+void add_own_structures(Verdict& verdict, std::span<const Record> records) {
+    const CaseResults results = results_of(records, "K");
+    if (results.run.empty()) return;
+    const std::size_t cases = catalogued("K");
+    const Sentence::Kind kind = kind_of(results, cases);
     verdict.sentences.push_back(
-        {cases.musts.empty() ? Sentence::Kind::right : Sentence::Kind::wrong, "Acceleration structures",
-         text("of ", cases.all.size(), " cases of builds, updates, copies, flags and candidates, ", listed(cases.musts),
-              " fail what Vulkan demands, ", listed(cases.shoulds), " what it advises.")});
+        {kind, "Acceleration structures",
+         text(kind == Sentence::Kind::not_measured ? "not measured: " : "", results.run.size(), " of ", cases,
+              " cases of builds, updates, copies, flags and candidates ran; ", ids_text(results.failed_by_driver),
+              " fail what Vulkan demands, ", ids_text(results.not_as_advised), " what it advises.")});
+}
+
+std::string_view mark_of(const Speed& speed) {
+    return speed.is_disturbed ? " (disturbed: other programs used the processors, so do not rely on it)" : "";
 }
 
 void add_speed(Verdict& verdict, std::span<const Speed> speeds, std::string_view driver) {
@@ -107,46 +218,102 @@ void add_speed(Verdict& verdict, std::span<const Speed> speeds, std::string_view
             {Sentence::Kind::measured, "Speed",
              text(answerer(driver), " take ", with_interval(hardware->ratio, hardware->ratio_95),
                   " times as long as SwTlas at watertight, over ", hardware->measurements,
-                  " measurements of the same rays.")});
+                  " measurements of the same rays", mark_of(*hardware), '.')});
     if (refined != speeds.end() && plain != speeds.end() && refined->median_p99_ulp > 0)
-        verdict.sentences.push_back({Sentence::Kind::measured, "Error against run time",
-                                     text("99 % of the hits of SwTlas are within ", number(plain->median_p99_ulp, 2),
-                                          " units in the last place of t at level watertight, and within ",
-                                          number(refined->median_p99_ulp, 2), " at level refined, which takes ",
-                                          with_interval(refined->ratio, refined->ratio_95), " times as long.")});
+        verdict.sentences.push_back(
+            {Sentence::Kind::measured, "Error against run time",
+             text("99 % of the hits of SwTlas are within ", number(plain->median_p99_ulp, 2),
+                  " units in the last place of t at level watertight, and within ", number(refined->median_p99_ulp, 2),
+                  " at level refined, which takes ", with_interval(refined->ratio, refined->ratio_95), " times as long",
+                  mark_of(*refined), '.')});
 }
 
 std::size_t faults_of(std::span<const Record> records, std::string_view whose) {
     return static_cast<std::size_t>(std::ranges::count(records, whose, &Record::fault_of));
 }
 
-std::string headline_of(std::span<const Record> records, std::span<const Finding> findings, const OwnStructures& cases,
-                        std::string_view driver) {
-    std::vector<std::string> wrongs;
-    for (const Finding& finding : findings) {
-        if (finding.backend != driver || finding.faults == 0) continue;
-        switch (finding.mistake) {
-            case Mistake::leak: wrongs.push_back("loses rays at edges and vertices"); break;
-            case Mistake::false_hit: wrongs.push_back("reports hits that are not there"); break;
-            case Mistake::wrong_distance: wrongs.push_back("gets distances wrong"); break;
-            case Mistake::not_finite: wrongs.push_back("answers with numbers that are not finite"); break;
-            case Mistake::counted_wrong: wrongs.push_back("counts shared edges other than once"); break;
-        }
+std::string_view wrong_of(Mistake mistake) {
+    switch (mistake) {
+        case Mistake::leak: return "loses rays at edges and vertices";
+        case Mistake::false_hit: return "reports hits that are not there";
+        case Mistake::wrong_distance: return "gets distances wrong";
+        case Mistake::not_finite: return "answers with numbers that are not finite";
+        case Mistake::counted_wrong: return "counts shared edges other than once";
     }
-    if (!cases.musts.empty()) wrongs.push_back("fails what Vulkan demands of acceleration structures");
+    return "";
+}
+
+// What it does wrong; "" for nothing.
+std::string wrongs_of(std::span<const Record> records, std::span<const Finding> findings, std::string_view driver) {
+    std::vector<std::string> wrongs;
+    for (const Finding& finding : findings)
+        if (finding.backend == driver && finding.has_faults()) wrongs.emplace_back(wrong_of(finding.mistake));
+    if (!results_of(records, "K").failed_by_driver.empty())
+        wrongs.push_back("fails what Vulkan demands of acceleration structures");
     if (wrongs.empty()) {
         // Of cases that no finding counts; what Vulkan only advises is no fault.
         const auto faults = std::ranges::count_if(
             records, [](const Record& record) { return record.fault_of == "driver" && !is_only_advised(record); });
-        return faults == 0 ? "No fault of this driver's ray tracing was seen."
-                           : text("This driver is wrong in ", faults, faults == 1 ? " measurement." : " measurements.");
+        return faults == 0 ? "" : text("is wrong in ", faults, faults == 1 ? " measurement" : " measurements");
     }
     std::string all = wrongs.front();
     for (std::size_t i = 1; i < wrongs.size(); ++i) all += (i + 1 < wrongs.size() ? ", " : " and ") + wrongs[i];
-    return "This driver " + all + '.';
+    return all;
+}
+
+std::string headline_of(const Verdict& verdict, const std::string& wrongs, std::size_t faults_of_ours) {
+    const bool has_all = verdict.cases_run == verdict.cases;
+    std::string headline;
+    if (faults_of_ours)
+        headline =
+            text("twinray is wrong in ", faults_of_ours, faults_of_ours == 1 ? " measurement. " : " measurements. ");
+    if (!verdict.has_driver)
+        headline += "This driver traces no rays by itself: SwTlas alone was checked.";
+    else if (wrongs.empty())
+        headline += "No fault of this driver's ray tracing was seen.";
+    else
+        headline += "This driver " + wrongs + '.';
+    return headline + text(has_all ? " All " : " Only ", has_all ? "" : text(verdict.cases_run, " of "), verdict.cases,
+                           " cases ran.");
 }
 
 }  // namespace
+
+bool Finding::has_faults() const { return faults_in(kinds) + faults_in(elsewhere) > 0; }
+
+std::uint64_t Finding::n() const {
+    std::uint64_t sum = 0;
+    for (const RayKind& kind : kinds) sum += kind.n;
+    return sum;
+}
+
+double Finding::rate() const { return mean_rate(strata_of(kinds)); }
+Interval Finding::rate_95() const {
+    // Where none was seen, the whole chance to miss is above.
+    return mean_rate_interval(strata_of(kinds), faults_in(kinds) ? 0.05 : 0.1);
+}
+
+std::string text_of(const Finding& finding) {
+    const std::string cases = text(finding.cases_run, finding.cases_run == 1 ? " case" : " cases");
+    std::string said;
+    if (faults_in(finding.kinds))
+        said = rate_text(finding.rate(), finding.rate_95()) + " over " + cases + ", most in " + worst_of(finding);
+    else if (finding.n())
+        said = text("0 of ", count_text(finding.n()), " rays of ", cases, " (below ",
+                    share_text(finding.rate_95().high), ')');
+    if (!finding.elsewhere.empty()) said += (said.empty() ? "in " : ", and in ") + text_of_elsewhere(finding.elsewhere);
+    return finding.level == "watertight" ? said : "at " + finding.level + ' ' + said;
+}
+
+std::string_view word_of(Sentence::Kind kind) {
+    switch (kind) {
+        case Sentence::Kind::right: return "right";
+        case Sentence::Kind::wrong: return "wrong";
+        case Sentence::Kind::measured: return "measured";
+        case Sentence::Kind::not_measured: return "not measured";
+    }
+    return "";
+}
 
 bool is_only_advised(const Record& record) {
     const auto demand = record.results.find("demand");
@@ -172,27 +339,48 @@ std::string_view name_of(Mistake mistake) {
     return "";
 }
 
+Finding finding_at(std::span<const Record> records, std::string_view backend, std::string_view level, Mistake mistake) {
+    const suite::Subject subject = subject_of(mistake);
+    Finding finding{.backend = std::string(backend), .level = std::string(level), .mistake = mistake};
+    for (const Record& record : records) {
+        if (record.backend != backend || record.level != level || !can_show(mistake, record)) continue;
+        const std::string settings =
+            settings_text(record) +
+            (record.variant.empty() ? "" : (record.params.empty() ? "" : ", ") + record.variant);
+        const RayKind kind{record.case_id, settings, count_of(mistake, record), record.n};
+        if (suite::is_about(record.case_id, subject))
+            finding.kinds.push_back(kind);
+        else if (kind.faults)
+            finding.elsewhere.push_back(kind);
+    }
+    const std::span<const std::string_view> ids = suite::cases_about(subject);
+    finding.cases = ids.size();
+    finding.cases_run = cases_run_of(ids, finding.kinds);
+    return finding;
+}
+
 std::vector<Finding> findings_of(std::span<const Record> records) {
     std::vector<Finding> findings;
     for (const char* backend : {"sw", "hw", "hw-pipeline"})
         for (const Mistake mistake : all_mistakes) {
-            Finding finding{.backend = backend, .mistake = mistake};
-            for (const Record& record : records)
-                if (record.backend == backend && counts_for(mistake, record)) add(finding, record);
-            if (finding.n) findings.push_back(finding);
+            Finding finding = finding_of(records, backend, mistake);
+            if (finding.n() || finding.has_faults()) findings.push_back(std::move(finding));
         }
     return findings;
 }
 
-OwnStructures own_structures_of(std::span<const Record> records) {
-    OwnStructures cases;
+CaseResults results_of(std::span<const Record> records, std::string_view sections) {
+    CaseResults results;
     for (const Record& record : records) {
-        if (!record.was_run || !record.case_id.starts_with('K') || !is_users_kernel(record)) continue;
-        cases.all.insert(record.case_id);
+        if (!record.was_run || !is_of(sections, record.case_id)) continue;
+        if (catalogued().contains(record.case_id)) results.run.insert(record.case_id);
         if (record.pass.value_or(true)) continue;
-        (is_only_advised(record) ? cases.shoulds : cases.musts).insert(record.case_id);
+        (record.fault_of == "twinray" ? results.failed_by_us
+         : is_only_advised(record)    ? results.not_as_advised
+                                      : results.failed_by_driver)
+            .insert(record.case_id);
     }
-    return cases;
+    return results;
 }
 
 std::vector<Speed> speeds_of(std::span<const Record> records) {
@@ -201,18 +389,21 @@ std::vector<Speed> speeds_of(std::span<const Record> records) {
         if (record.time && record.backend == "sw" && record.level == "watertight" && is_users_kernel(record))
             base[measurement_of(record)] = record.time->median;
     std::map<std::pair<std::string, std::string>, std::vector<double>> ratios, errors;
+    std::set<std::pair<std::string, std::string>> disturbed;
     for (const Record& record : records) {
         const auto found = base.find(measurement_of(record));
         if (!record.time || record.n < fewest_rays || !record.time->metric.starts_with("ns_per_ray") ||
             !is_users_kernel(record) || found == base.end())
             continue;
         ratios[{record.backend, record.level}].push_back(std::log(record.time->median / found->second));
+        if (record.time->is_disturbed()) disturbed.insert({record.backend, record.level});
         if (record.error && record.error->metric == "t_ulp")
             errors[{record.backend, record.level}].push_back(record.error->p99);
     }
     std::vector<Speed> speeds;
     for (auto& [key, logs] : ratios) {
         Speed speed{.backend = key.first, .level = key.second, .measurements = logs.size()};
+        speed.is_disturbed = disturbed.contains(key);
         const auto geometric_mean = [&of_key = logs](std::span<const std::size_t> items) {
             double sum = 0;
             for (const std::size_t i : items) sum += of_key[i];
@@ -234,16 +425,14 @@ std::vector<Speed> speeds_of(std::span<const Record> records) {
 Verdict verdict_of(std::span<const Record> records) {
     Verdict verdict;
     const std::vector<Finding> findings = findings_of(records);
-    const OwnStructures own = own_structures_of(records);
     const std::string driver = driver_backend(records);
+    const std::string_view stiff = "WSTNIBFLVRGCDP";
     verdict.has_driver = !driver.empty();
     verdict.are_we_right = faults_of_ours(records) == 0;
     verdict.is_driver_right = faults_of(records, "driver") == 0;
-    verdict.headline = verdict.has_driver ? headline_of(records, findings, own, driver)
-                                          : "This driver traces no rays by itself: SwTlas alone was checked.";
-    if (!verdict.are_we_right)
-        verdict.headline = text("twinray is wrong in ", faults_of_ours(records),
-                                faults_of_ours(records) == 1 ? " measurement. " : " measurements. ", verdict.headline);
+    verdict.cases = catalogued(stiff);
+    verdict.cases_run = results_of(records, stiff).run.size();
+    verdict.headline = headline_of(verdict, wrongs_of(records, findings, driver), faults_of_ours(records));
     for (const Mistake mistake : all_mistakes) {
         const Finding* ours = find(findings, "sw", mistake);
         const Finding* theirs = find(findings, driver, mistake);
@@ -252,7 +441,9 @@ Verdict verdict_of(std::span<const Record> records) {
         else if (ours)
             verdict.sentences.push_back(sentence_of(*ours, nullptr));
     }
-    add_own_structures(verdict, own);
+    add_own_structures(verdict, records);
+    add_results(verdict, records, "STNIBF", "Scale, shape, input, instances, builds and arithmetic");
+    add_results(verdict, records, "VRGCDP", "View factors, radiosity, light, collisions, distances and pictures");
     add_speed(verdict, speeds_of(records), driver);
     return verdict;
 }

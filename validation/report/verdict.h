@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a report says first: what is right, what is wrong, how fast, against which reference. Pure functions of its
-// records.
+// What a report says first: what is right, what is wrong, what was not measured, how fast, against which reference.
+// Pure functions of its records. A sentence rests on the cases that validation/suite/claims.h names.
 #pragma once
 
 #include <array>
@@ -26,17 +26,34 @@ inline constexpr std::array all_mistakes = {Mistake::leak, Mistake::false_hit, M
                                             Mistake::not_finite, Mistake::counted_wrong};
 std::string_view name_of(Mistake mistake);  // "rays lost at edges and vertices"
 
-// How often who answers makes a mistake, at levels that promise not to.
-struct Finding {
-    std::string backend;
-    Mistake mistake = Mistake::leak;
-    std::uint64_t faults = 0, n = 0;  // of the rays that were checked for it
-    std::string worst_case = {};      // the case with the highest rate: "" where there is none
-    std::uint64_t worst_faults = 0, worst_n = 0;
+// Rays of one case and kind.
+struct RayKind {
+    std::string case_id, settings;  // "W04", "aim vertex, cells 64"
+    std::uint64_t faults = 0, n = 0;
 };
-// One for each mistake that a backend among the records was checked for. Leaks are counted over rays that are aimed at
-// edges and vertices (section W), the others over all.
+
+// How often who answers makes a mistake. Each ray counts once: levels trace the same rays, so it is of one of those
+// that promise not to, the one with the most faults (the first of equals).
+struct Finding {
+    std::string backend, level;
+    Mistake mistake = Mistake::leak;
+    std::vector<RayKind> kinds = {};       // of the cases that it rests on
+    std::vector<RayKind> elsewhere = {};   // of other cases, with faults alone
+    std::size_t cases_run = 0, cases = 0;  // of those that it rests on
+
+    bool is_complete() const { return cases_run == cases; }
+    bool has_faults() const;
+    std::uint64_t n() const;  // rays of `kinds`
+    // Over the cases, each counted as one, and so its kinds of rays; one number, however thoroughly each was asked.
+    double rate() const;
+    Interval rate_95() const;
+};
+// Of one level, "fast" included.
+Finding finding_at(std::span<const Record> records, std::string_view backend, std::string_view level, Mistake mistake);
+// One for each mistake that a backend among the records was checked for.
 std::vector<Finding> findings_of(std::span<const Record> records);
+// "0.27 % (0.25 to 0.3) over 17 cases; most in W04, 4.6 % (4.2 to 5)", "0 of 230,000 rays, 17 cases (below ...)".
+std::string text_of(const Finding& finding);
 
 // The time of a trace over SwTlas's at watertight, of the same rays, 2048 or more: the geometric mean over the
 // measurements of both, with a 95 % interval by bootstrap over them.
@@ -46,23 +63,27 @@ struct Speed {
     Interval ratio_95 = {1, 1};
     std::size_t measurements = 0;
     double median_p99_ulp = 0, worst_p99_ulp = 0;  // of t, over the cases that measured an error; 0: none did
+    bool is_disturbed = false;                     // TimeFigures::is_disturbed() of any
 };
 std::vector<Speed> speeds_of(std::span<const Record> records);
 
-// Cases about the driver's own structures (K), over both ways to trace: those that ran, those that fail what Vulkan
-// demands, or advises.
-struct OwnStructures {
-    std::set<std::string> all, musts, shoulds;
+// Cases by how they came out, over all who answer; those that Vulkan only advises apart.
+struct CaseResults {
+    std::set<std::string> run;  // of the catalogue
+    std::set<std::string> failed_by_us, failed_by_driver, not_as_advised;
 };
-OwnStructures own_structures_of(std::span<const Record> records);
+// Of the sections with these letters: "VRGCDP".
+CaseResults results_of(std::span<const Record> records, std::string_view sections);
 
 struct Sentence {
-    enum class Kind : std::uint8_t { right, wrong, measured } kind;
+    enum class Kind : std::uint8_t { right, wrong, measured, not_measured } kind;
     std::string about, text;  // "Speed", "the driver's ray queries take ..."
 };
+std::string_view word_of(Sentence::Kind kind);  // "right", "wrong", "measured", "not measured"
 
 struct Verdict {
     bool is_driver_right = true, are_we_right = true, has_driver = false;
+    std::size_t cases_run = 0, cases = 0;  // of the catalogue
     std::string headline;
     std::vector<Sentence> sentences;
 };

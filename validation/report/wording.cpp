@@ -37,17 +37,34 @@ std::string count_text(std::uint64_t count) {
     return digits;
 }
 
-std::string rate_text(std::uint64_t count, std::uint64_t n) {
-    const Interval rate = rate_interval_95(count, n);
-    const bool is_rare = static_cast<double>(count) < 1e-3 * static_cast<double>(n);
-    const double unit = is_rare ? 1e6 : 100;
-    const std::string name = is_rare ? "per million" : "%";
-    if (count == 0)
-        return "0 of " + count_text(n) + " (below " + number(upper_bound_95(0, n) * unit, 2) + ' ' + name + ')';
+namespace {
+
+struct Unit {
+    double of_one;
+    const char* name;
+};
+
+Unit unit_of(double share) { return share < 1e-3 ? Unit{1e6, " per million"} : Unit{100, " %"}; }
+
+}  // namespace
+
+std::string share_text(double share) {
+    const Unit unit = unit_of(share);
+    return number(unit.of_one * share, 2) + unit.name;
+}
+
+std::string rate_text(double rate, const Interval& rate_95) {
+    const Unit unit = unit_of(rate);
+    const auto written = [&](double share, int digits) { return number(unit.of_one * share, digits); };
     int digits = 2;  // more where the ends would read alike
-    while (digits < 5 && number(unit * rate.low, digits) == number(unit * rate.high, digits)) ++digits;
-    return number(unit * static_cast<double>(count) / static_cast<double>(n), digits) + ' ' + name + " (" +
-           number(unit * rate.low, digits) + " to " + number(unit * rate.high, digits) + ')';
+    while (digits < 5 && written(rate_95.low, digits) == written(rate_95.high, digits)) ++digits;
+    return written(rate, digits) + unit.name + " (" + written(rate_95.low, digits) + " to " +
+           written(rate_95.high, digits) + ')';
+}
+
+std::string rate_text(std::uint64_t count, std::uint64_t n) {
+    if (count == 0) return "0 of " + count_text(n) + " (below " + share_text(upper_bound_95(0, n)) + ')';
+    return rate_text(static_cast<double>(count) / static_cast<double>(n), rate_interval_95(count, n));
 }
 
 std::string with_interval(double value, const Interval& interval, int digits) {
@@ -65,6 +82,12 @@ std::string settings_text(const Record& record) {
     std::string result;
     for (const auto& [name, value] : record.params) result += (result.empty() ? "" : ", ") + name + ' ' + value.text();
     return result;
+}
+
+double number_at(const Values& values, const std::string& name) {
+    const auto found = values.find(name);
+    const double* number = found == values.end() ? nullptr : std::get_if<double>(&found->second.is);
+    return number ? *number : 0;
 }
 
 bool is_users_kernel(const Record& record) { return !record.variant.starts_with("control"); }

@@ -14,13 +14,18 @@ std::string escaped(std::string_view text);
 
 std::string number(double value, int digits = 3);  // "0.00123", "1.2e-09", "1250"
 std::string count_text(std::uint64_t count);       // "853", "8,192", "2.1 million"
-// "4.6 % (4.5 to 4.7)", or per million below 0.1 %; "0 of 2.1 million (below 1.4 per million)".
+std::string share_text(double share);              // "4.6 %", or "120 per million" below 0.1 %
+// "4.6 % (4.5 to 4.7)", or per million below 0.1 %.
+std::string rate_text(double rate, const Interval& rate_95);
+// The same, or "0 of 2.1 million (below 1.4 per million)".
 std::string rate_text(std::uint64_t count, std::uint64_t n);
 // "1.7 (1.2 to 2.4)".
 std::string with_interval(double value, const Interval& interval, int digits = 2);
 
 // "SwTlas", "the driver's ray queries", "the driver's pipelines"; a case's own word for anything else.
 std::string answerer(std::string_view backend);
+// 0 where there is no number of that name.
+double number_at(const Values& values, const std::string& name);
 // Settings of a record: "aim vertex, cells 64".
 std::string settings_text(const Record& record);
 

@@ -250,6 +250,39 @@ void small_sizes(CaseRun& run) {
                         sums[std::string(name_of(configuration.backend)) + std::string(name_of(configuration.level))]);
 }
 
+// Hits do not depend on the tree.
+void layouts_and_qualities(CaseRun& run) {
+    Mesh mesh = make_grid(48, 48, 0.2f, 5);
+    append(mesh, make_soup(500, 7));
+    const World world = world_of(mesh);
+    const std::vector<Ray> rays = mixed_rays(world, bounds_of(mesh), run.amount(2'048, 500'000), run.seed());
+    for (const Configuration& configuration : run.one_configuration_each()) {
+        if (!is_ours(configuration.backend)) continue;
+        AbstractAccel& usual = run.devices().empty_accel(configuration, Layout::compressed4);
+        usual.push(mesh);
+        const std::vector<Hit> expected = usual.closest_hits(rays, {.level = configuration.level});
+        for (const Layout layout : all_layouts)
+            for (const BuildQuality quality : all_build_qualities) {
+                if (layout != Layout::compressed4 && quality != BuildQuality::fast) continue;
+                AccelOptions options = run.devices().options(configuration, layout);
+                options.build_quality = quality;
+                const auto accel =
+                    Devices::make_accel(run.devices().context(configuration.backend), configuration.backend, options);
+                accel->push(mesh);
+                const std::vector<Hit> hits = accel->closest_hits(rays, {.level = configuration.level});
+                std::uint64_t differ = 0;
+                for (std::size_t i = 0; i < rays.size(); ++i)
+                    differ += std::memcmp(&hits[i], &expected[i], sizeof(Hit)) != 0;
+                run.expect(configuration, {.params = {{"layout", std::string(name_of(layout))},
+                                                      {"quality", std::string(name_of(quality))}},
+                                           .n = rays.size(),
+                                           .faults = differ,
+                                           .what = "hits differ from those of the usual tree",
+                                           .reference = "invariance"});
+            }
+    }
+}
+
 }  // namespace
 
 std::vector<SuiteCase> build_cases() {
@@ -274,6 +307,8 @@ std::vector<SuiteCase> build_cases() {
         {"B12", "1 to 300 triangles", "hits", "0 faults", small_sizes},
         {"B13", "the same rays by kernels shaped for GPUs and for CPU drivers: groups, stacks, loads and builds",
          "hits that differ in a bit", "0", both_shapes_of_kernels},
+        {"B14", "one mesh in every layout, and by every build quality",
+         "hits that differ in a bit from the usual tree's", "0", layouts_and_qualities},
     };
 }
 

@@ -76,6 +76,20 @@ Record CaseRun::record(const Configuration& configuration) const {
     return record;
 }
 
+void CaseRun::add(Record record) {
+    if (record.time) {
+        constexpr double least_seconds = 0.5;  // under which the system's clock ticks are too few
+        const MachineLoad& load = load_.seconds() > least_seconds ? load_ : recorder_.load();
+        record.time->others = load.of_others().value_or(0);
+    }
+    recorder_.add(std::move(record));
+}
+
+void CaseRun::check_claim(Subject subject) const {
+    if (!is_about(row_.id, subject))
+        fail("case ", row_.id, " asks what validation/suite/claims.cpp does not say of it");
+}
+
 std::vector<Configuration> CaseRun::configurations() {
     std::vector<Configuration> able;
     for (const Backend backend : settings_.backends)
@@ -129,6 +143,7 @@ std::string CaseRun::write_replay(const World& world, std::span<const Ray> rays,
 }
 
 Measured CaseRun::measure(const World& world, std::span<const Ray> rays, const Measurement& measurement) {
+    if (!measurement.control) check_claim(Subject::hits);
     const std::vector<Configuration> able = measurement.control ? control_configuration() : configurations();
     if (able.empty() || rays.empty()) return {};
     const std::size_t reps = !settings_.takes_times ? 0
@@ -162,6 +177,7 @@ std::vector<Configuration> CaseRun::crossing_configurations() {
 
 void CaseRun::count_crossings(const World& world, std::span<const Ray> rays, const RightCount& right,
                               const Measurement& measurement) {
+    check_claim(Subject::crossings);
     for (const Configuration& configuration : crossing_configurations()) {
         AbstractAccel& accel = devices_.empty_accel(configuration);
         world.fill(accel);
@@ -186,6 +202,7 @@ void CaseRun::count_crossings(const World& world, std::span<const Ray> rays, con
 
 void CaseRun::add_checked(const Configuration& configuration, const CheckResult& checked,
                           const Measurement& measurement) {
+    check_claim(Subject::hits);
     Record result = record(configuration);
     result.params = measurement.params;
     result.results = measurement.results;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "validation/suite/checks.h"
+#include "validation/suite/claims.h"
 #include "validation/suite/tracing.h"
 
 namespace twinray::suite {
@@ -82,7 +83,7 @@ class CaseRun {
 
     // A record of this case, to be filled further and added.
     Record record(const Configuration& configuration) const;
-    void add(const Record& record) { recorder_.add(record); }
+    void add(Record record);
     // The same of what is computed from an accelerator's answers: what did not pass is ours, or the driver's where
     // SwTlas passed with the same settings.
     void add_computed(Record record);
@@ -98,12 +99,16 @@ class CaseRun {
                              const CheckResult& checked) const;
     std::vector<Configuration> control_configuration();  // SwTlas at watertight if it was asked for
 
+    // Throws Error where the table of claims does not say that the case asks this.
+    void check_claim(Subject subject) const;
+
     const SuiteCase& row_;
     const Settings& settings_;
     Devices& devices_;
     Recorder& recorder_;
     bool has_told_ = false;  // which configurations cannot answer
     bool depends_on_effort_ = false;
+    MachineLoad load_;
 };
 
 }  // namespace twinray::suite

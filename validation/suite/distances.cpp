@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "validation/suite/estimators.h"
@@ -72,7 +73,7 @@ void measure_nearest(CaseRun& run, const Mesh& mesh, const std::vector<dvec3>& p
 
 void sizes(CaseRun& run) {
     const std::vector<dvec3> points = random_points(run.amount(10'000, 1'000'000), 1.5, run.seed());
-    for (const uint subdivisions : {1u, 3u, 5u}) {
+    for (const uint subdivisions : {1u, 2u, 3u, 5u}) {
         const Mesh ball = make_icosphere(subdivisions);
         measure_nearest(run, ball, points, {{"triangles", ball.triangles.size()}});
     }
@@ -179,6 +180,94 @@ void sides(CaseRun& run) {
     add_checked(run, record, wrong, "another winding number than the number of boxes around the point");
 }
 
+// Medians of times, and the case's record, of one question to many points.
+void add_errors(CaseRun& run, const Values& params, const std::string& metric, std::vector<double> errors,
+                std::vector<double> times, std::uint64_t wrong, const std::string& what) {
+    Record record = query_record(run, "f64");
+    record.params = params;
+    record.n = errors.size();
+    record.error = error_figures(metric, std::move(errors));
+    record.error->floor = 0x1p-53;
+    record.time = time_figures("ns_per_point", std::move(times));
+    add_checked(run, record, wrong, what);
+}
+
+void signed_by_spheres(CaseRun& run) {
+    std::vector<dvec3> points = random_points(run.amount(2'000, 200'000), 1.5, run.seed());
+    std::erase_if(points, [](const dvec3& p) { return length(p) > 0.75 && length(p) < 1; });  // of unknown sign
+    for (const uint subdivisions : {1u, 2u, 3u, 4u}) {
+        const Mesh ball = make_icosphere(subdivisions);
+        PointQuery query(query_context(run));
+        query.set(std::vector<MeshView>{ball}, std::vector<MeshInstance>{{0, {}}});
+        std::vector<double> found, times, errors;
+        for (int rep = 0; rep < 5; ++rep)
+            times.push_back(seconds_of([&] { found = query.signed_distances(points); }) * 1e9 /
+                            static_cast<double>(points.size()));
+        std::uint64_t wrong = 0;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const double size = nearest_of_all(ball, points[i]), known = length(points[i]) < 1 ? -size : size;
+            errors.push_back(std::abs(found[i] - known) / size);
+            wrong += !(errors.back() <= 0x1p-49 * (1 + length(points[i])) / size);
+        }
+        add_errors(run, {{"triangles", ball.triangles.size()}}, "relative", errors, times, wrong,
+                   "another distance, or another side");
+    }
+}
+
+// Van Oosterom and Strackee (1983), summed in long double.
+double winding_number(const Mesh& mesh, const dvec3& point) {
+    using Vector = Vec<3, long double>;
+    long double sum = 0;
+    for (const uvec3& t : mesh.triangles) {
+        const Vector a = Vector(mesh.positions[t.x]) - Vector(point), b = Vector(mesh.positions[t.y]) - Vector(point),
+                     c = Vector(mesh.positions[t.z]) - Vector(point);
+        const long double la = length(a), lb = length(b), lc = length(c);
+        sum += 2 * std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+    }
+    return static_cast<double>(sum / (4 * std::numbers::pi_v<long double>));
+}
+
+Mesh upper_half(Mesh ball) {
+    std::erase_if(ball.triangles, [&](const uvec3& t) {
+        return ball.positions[t.x].z + ball.positions[t.y].z + ball.positions[t.z].z <= 0;
+    });
+    return ball;
+}
+
+// Beside edges, and as far as coordinates may be.
+std::vector<dvec3> points_about(const Mesh& mesh, CaseRun& run) {
+    std::vector<dvec3> points = random_points(run.amount(1'000, 100'000), 1.5, run.seed());
+    for (std::size_t i = 0; i < mesh.triangles.size() && i < 200; ++i) {
+        const uvec3& t = mesh.triangles[i];
+        const dvec3 middle = (dvec3(mesh.positions[t.x]) + dvec3(mesh.positions[t.y])) * 0.5;
+        points.insert(points.end(), {middle * 1.001, middle * 0.999});
+    }
+    for (const double far : {1e10, 1e40, 1e70}) points.insert(points.end(), {dvec3(far, 1, 2), dvec3(0, -far, far)});
+    return points;
+}
+
+void winding_of_open_meshes(CaseRun& run) {
+    for (const uint subdivisions : {1u, 2u, 3u, 4u}) {
+        const Mesh half = upper_half(make_icosphere(subdivisions));
+        const std::vector<dvec3> points = points_about(half, run);
+        PointQuery query(query_context(run));
+        query.set(std::vector<MeshView>{half}, std::vector<MeshInstance>{{0, {}}});
+        std::vector<double> found, times, errors(points.size());
+        for (int rep = 0; rep < 3; ++rep)
+            times.push_back(seconds_of([&] { found = query.generalized_winding_numbers(points); }) * 1e9 /
+                            static_cast<double>(points.size()));
+        parallel_for(points.size(), [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) errors[i] = std::abs(found[i] - winding_number(half, points[i]));
+        });
+        const double border =
+            8 * std::ldexp(1.0, static_cast<int>(subdivisions));  // edges without a neighbour, or more
+        std::uint64_t wrong = 0;
+        for (const double error : errors) wrong += !(error <= 0x1p-50 * (border + 16));
+        add_errors(run, {{"triangles", half.triangles.size()}}, "absolute", errors, times, wrong,
+                   "off by more than 2^-50 times the number of edges without a neighbour");
+    }
+}
+
 }  // namespace
 
 std::vector<SuiteCase> distance_cases() {
@@ -190,6 +279,9 @@ std::vector<SuiteCase> distance_cases() {
         {"D04", "the scene 2^-120 to 2^120 as large", "triangles, distances", "the same, scaled", distances_scaled},
         {"D05", "all triangles within a radius", "those that are listed", "as all triangles one by one", radius},
         {"D06", "winding numbers on a lattice", "numbers", "as many boxes as are around the point", sides},
+        {"D07", "signed distances of spheres", error, "the distance and the side, within rounding", signed_by_spheres},
+        {"D08", "winding numbers of open half spheres, beside edges and up to 10^70 away", "absolute error, time",
+         "2^-50 times the number of edges without a neighbour", winding_of_open_meshes},
     };
 }
 

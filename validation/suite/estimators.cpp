@@ -13,12 +13,6 @@
 namespace twinray::suite {
 namespace {
 
-struct Answer {
-    double value = 0, low = 0, high = 0;
-    double ms = 0;
-    std::uint64_t rays = 0;
-};
-
 // Meshes are groups, one instance each.
 class Estimators {
   public:
@@ -28,7 +22,7 @@ class Estimators {
         accel.sync();
     }
 
-    Answer hits(Sequence sequence, std::uint64_t rays, uint seed) {
+    Estimate hits(Sequence sequence, std::uint64_t rays, uint seed) {
         const ViewFactorOptions options{
             .grouping = FaceGrouping::mesh, .sequence = sequence, .rays = rays, .seed = seed};
         ViewFactors factors(accel_, faces_, options);
@@ -43,7 +37,7 @@ class Estimators {
     }
 
     // Rounds of 64 rays for each two faces.
-    Answer area(Sequence sequence, std::uint64_t rays, uint seed) {
+    Estimate area(Sequence sequence, std::uint64_t rays, uint seed) {
         const PlannedPair pair = planned(question_, PairEstimator::area);
         PairSampler sampler(accel_, faces_, Sides::front, sequence, seed);
         PairSums sums;
@@ -59,7 +53,7 @@ class Estimators {
         return {value / area, interval.low / area, interval.high / area, ms, sums.rays()};
     }
 
-    static Answer contour(const FactorQuestion& question) {
+    static Estimate contour(const FactorQuestion& question) {
         const auto start = Clock::now();
         const ContourExchange exchange = planned(question, PairEstimator::automatic).contour;
         const double ms = ms_since(start), area = area_of(question);
@@ -100,7 +94,7 @@ struct Series {
     std::vector<double> errors, ms;
     std::uint64_t inside = 0, faults = 0, rays = 0;
 
-    void add(const Answer& answer, double truth) {
+    void add(const Estimate& answer, double truth) {
         rays = answer.rays;
         errors.push_back(std::abs(answer.value - truth) / truth);
         ms.push_back(answer.ms);
@@ -153,33 +147,22 @@ Record record_of(const CaseRun& run, const Configuration& configuration, const F
 
 void measure_sampled(CaseRun& run, Estimators& estimators, const Configuration& configuration,
                      const FactorQuestion& question, const EstimatorMethod& method) {
-    const auto answer = [&](std::uint64_t rays, std::uint64_t seed) {
-        return method.estimator == PairEstimator::hits
-                   ? estimators.hits(method.sequence, rays, static_cast<uint>(seed))
-                   : estimators.area(method.sequence, rays, static_cast<uint>(seed));
-    };
-    const std::size_t seeds = run.amount(8, 100);
     std::vector<std::uint64_t> counts = {1 << 10, 1 << 12, 1 << 14};
     if (run.amount(0, 1)) counts = {1 << 10, 1 << 11, 1 << 12, 1 << 13, 1 << 14, 1 << 15, 1 << 16};
-    answer(counts.front(), 0);  // compiles
-    std::vector<double> rays, errors;
-    for (const std::uint64_t count : counts) {
-        Series series;
-        for (std::uint64_t seed = 0; seed < seeds; ++seed)
-            series.add(answer(count, run.seed() + seed + seeds * errors.size()), question.value);
-        rays.push_back(static_cast<double>(series.rays));
-        errors.push_back(series.rms());
-        Record record = record_of(run, configuration, question, method);
-        record.params.emplace("rays", count);
-        set_series(record, series);
-        const std::optional<PowerLaw> law = fit_power_law(rays, errors);
-        if (count == counts.back() && law) {
-            record.results.emplace("slope", law->slope);
-            record.results.emplace("slope_low", law->slope_95.low);
-            record.results.emplace("slope_high", law->slope_95.high);
-        }
-        run.add_computed(record);
-    }
+    measure_estimates(run, record_of(run, configuration, question, method), question.value, "rays", counts,
+                      [&](std::uint64_t rays, std::uint64_t seed) {
+                          return method.estimator == PairEstimator::hits
+                                     ? estimators.hits(method.sequence, rays, static_cast<uint>(seed))
+                                     : estimators.area(method.sequence, rays, static_cast<uint>(seed));
+                      });
+}
+
+// What an error costs by the law of error over time; only where it falls.
+void add_costs(Record& record, std::span<const double> ms, std::span<const double> errors) {
+    const std::optional<PowerLaw> law = fit_power_law(ms, errors);
+    if (!law || law->slope >= 0) return;
+    for (const auto& [name, error] : {std::pair{"ms_at_1_percent", 1e-2}, std::pair{"ms_at_0.1_percent", 1e-3}})
+        record.results.emplace(name, std::pow(error / law->scale, 1 / law->slope));
 }
 
 }  // namespace
@@ -197,6 +180,32 @@ std::vector<EstimatorMethod> methods_of(std::span<const PairEstimator> estimator
         if (estimator != PairEstimator::contour) methods.push_back({estimator, Sequence::random});
     }
     return methods;
+}
+
+void measure_estimates(CaseRun& run, const Record& base, double truth, const char* amount_name,
+                       std::span<const std::uint64_t> amounts,
+                       const std::function<Estimate(std::uint64_t amount, std::uint64_t seed)>& estimate) {
+    const std::size_t seeds = run.amount(8, 100);
+    estimate(amounts.front(), 0);  // compiles
+    std::vector<double> rays, errors, ms;
+    for (const std::uint64_t amount : amounts) {
+        Series series;
+        for (std::uint64_t seed = 0; seed < seeds; ++seed)
+            series.add(estimate(amount, run.seed() + seed + seeds * errors.size()), truth);
+        rays.push_back(static_cast<double>(series.rays));
+        errors.push_back(series.rms());
+        ms.push_back(median(series.ms));
+        Record record = base;
+        record.params.emplace(amount_name, amount);
+        set_series(record, series);
+        if (const std::optional<PowerLaw> law = fit_power_law(rays, errors); amount == amounts.back() && law) {
+            record.results.emplace("slope", law->slope);
+            record.results.emplace("slope_low", law->slope_95.low);
+            record.results.emplace("slope_high", law->slope_95.high);
+            add_costs(record, ms, errors);
+        }
+        run.add_computed(record);
+    }
 }
 
 std::vector<Configuration> analysis_configurations(CaseRun& run) {

@@ -34,6 +34,19 @@ std::vector<EstimatorMethod> methods_of(std::span<const PairEstimator> estimator
 // than 95 % of all could explain.
 void measure_factor(CaseRun& run, const FactorQuestion& question, std::span<const EstimatorMethod> methods);
 
+// One estimate, with its 95 % interval.
+struct Estimate {
+    double value = 0, low = 0, high = 0;
+    double ms = 0;
+    std::uint64_t rays = 0;
+};
+// Measures an estimator over ascending amounts of work, each with several seeds: as measure_factor does, a record each
+// that is like `base` with the amount as parameter `amount_name`. The last has the slope of the error over rays, and
+// what an error of 1 % and of 0.1 % costs by the law of error over time.
+void measure_estimates(CaseRun& run, const Record& base, double truth, const char* amount_name,
+                       std::span<const std::uint64_t> amounts,
+                       const std::function<Estimate(std::uint64_t amount, std::uint64_t seed)>& estimate);
+
 // The configurations of these cases: software, and hardware once.
 std::vector<Configuration> analysis_configurations(CaseRun& run);
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Invalid and special input: rays. Meshes and wrong use are in inputs_scene.cpp.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 
 #include "validation/suite/inputs.h"
 #include "validation/suite/scenes.h"
@@ -86,6 +88,28 @@ void zero_directions(CaseRun& run) {
     run.measure(world_of(sphere), every_second(sphere, run.amount(8'192, 1'000'000), run.seed(), spoil));
 }
 
+// NaN, 1e38 and denormal numbers in origins and directions, which order the rays, too.
+void extreme_rays_in_order(CaseRun& run) {
+    const Mesh sphere = make_icosphere(4);
+    constexpr std::array numbers = {nan, inf, -inf, 1e38f, -1e38f, 1e-40f, -0.0f};
+    const std::vector<Ray> rays =
+        every_second(sphere, run.amount(4'096, 1'000'000), run.seed(), [&](Ray& ray, std::size_t i) {
+            (i % 2 ? ray.origin : ray.direction)[static_cast<int>(i / 2 % 3)] = numbers[i / 6 % numbers.size()];
+        });
+    for (const Configuration& configuration : run.configurations()) {
+        AbstractAccel& accel = run.devices().empty_accel(configuration);
+        accel.push(sphere);
+        const std::vector<Hit> given = accel.closest_hits(rays, {.level = configuration.level}),
+                               sorted =
+                                   accel.closest_hits(rays, {.level = configuration.level, .order = RayOrder::sorted});
+        CaseRun::Outcome outcome{.n = rays.size(), .reference = "invariance"};
+        for (std::size_t i = 0; i < rays.size(); ++i)
+            if (std::memcmp(&given[i], &sorted[i], sizeof(Hit)) != 0 && outcome.faults++ == 0)
+                outcome.what = "differs: " + hexadecimal(rays[i]);
+        run.expect(configuration, outcome);
+    }
+}
+
 struct EndedRay {
     Ray ray;
     bool hits;
@@ -160,6 +184,8 @@ std::vector<SuiteCase> input_cases() {
          "hits", "equal to the reference's", masks_and_culling},
         {"N13", "context, build and trace while one call of Vulkan fails, or the device is lost from then on",
          "errors, hits, leaks", "an Error, nothing left alive, and the right hits from the next try", failing_calls},
+        {"N14", "sorted rays, every second with NaN, infinity, 1e38 or a denormal number in it",
+         "hits that differ in a bit from those of rays in the given order", "0", extreme_rays_in_order},
     };
 }
 

@@ -101,6 +101,7 @@ void refused_transforms(CaseRun& run) {
         {"NaN", Transform::scaling({1, nan, 1})},
         {"infinite", Transform::translation({inf, 0, 0})},
         {"inverse beyond float32", Transform::scaling(vec3(1e-39f))},
+        {"denormal", Transform::scaling(vec3(1e-38f))},
     };
     for (const Configuration& configuration : run.one_configuration_each()) {
         CaseRun::Outcome outcome{.n = bad.size(), .fault_of = "twinray"};
@@ -115,6 +116,43 @@ void refused_transforms(CaseRun& run) {
                 outcome.what = text(what, ": ", error.empty() ? "not refused" : error);
         }
         run.expect(configuration, outcome);
+    }
+}
+
+// A cube scaled along its axes, then turned. The ray follows the axis that is scaled least, from 3 in object space
+// through the middle: what rounding does to it moves it by little in object space. It meets the cube at t = 2.
+void axes_far_apart(CaseRun& run) {
+    const Mesh cube = make_box(vec3(-1), vec3(1));
+    for (const float most : {14.0f, 20.0f, 36.0f}) {
+        Random random(run.seed());
+        std::vector<Transform> transforms;
+        std::vector<Ray> rays;
+        for (std::size_t i = 0; i < run.amount(12, 500); ++i) {
+            vec3 factors;
+            for (int axis = 0; axis < 3; ++axis) factors[axis] = std::pow(10.0f, random.between(-most, most));
+            const int least = factors.x < factors.y ? (factors.x < factors.z ? 0 : 2) : (factors.y < factors.z ? 1 : 2);
+            vec3 along(0);
+            along[least] = 1;
+            transforms.push_back(random.rotation() * Transform::scaling(factors));
+            rays.push_back({transform_vector(transforms.back(), -3.0f * along), 0,
+                            transform_vector(transforms.back(), along), inf});
+        }
+        for (const Configuration& configuration : run.configurations()) {
+            AbstractAccel& accel = run.devices().empty_accel(configuration);
+            const AccelHandle handle = accel.push(cube);
+            CaseRun::Outcome outcome{.params = {{"exponent", most}}, .n = rays.size(), .reference = "analytic"};
+            if (!is_robust(configuration)) outcome.only_measured = "fast promises nothing at edges";
+            if (configuration.level >= Level::refined)
+                outcome.only_measured = "float64 in world space holds for conditions up to 10^9";
+            for (std::size_t i = 0; i < rays.size(); ++i) {
+                accel.update_transform(handle, transforms[i]);
+                const Hit hit = accel.closest_hits(std::span(&rays[i], 1), {.level = configuration.level}).front();
+                if (hit.hit && std::abs(hit.t - 2) < 1e-5f) continue;
+                if (outcome.faults++ == 0)
+                    outcome.what = text(hit.hit ? text("t = ", hit.t) : "a miss", ": ", hexadecimal(rays[i]));
+            }
+            run.expect(configuration, outcome);
+        }
     }
 }
 
@@ -244,6 +282,8 @@ std::vector<SuiteCase> instance_cases() {
          "0 SW_LEAK, SW_FALSE, T_ERR", box_touched_by_rounding},
         {"I13", "uniform scales 2^-60 to 2^60 of instance and rays", "ids, u, v, t", "equal to the last bit, t scaled",
          instances_by_powers_of_two},
+        {"I14", "axes scaled by 10^-36 to 10^36, then turned", "hits, t", "watertight: all hit, at t = 2",
+         axes_far_apart},
     };
 }
 

@@ -2,12 +2,14 @@
 // Position: meshes far from the origin, and cameras far from meshes.
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "validation/suite/demands.h"
 #include "validation/suite/scale.h"
 #include "validation/suite/scenes.h"
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
+#include <twinray/world.h>
 
 namespace twinray::suite {
 
@@ -94,6 +96,41 @@ void far_camera(CaseRun& run) {
             rays.push_back(far_ray(random, dvec3(random.in_box(half / 2)) * dvec3(1, 0, 1), distance, 1));
         const Measured measured = run.measure(world, rays, {.params = {{"cells_away", distance}}});
         expect_right_points(run, measured, field, rays, distance, half);
+    }
+}
+
+// Rays in float64 that begin within 1e-4 of a plane, where float32 has steps of 6e-5 and more: the rounded ones begin
+// on its other side, or far along it. A second plane lies behind.
+void rays_of_double(CaseRun& run) {
+    const Mesh plane = make_quad(vec3(-100, -100, 0), vec3(200, 0, 0), vec3(0, 200, 0));
+    for (const double height : {1e3, 1e6, 1e9}) {
+        std::mt19937_64 random(run.seed());
+        const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-52 - 1; };
+        std::vector<Ray64> rays;
+        for (std::size_t i = 0; i < run.amount(2'000, 200'000); ++i) {
+            const dvec3 origin(50 * unit(), 50 * unit(), height + 1e-4 * unit());
+            rays.push_back({origin, i % 2 ? 0.0 : 1e-5, dvec3(unit(), unit(), (i % 3 ? 1e-5 : 1.0) * unit()),
+                            i % 5 ? double{inf} : 20.0});
+        }
+        for (const Configuration& configuration : run.configurations()) {
+            if (configuration.level < Level::refined) continue;
+            AbstractAccel& accel = run.devices().empty_accel(configuration);
+            WorldAccel world(accel, dvec3(0));
+            const double heights[] = {height, height + 1e-3 * height};
+            for (const double z : heights) world.push(plane, Transform64::translation({0, 0, z}));
+            const std::vector<HitExact> hits = world.exact_hits(rays);
+            CaseRun::Outcome outcome{.params = {{"height", height}}, .n = rays.size(), .reference = "analytic"};
+            for (std::size_t i = 0; i < rays.size(); ++i) {
+                if (!hits[i].hit) continue;
+                const Ray64& ray = rays[i];
+                const double z = double{static_cast<float>(heights[hits[i].instance_index])};
+                const double t = (z - ray.origin.z) / ray.direction.z;
+                const bool is_within = hits[i].t > ray.t_min && hits[i].t < ray.t_max;
+                if (is_within && std::abs(hits[i].t - t) <= 1e-9 * std::abs(t)) continue;
+                if (outcome.faults++ == 0) outcome.what = text("t = ", hits[i].t, " in place of ", t);
+            }
+            run.expect(configuration, outcome);
+        }
     }
 }
 

@@ -226,6 +226,8 @@ std::vector<SuiteCase> scale_cases() {
          "0 SW_LEAK, SW_FALSE, T_ERR; those of zeros", denormal_coordinates},
         {"S12", "a triangle of 1e-18 beside one of 1e18", "hits of either",
          "two meshes: 0 SW_LEAK, SW_FALSE, T_ERR; one mesh: measured", smallest_beside_largest},
+        {"S13", "rays in float64 that begin within 1e-4 of a plane at 10^3 to 10^9", "t of exact_hits",
+         "within the ray's interval, and right to 1e-9", rays_of_double},
     };
 }
 

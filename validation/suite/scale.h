@@ -9,6 +9,7 @@ namespace twinray::suite {
 // position.cpp
 void far_from_the_origin(CaseRun& run);
 void far_camera(CaseRun& run);
+void rays_of_double(CaseRun& run);
 
 // scale_rays.cpp
 void lengths_of_directions(CaseRun& run);

@@ -252,6 +252,10 @@ std::vector<SuiteCase> shape_cases() {
          "0 SW_LEAK, SW_FALSE, T_ERR", tied_axes},
         {"T14", "rays from a cube's vertices along its edges and diagonals, inward and outward", "hits",
          "outward: none; the diagonal of the cube: t = 1; else t = 1 or none", along_edges},
+        {"T15", "all hits of rays through 4 to 256 layers", "hits, t, time of a hit", "every layer once, from below",
+         all_hits_through_layers},
+        {"T16", "all hits of rays through thousands of copies of a triangle", "hits", "every copy once, in order",
+         all_hits_through_copies},
     };
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Cases of the section T that are about the order of hits and about rays in planes and along edges.
+// Cases of the section T that are about the order of hits, all hits, and rays in planes and along edges.
 #pragma once
 
 #include "validation/suite/case_run.h"
@@ -18,5 +18,9 @@ void in_the_plane(CaseRun& run);
 void in_the_plane_of_a_face(CaseRun& run);
 void tied_axes(CaseRun& run);
 void along_edges(CaseRun& run);
+
+// all_hits.cpp
+void all_hits_through_layers(CaseRun& run);
+void all_hits_through_copies(CaseRun& run);
 
 }  // namespace twinray::suite

@@ -76,9 +76,6 @@ class SuiteRun {
     void run_first(const SuiteCase& row) {
         if (!lost_in_.empty()) {
             CaseRun(row, settings_, devices_, recorder_).add_not_run("the device was lost in " + lost_in_);
-        } else if (settings_.seconds > 0 && seconds_left() <= 0) {
-            CaseRun(row, settings_, devices_, recorder_)
-                .add_not_run(text("the time of ", settings_.seconds, " s was spent before its turn"));
         } else {
             const auto [seconds, uncertainty, can_improve] = run_guarded(row, settings_.effort);
             note(row, {.effort = settings_.effort,
@@ -139,9 +136,9 @@ std::string_view name_of(Backend backend) {
 
 std::vector<SuiteCase> catalogue() {
     std::vector<SuiteCase> all;
-    for (const auto& section :
-         {edge_cases, scale_cases, shape_cases, input_cases, instance_cases, build_cases, arithmetic_cases, price_cases,
-          view_factor_cases, hidden_factor_cases, radiosity_cases, collision_cases, distance_cases, picture_cases}) {
+    for (const auto& section : {edge_cases, scale_cases, shape_cases, input_cases, instance_cases, build_cases,
+                                arithmetic_cases, price_cases, view_factor_cases, hidden_factor_cases, radiosity_cases,
+                                light_cases, collision_cases, distance_cases, picture_cases}) {
         const std::vector<SuiteCase> cases = section();
         all.insert(all.end(), cases.begin(), cases.end());
     }
@@ -160,6 +157,7 @@ std::string_view section_of(std::string_view id) {
         case 'L': return "what each level costs";
         case 'V': return "view factors";
         case 'R': return "radiosity";
+        case 'G': return "light and centroids";
         case 'C': return "collisions";
         case 'D': return "distances";
         case 'P': return "pictures";
@@ -180,7 +178,7 @@ std::string run(std::span<const SuiteCase> cases, const Settings& settings, Devi
                 SuiteState& state, bool quiet) {
     SuiteRun suite(cases, settings, devices, recorder, state);
     suite.first_round(quiet);
-    if (settings.seconds > 0) suite.improve(quiet);
+    suite.improve(quiet);
     return suite.lost_in();
 }
 

@@ -38,7 +38,8 @@ struct Settings {
     std::vector<Level> levels = {all_levels.begin(), all_levels.end()};
     std::vector<std::string> only = {};  // patterns of case ids with * and ?; empty: all
     std::uint64_t seed = 1;
-    double seconds = 0;       // no case is begun after these, and what is left goes to the least certain; 0: no limit
+    // Every case runs with this effort, however long it takes; what is left of these seconds goes to the least certain.
+    double seconds = 0;
     bool is_whole = false;    // the full suite: set by run()
     bool takes_times = true;  // false: answers are checked, and nothing is repeated to be timed
     // Folder of the report, into whose folder "replays" the first faulty ray of each record goes; "": none is written.
@@ -68,6 +69,7 @@ std::vector<SuiteCase> price_cases();        // L: what levels cost
 std::vector<SuiteCase> view_factor_cases();  // V: view factors
 std::vector<SuiteCase> hidden_factor_cases();
 std::vector<SuiteCase> radiosity_cases();  // R: radiosity
+std::vector<SuiteCase> light_cases();      // G: light and centroids
 std::vector<SuiteCase> collision_cases();  // C: collisions
 std::vector<SuiteCase> distance_cases();   // D: distances
 std::vector<SuiteCase> picture_cases();    // P: pictures

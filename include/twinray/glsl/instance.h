@@ -57,14 +57,19 @@ FUNC Rows to_world_of(InstanceRecord instance) { return instance.object_to_world
 
 // The row with its linear part in units of `scale`.
 FUNC vec4 scaled_row(vec4 row, float scale) { return vec4(row.x * scale, row.y * scale, row.z * scale, row.w); }
+// The map of what is in units of `scale`.
+FUNC Rows scaled_map(Rows m, float scale) {
+    m.r0 = scaled_row(m.r0, scale);
+    m.r1 = scaled_row(m.r1, scale);
+    m.r2 = scaled_row(m.r2, scale);
+    return m;
+}
 
 // The instance of what was built, not of what was given.
 FUNC InstanceRecord in_built_units(InstanceRecord instance) {
     if (has_geometry(instance)) {
         float scale = AT(REF(GeometrySource)(address_after(instance.geometry, GEOMETRY_SOURCE_OFFSET)), 0).scale;
-        instance.object_to_world.r0 = scaled_row(instance.object_to_world.r0, scale);
-        instance.object_to_world.r1 = scaled_row(instance.object_to_world.r1, scale);
-        instance.object_to_world.r2 = scaled_row(instance.object_to_world.r2, scale);
+        instance.object_to_world = scaled_map(instance.object_to_world, scale);
     }
     return instance;
 }

@@ -71,12 +71,20 @@ FUNC float largest_entry(vec3 v) { return max_by_comparison(abs(v.x), max_by_com
 FUNC float largest_coordinate(vec3 lo, vec3 hi) { return max_by_comparison(largest_entry(lo), largest_entry(hi)); }
 
 // The inverse of an invertible map: cofactors over the determinant, both in doubled precision, so that each entry of
-// the linear part is right to a few roundings of itself for condition numbers up to about 10^7. Rows are scaled by
-// powers of two before, which is exact, so that products neither overflow nor vanish.
+// the linear part is right to a few roundings of itself for condition numbers up to about 10^7. Columns and rows are
+// scaled by powers of two before, which is exact, so that products neither overflow nor vanish: scales along axes, of
+// any size, may come before a rotation, and after one (then entries are right to 2^-15 of the largest in their column).
+// Not finite where a column or row is 0 or denormal.
 FUNC Rows inverse_of(Rows m) {
     vec3 a0 = vec3(m.r0.x, m.r0.y, m.r0.z);
     vec3 a1 = vec3(m.r1.x, m.r1.y, m.r1.z);
     vec3 a2 = vec3(m.r2.x, m.r2.y, m.r2.z);
+    vec3 t = vec3(power_of_two_below(largest_entry(vec3(a0.x, a1.x, a2.x))),
+                  power_of_two_below(largest_entry(vec3(a0.y, a1.y, a2.y))),
+                  power_of_two_below(largest_entry(vec3(a0.z, a1.z, a2.z))));
+    a0 = a0 / t;
+    a1 = a1 / t;
+    a2 = a2 / t;
     float s0 = power_of_two_below(largest_entry(a0));
     float s1 = power_of_two_below(largest_entry(a1));
     float s2 = power_of_two_below(largest_entry(a2));
@@ -94,9 +102,9 @@ FUNC Rows inverse_of(Rows m) {
     float missing_size = 0.0f;
     PRECISE float det = doubled_dot(a0, c0, 0.0f, missing, missing_size);
     det = det + (missing + accurate_dot(a0, low0, 0.0f));
-    PRECISE vec3 x0 = (c0 + low0) / det / s0;
-    PRECISE vec3 x1 = (c1 + low1) / det / s1;
-    PRECISE vec3 x2 = (c2 + low2) / det / s2;
+    PRECISE vec3 x0 = (c0 + low0) / det / s0 / t;
+    PRECISE vec3 x1 = (c1 + low1) / det / s1 / t;
+    PRECISE vec3 x2 = (c2 + low2) / det / s2 / t;
     vec3 offset = vec3(m.r0.w, m.r1.w, m.r2.w);
     Rows w;
     w.r0 = vec4(x0.x, x1.x, x2.x, -accurate_dot(vec3(x0.x, x1.x, x2.x), offset, 0.0f));

@@ -9,13 +9,13 @@ mkdir -p "$2/report_of_a_driver"
 cd "$2/report_of_a_driver"
 
 # [part]
-twinray report --only 'W02,L01,V01' --budget 1 -o monday
+twinray report --only 'W02,L01,V01' -o monday
 # [/part]
 grep -q '"case":"W02".*"backend":"sw","level":"watertight".*"pass":true' monday/report.jsonl
 grep -q "Error of t against run time" monday/report.html
 
 # [compare]
-twinray report --only 'W02,L01,V01' --budget 1 -o tuesday --quiet
+twinray report --only 'W02,L01,V01' -o tuesday --quiet
 twinray report --compare monday tuesday
 # [/compare]
 

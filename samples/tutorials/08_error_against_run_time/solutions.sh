@@ -9,7 +9,7 @@ mkdir -p "$2/broken_driver"
 cd "$2/broken_driver"
 
 # [exercise2]
-twinray report --only W02 --budget 1 -o right --quiet
+twinray report --only W02 -o right --quiet
 # As if SwTlas had found triangles that are not there, each time that it was right.
 sed '/"backend":"sw"/ s/"AGREE":/"SW_FALSE":/' right/report.jsonl > broken.jsonl
 if twinray report --compare right broken.jsonl; then

@@ -32,7 +32,7 @@ class CrossingsTest : public ::testing::Test {
         return devices_->crossing_counter(configuration).count(accel, rays);
     }
     std::vector<Record> run(const std::function<void(CaseRun&)>& body) {
-        const SuiteCase row{"W01", "title", "measures", "criterion", body};
+        const SuiteCase row{"W02", "title", "measures", "criterion", body};
         Recorder recorder({"now", "0.1", {}});
         SuiteState state;
         suite::run(std::span(&row, 1), {.levels = {Level::fast, Level::watertight}}, *devices_, recorder, state, true);

@@ -163,13 +163,11 @@ TEST(Compare, AFaultOfOursAndAFlipAreCertain) {
     EXPECT_EQ(comparison.changes[1].how, "passed, and does not: was not refused");
 }
 
-TEST(Compare, WhatRanAndDoesNotIsWorseUnlessTimeWasShort) {
+TEST(Compare, WhatRanAndDoesNotIsWorse) {
     const std::vector<Record> before = {measured("W1", 100)};
     std::vector<Record> now = before;
     now[0].was_run = false, now[0].reason = "needs VK_KHR_ray_query";
     EXPECT_TRUE(compare(before, now).is_worse());
-    now[0].reason = "the time of 80 s was spent before its turn";
-    EXPECT_FALSE(compare(before, now).is_worse());
 }
 
 // A record that was not run has no settings: there is one for all of its case, accelerator and level.
@@ -184,8 +182,6 @@ TEST(Compare, ACaseThatTheDriverCannotRunAnyMoreIsWorseWhateverItsSettings) {
     EXPECT_EQ(comparison.changes[0].what, "W1 hw watertight");
     EXPECT_EQ(comparison.changes[0].how, "was run, and is not: the device has no ray queries");
     EXPECT_TRUE(comparison.is_worse());
-    now[0].reason = "the time of 80 s was spent before its turn";
-    EXPECT_FALSE(compare(before, now).is_worse());
     now[0].reason = "level certified is unsupported", now[0].level = "certified";  // neither before
     EXPECT_FALSE(compare(before, now).is_worse());
 }

@@ -29,6 +29,8 @@ Record estimate(const char* variant, double rays, double rms) {
     record.variant = variant;
     record.params = {{"distance", 1.0}, {"rays", rays}};
     record.results = {{"rms", rms}};
+    const double ms = rays / 1000;
+    record.time = TimeFigures{"ms_per_estimate", ms, {ms, ms}, 0, ms, 8};
     return record;
 }
 
@@ -45,10 +47,10 @@ TEST(Figure, LeaksHaveIntervalsAndBounds) {
 }
 
 TEST(Figure, SlopesAreOfThePointsOfALine) {
-    const Figure figure = factors_figure(
+    const Figure figure = estimates_figure(
         std::vector{estimate("hits", 1024, 0.04), estimate("hits", 4096, 0.02), estimate("hits", 16384, 0.01)});
     ASSERT_EQ(figure.series.size(), 1u);
-    EXPECT_EQ(figure.series[0].label, "hits, slope -0.5");
+    EXPECT_EQ(figure.series[0].label, "view factor, hits, slope -0.5");
 }
 
 TEST(Figure, TheFrontIsWhatNothingBeatsInBoth) {
@@ -90,9 +92,9 @@ TEST(Gnuplot, AScriptHoldsPointsBarsBoundsAndLabels) {
 TEST(Gnuplot, DrawsAnElementOfThePage) {
     const test::TempDir folder;
     const Figure figure =
-        factors_figure(std::vector{estimate("hits & more", 1024, 0.04), estimate("hits & more", 4096, 0.02)});
+        estimates_figure(std::vector{estimate("hits & more", 1024, 0.04), estimate("hits & more", 4096, 0.02)});
     const std::string svg = draw(figure, folder / "plots");
-    EXPECT_TRUE(std::filesystem::exists(folder / "plots/factors.gp"));
+    EXPECT_TRUE(std::filesystem::exists(folder / "plots/estimates.gp"));
     if (svg.empty()) TWINRAY_LACKS("gnuplot", "gnuplot is not installed");
     EXPECT_TRUE(svg.starts_with("<svg"));
     EXPECT_NE(svg.find("currentColor"), std::string::npos);

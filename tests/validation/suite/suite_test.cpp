@@ -172,7 +172,7 @@ TEST_F(SuiteRun, ACaseThatThrowsIsRecordedAndTheRestGoesOn) {
 TEST_F(SuiteRun, OnlyWhatIsAskedForRuns) {
     if (!can_run_) return;
     const Settings settings{.backends = {Backend::software}, .levels = {Level::watertight}, .only = {"W0?"}};
-    const std::vector<Record> records = run({make_case("W01", sound), make_case("S01", sound)}, settings);
+    const std::vector<Record> records = run({make_case("W01", sound), make_case("S02", sound)}, settings);
     ASSERT_EQ(records.size(), 1u);
     EXPECT_EQ(records[0].case_id + records[0].backend + records[0].level, "W01swwatertight");
 }
@@ -192,18 +192,29 @@ TEST_F(SuiteRun, WhatIsDoneIsNotDoneAgain) {
     if (!can_run_) return;
     Recorder recorder({"now", "0.1", {}});
     SuiteState state{.cases = {{"W01", {}}}};
-    suite::run(std::vector{make_case("W01", sound), make_case("S01", sound)}, {}, *devices_, recorder, state, true);
-    for (const Record& record : recorder.records()) EXPECT_EQ(record.case_id, "S01");
-    EXPECT_TRUE(state.cases.contains("S01"));
+    suite::run(std::vector{make_case("W01", sound), make_case("S02", sound)}, {}, *devices_, recorder, state, true);
+    for (const Record& record : recorder.records()) EXPECT_EQ(record.case_id, "S02");
+    EXPECT_TRUE(state.cases.contains("S02"));
 }
 
-TEST_F(SuiteRun, NoCaseBeginsAfterTheTime) {
+TEST_F(SuiteRun, EveryCaseRunsHoweverShortTheTime) {
     if (!can_run_) return;
-    const Settings settings{.seconds = 1e-9};
-    const std::vector<Record> records = run({make_case("W01", sound)}, settings);
+    for (const double seconds : {0.0, 1e-9}) {
+        const std::vector<Record> records =
+            run({make_case("W01", sound), make_case("S02", sound)}, {.seconds = seconds});
+        for (const char* id : {"W01", "S02"})
+            EXPECT_TRUE(std::ranges::any_of(records, [&](const Record& record) {
+                return record.case_id == id && record.was_run;
+            })) << id;
+    }
+}
+
+TEST_F(SuiteRun, ACaseThatAsksWhatTheTableOfClaimsDoesNotSayIsAFault) {
+    if (!can_run_) return;
+    const std::vector<Record> records = run({make_case("D01", sound)});
     ASSERT_EQ(records.size(), 1u);
-    EXPECT_FALSE(records[0].was_run);
-    EXPECT_NE(records[0].reason.find("was spent before its turn"), std::string::npos) << records[0].reason;
+    EXPECT_EQ(records[0].fault_of, "twinray");
+    EXPECT_NE(records[0].reason.find("claims"), std::string::npos) << records[0].reason;
 }
 
 }  // namespace
