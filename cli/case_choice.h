@@ -18,7 +18,7 @@ struct NamedCase {
     std::string id, title;
 };
 std::vector<NamedCase> cases_of_conformance();
-// Those included, and those of scenes of the user's.
+// All cases of the report: the catalogue, one for each scene of the user's, and those of conformance.
 std::vector<NamedCase> cases_of_report(std::span<const std::filesystem::path> scenes = {});
 
 // Whether a pattern fits the id; without patterns all are chosen.

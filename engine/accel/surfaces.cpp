@@ -56,7 +56,7 @@ std::vector<HitExact> AccelBackend::exact_hits(std::span<const Ray64> rays, cons
     TraceDesc at_level = desc;
     at_level.level = options_.level;
     std::vector<HitExact> found(rays.size());
-    // Where float64 finds a hit outside the ray's interval, the ray goes on behind it, in steps that double from what
+    // A ray goes on behind a hit that float64 finds outside its interval, in steps that double from what
     // rounding moves the origin by: float32 may find the same triangle again until it is past it.
     std::vector<float> steps;
     for (const Ray& ray : rounded)

@@ -131,7 +131,7 @@ Figure paths_figure(std::span<const Record> records) {
 
 namespace {
 
-// What a case's records are estimates of, in the plot; "" for those that are not in it.
+// The label of an estimate in the plot; "" for records that are not in it.
 std::string estimated_by(const Record& record) {
     const auto is = [&](const char* id, const char* setting, std::string_view value) {
         return record.case_id == id && (!setting || text_at(record.params, setting) == value);

@@ -30,7 +30,8 @@ h2 { font-size: 1.2rem; margin: 2.2rem 0 .4rem; } h3 { font-size: 1rem; margin: 
 ul.verdict { list-style: none; padding: 0; margin: 0; } ul.verdict li { padding: .3rem 0 .3rem 1.7rem; position: relative;
   border-top: 1px solid var(--line); } ul.verdict .mark { position: absolute; left: .2rem; font-weight: 700; }
 .pass, .right .mark { color: var(--good); } .twinray, .bad { color: var(--bad); } .driver, .wrong .mark { color: var(--bad); }
-.slower { color: var(--warn); } .measured .mark, td.measured { color: var(--soft); } .not-measured .mark { color: var(--warn); }
+.slower { color: var(--warn); } .measured .mark, td.measured { color: var(--soft); }
+.not-measured .mark { color: var(--warn); }
 figure { margin: 1.6rem 0; } figcaption { font-weight: 600; } figcaption span { display: block; font-weight: 400;
   color: var(--soft); font-size: .92rem; } svg { width: 100%; height: auto; max-height: 34rem; }
 details { border-top: 1px solid var(--line); padding: .25rem 0; } summary { cursor: pointer; font-size: .92rem; }
@@ -144,7 +145,7 @@ std::string title_of(const PageInput& input, const std::string& case_id) {
     return case_id;
 }
 
-// Of each estimator, what an error of 1 % and of 0.1 % takes.
+// A row for each estimator: the time that an error of 1 % and of 0.1 % takes.
 void write_costs(std::ostream& out, const PageInput& input) {
     bool has_head = false;
     for (const Record& record : input.records) {
@@ -163,7 +164,7 @@ void write_costs(std::ostream& out, const PageInput& input) {
     if (has_head) out << "</table></div>\n";
 }
 
-// What has no error but rounding: whatever the amount of work, the error beside the time.
+// Queries that have no error but rounding: the error beside the time, for each amount of work.
 void write_exact(std::ostream& out, const PageInput& input) {
     bool has_head = false;
     for (const Record& record : input.records) {

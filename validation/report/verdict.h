@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT
-// What a report says first: what is right, what is wrong, what was not measured, how fast, against which reference.
-// Pure functions of its records. A sentence rests on the cases that validation/suite/claims.h names.
+// The sentences with which a report begins: they say what is right, wrong or not measured, how fast, against which
+// reference. Pure functions of its records. A sentence rests on the cases that validation/suite/claims.h names.
 #pragma once
 
-#include <array>
 #include <set>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "validation/records/record.h"
+#include "validation/report/findings.h"
 
 namespace twinray::report {
 
@@ -19,41 +18,6 @@ std::string result_of(const Record& record);
 bool is_only_advised(const Record& record);
 // Records that show a fault of ours: where there is one the command exits with 1.
 std::size_t faults_of_ours(std::span<const Record> records);
-
-// A way to be wrong, over all cases that can show it.
-enum class Mistake : std::uint8_t { leak, false_hit, wrong_distance, not_finite, counted_wrong };
-inline constexpr std::array all_mistakes = {Mistake::leak, Mistake::false_hit, Mistake::wrong_distance,
-                                            Mistake::not_finite, Mistake::counted_wrong};
-std::string_view name_of(Mistake mistake);  // "rays lost at edges and vertices"
-
-// Rays of one case and kind.
-struct RayKind {
-    std::string case_id, settings;  // "W04", "aim vertex, cells 64"
-    std::uint64_t faults = 0, n = 0;
-};
-
-// How often who answers makes a mistake. Each ray counts once: levels trace the same rays, so it is of one of those
-// that promise not to, the one with the most faults (the first of equals).
-struct Finding {
-    std::string backend, level;
-    Mistake mistake = Mistake::leak;
-    std::vector<RayKind> kinds = {};       // of the cases that it rests on
-    std::vector<RayKind> elsewhere = {};   // of other cases, with faults alone
-    std::size_t cases_run = 0, cases = 0;  // of those that it rests on
-
-    bool is_complete() const { return cases_run == cases; }
-    bool has_faults() const;
-    std::uint64_t n() const;  // rays of `kinds`
-    // Over the cases, each counted as one, and so its kinds of rays; one number, however thoroughly each was asked.
-    double rate() const;
-    Interval rate_95() const;
-};
-// Of one level, "fast" included.
-Finding finding_at(std::span<const Record> records, std::string_view backend, std::string_view level, Mistake mistake);
-// One for each mistake that a backend among the records was checked for.
-std::vector<Finding> findings_of(std::span<const Record> records);
-// "0.27 % (0.25 to 0.3) over 17 cases; most in W04, 4.6 % (4.2 to 5)", "0 of 230,000 rays, 17 cases (below ...)".
-std::string text_of(const Finding& finding);
 
 // The time of a trace over SwTlas's at watertight, of the same rays, 2048 or more: the geometric mean over the
 // measurements of both, with a 95 % interval by bootstrap over them.
@@ -72,7 +36,7 @@ struct CaseResults {
     std::set<std::string> run;  // of the catalogue
     std::set<std::string> failed_by_us, failed_by_driver, not_as_advised;
 };
-// Of the sections with these letters: "VRGCDP".
+// `sections`: their letters, as "VRGCDP".
 CaseResults results_of(std::span<const Record> records, std::string_view sections);
 
 struct Sentence {

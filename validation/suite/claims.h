@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a report claims rests on cases: the one table of which. Unless all of them ran, a claim is not measured.
+// The one table of the cases on which each claim of a report rests. Unless all of them ran, it is not measured.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace twinray::suite {
 
-// What cases ask of rays, and count by class.
+// A question that cases ask of rays, whose answers are counted by class.
 enum class Subject : std::uint8_t {
     aimed_rays,  // hits of rays that are aimed at edges and vertices
     hits,        // hits of any rays, those included

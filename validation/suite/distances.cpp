@@ -234,7 +234,7 @@ Mesh upper_half(Mesh ball) {
     return ball;
 }
 
-// Beside edges, and as far as coordinates may be.
+// Random ones, some beside edges, and some as far as coordinates may be.
 std::vector<dvec3> points_about(const Mesh& mesh, CaseRun& run) {
     std::vector<dvec3> points = random_points(run.amount(1'000, 100'000), 1.5, run.seed());
     for (std::size_t i = 0; i < mesh.triangles.size() && i < 200; ++i) {

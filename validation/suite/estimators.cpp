@@ -157,7 +157,7 @@ void measure_sampled(CaseRun& run, Estimators& estimators, const Configuration& 
                       });
 }
 
-// What an error costs by the law of error over time; only where it falls.
+// Adds the time that an error takes by the law of error over time, if that falls.
 void add_costs(Record& record, std::span<const double> ms, std::span<const double> errors) {
     const std::optional<PowerLaw> law = fit_power_law(ms, errors);
     if (!law || law->slope >= 0) return;

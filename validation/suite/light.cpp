@@ -32,12 +32,6 @@ struct Stage {
     Faces faces;
 };
 
-Record record_of(const CaseRun& run, const Configuration& configuration, const Values& params) {
-    Record record = run.record(configuration);
-    record.params = params;
-    return record;
-}
-
 // Area of the first mesh that light reaches, seen along the light.
 Estimate lit_area(Stage& stage, const Scene& scene, const dvec3& direction, std::uint64_t side, std::uint64_t seed) {
     const auto start = Clock::now();
@@ -50,13 +44,24 @@ Estimate lit_area(Stage& stage, const Scene& scene, const dvec3& direction, std:
             light.ray_count};
 }
 
-void measure_lit_area(CaseRun& run, const Scene& scene, const dvec3& direction, double truth, const Values& params) {
+// On all configurations: `estimate` takes the stage, the amount and a seed.
+template <class Of>
+void measure_light(CaseRun& run, const Scene& scene, const Values& params, double truth, const char* amount_name,
+                   std::span<const std::uint64_t> amounts, const Of& estimate) {
     for (const Configuration& configuration : analysis_configurations(run)) {
         Stage stage(run, configuration, scene);
-        measure_estimates(
-            run, record_of(run, configuration, params), truth, "side", grid_sides,
-            [&](std::uint64_t side, std::uint64_t seed) { return lit_area(stage, scene, direction, side, seed); });
+        Record record = run.record(configuration);
+        record.params = params;
+        measure_estimates(run, record, truth, amount_name, amounts,
+                          [&](std::uint64_t amount, std::uint64_t seed) { return estimate(stage, amount, seed); });
     }
+}
+
+void measure_lit_area(CaseRun& run, const Scene& scene, const dvec3& direction, double truth, const Values& params) {
+    measure_light(run, scene, params, truth, "side", grid_sides,
+                  [&](Stage& stage, std::uint64_t side, std::uint64_t seed) {
+                      return lit_area(stage, scene, direction, side, seed);
+                  });
 }
 
 void shadows(CaseRun& run) {
@@ -78,62 +83,55 @@ void light_on_all_sizes(CaseRun& run) {
         measure_lit_area(run, shaded_square(size), {0, 0, -1}, lit * double{size} * double{size}, {{"size", size}});
 }
 
+// The mean of the first two faces: triangles of one area, which are the square. `light` computes the SkyLight.
+template <class Light>
+Estimate of_square(const Light& light, std::uint64_t samples, std::uint64_t seed) {
+    const auto start = Clock::now();
+    const SkyLight found =
+        light(SkyRaysDesc{.samples = static_cast<uint>(samples), .sides = Sides::front, .seed = seed});
+    const double ms = ms_since(start);
+    const Received &a = found.faces[0], &b = found.faces[1];
+    return {(a.value + b.value) / 2, (a.interval.low + b.interval.low) / 2, (a.interval.high + b.interval.high) / 2, ms,
+            found.ray_count};
+}
+
 // 1 minus the view factor of parallel squares (Howell C-11), one of which hides the sky from the other.
 void hidden_sky(CaseRun& run) {
     constexpr double hidden = 0.199824895698387383;
     const Scene scene = scene_of({square(0, true), square(1, false)});
-    for (const Configuration& configuration : analysis_configurations(run)) {
-        Stage stage(run, configuration, scene);
-        measure_estimates(run, record_of(run, configuration, {}), 1 - hidden, "samples", sky_samples,
-                          [&](std::uint64_t samples, std::uint64_t seed) {
-                              const auto start = Clock::now();
-                              const SkyLight sky = sky_light(
-                                  stage.accel, scene, stage.faces, {0, 0, 1},
-                                  {.samples = static_cast<uint>(samples), .sides = Sides::front, .seed = seed});
-                              const double ms = ms_since(start);
-                              // Two triangles of one area are the square.
-                              const Received &a = sky.faces[0], &b = sky.faces[1];
-                              return Estimate{(a.value + b.value) / 2, (a.interval.low + b.interval.low) / 2,
-                                              (a.interval.high + b.interval.high) / 2, ms, sky.ray_count};
-                          });
-    }
+    measure_light(run, scene, {}, 1 - hidden, "samples", sky_samples,
+                  [&](Stage& stage, std::uint64_t samples, std::uint64_t seed) {
+                      const auto light = [&](const SkyRaysDesc& desc) {
+                          return sky_light(stage.accel, scene, stage.faces, {0, 0, 1}, desc);
+                      };
+                      return of_square(light, samples, seed);
+                  });
 }
 
 // The sun above for an hour, then aslant for two: as much of the square is lit each time.
 void hours_of_sun(CaseRun& run) {
     const Scene scene = shaded_square();
     const std::array<SunPosition, 2> positions = {SunPosition{{0, 0, -1}, 1}, SunPosition{{1, 0, -2}, 2}};
-    for (const Configuration& configuration : analysis_configurations(run)) {
-        Stage stage(run, configuration, scene);
-        measure_estimates(run, record_of(run, configuration, {}), 3 * lit, "samples", sky_samples,
-                          [&](std::uint64_t samples, std::uint64_t seed) {
-                              const auto start = Clock::now();
-                              const SkyLight sun = sun_hours(
-                                  stage.accel, scene, stage.faces, positions,
-                                  {.samples = static_cast<uint>(samples), .sides = Sides::front, .seed = seed});
-                              const double ms = ms_since(start);
-                              const Received &a = sun.faces[0], &b = sun.faces[1];
-                              return Estimate{(a.value + b.value) / 2, (a.interval.low + b.interval.low) / 2,
-                                              (a.interval.high + b.interval.high) / 2, ms, sun.ray_count};
-                          });
-    }
+    measure_light(run, scene, {}, 3 * lit, "samples", sky_samples,
+                  [&](Stage& stage, std::uint64_t samples, std::uint64_t seed) {
+                      const auto light = [&](const SkyRaysDesc& desc) {
+                          return sun_hours(stage.accel, scene, stage.faces, positions, desc);
+                      };
+                      return of_square(light, samples, seed);
+                  });
 }
 
-// Of what is seen from above: shade^2 at height 1 and the rest at 0.
+// The roof is seen at height 1, and around it the square at 0.
 void mean_height(CaseRun& run) {
     const Scene scene = shaded_square();
-    for (const Configuration& configuration : analysis_configurations(run)) {
-        Stage stage(run, configuration, scene);
-        measure_estimates(
-            run, record_of(run, configuration, {}), 1 - lit, "side", grid_sides,
-            [&](std::uint64_t side, std::uint64_t seed) {
-                const auto start = Clock::now();
-                const Centroid found =
-                    centroid(stage.accel, scene, {.grid = {.side = static_cast<uint>(side), .seed = seed}});
-                const double ms = ms_since(start), half = 1.96 * found.standard_error->z;
-                return Estimate{found.mean->z, found.mean->z - half, found.mean->z + half, ms, found.ray_count};
-            });
-    }
+    measure_light(run, scene, {}, 1 - lit, "side", grid_sides,
+                  [&](Stage& stage, std::uint64_t side, std::uint64_t seed) {
+                      const auto start = Clock::now();
+                      const Centroid found =
+                          centroid(stage.accel, scene, {.grid = {.side = static_cast<uint>(side), .seed = seed}});
+                      const double ms = ms_since(start), half = 1.96 * found.standard_error->z;
+                      return Estimate{found.mean->z, found.mean->z - half, found.mean->z + half, ms, found.ray_count};
+                  });
 }
 
 }  // namespace

@@ -16,7 +16,8 @@ twinray, here = sys.argv[1], pathlib.Path(tempfile.mkdtemp())
 def qualify(name, *arguments, status=0, **environment):
     out = here / name
     run = subprocess.run(
-        [twinray, "qualify", "--quiet", "--only", "W0*,S01,T01,K0*", "-o", str(out), "--junit", f"{out}.xml", "--tap", f"{out}.tap",
+        [twinray, "qualify", "--quiet", "--only", "W0*,S01,T01,K0*", "-o", str(out),
+         "--junit", f"{out}.xml", "--tap", f"{out}.tap",
          "--sarif", f"{out}.sarif", *arguments], capture_output=True, text=True, env={**os.environ, **environment})
     assert run.returncode == status, f"{name}: status {run.returncode}\n{run.stdout}{run.stderr}"
     suites = xml.etree.ElementTree.parse(f"{out}.xml").getroot().findall("testsuite")
