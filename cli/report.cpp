@@ -179,7 +179,7 @@ Command report_command() {
         "Cases",
         {{.name = "--suite",
           .value = choice(options->suite, {"quick", "full"}),
-          .help = "quick takes 90 s on a CPU driver with two cores"},
+          .help = "quick takes about a minute on a CPU driver with two cores"},
          {.name = "--budget",
           .value = number(options->budget, {.least = 1}),
           .help = "after every case at its least, the least certain ones with more effort until so much time is spent"},
