@@ -102,7 +102,7 @@ class History {
         const std::vector<InstanceOptions> options = source_.options(transforms.size());
         AccelHandle handle;
         expect(
-            is_usable(geometry) && is_placeable(transforms, options), "push",
+            is_usable(geometry) && is_placeable(geometry.unit, transforms, options), "push",
             [&] {
                 handle = geometry.has_boxes ? accel_->push(BoxesView{"boxes", geometry.boxes}, transforms, options)
                                             : accel_->push(geometry.mesh, transforms, options);
@@ -123,7 +123,7 @@ class History {
         const std::vector<InstanceOptions> options = source_.options(transforms.size());
         AccelHandle handle;
         expect(
-            model_.find(of) && is_placeable(transforms, options), "push_instances_of",
+            model_.find(of) && is_placeable(model_.find(of)->geometry->unit, transforms, options), "push_instances_of",
             [&] { handle = accel_->push_instances_of(of, transforms, options); },
             [&] { place(handle, model_.find(of)->geometry, states(transforms, options)); });
     }
@@ -134,8 +134,8 @@ class History {
         const std::vector<InstanceOptions> options = source_.options(transforms.size());
         std::size_t first = 0;
         expect(
-            model_.find(handle) && is_placeable(transforms, options), "append_instances",
-            [&] { first = accel_->append_instances(handle, transforms, options); },
+            model_.find(handle) && is_placeable(model_.find(handle)->geometry->unit, transforms, options),
+            "append_instances", [&] { first = accel_->append_instances(handle, transforms, options); },
             [&] {
                 std::vector<InstanceState>& instances = model_.find(handle)->instances;
                 require(first == instances.size(), "append_instances returns the index of the first");
@@ -202,8 +202,8 @@ class History {
         const std::size_t count = placing ? placing->instances.size() : 0;
         const std::vector<Transform> transforms = source_.transforms(count + (source_.below(8) == 0));
         expect(
-            placing && transforms.size() == count && is_placeable(transforms, {}), "update_transforms",
-            [&] { accel_->update_transforms(handle, transforms); },
+            placing && transforms.size() == count && is_placeable(placing->geometry->unit, transforms, {}),
+            "update_transforms", [&] { accel_->update_transforms(handle, transforms); },
             [&] {
                 for (std::size_t i = 0; i < count; ++i) placing->instances[i].transform = transforms[i];
                 model_.mark(Pending::moves);
@@ -217,7 +217,8 @@ class History {
         const Transform transform = source_.transform();
         ModelPlacing* placing = model_.find(handle);
         const std::size_t count = placing ? placing->instances.size() : 0;
-        expect((is_named ? index < count : count == 1) && is_placeable(std::span(&transform, 1), {}),
+        expect((is_named ? index < count : count == 1) &&
+                   is_placeable(placing->geometry->unit, std::span(&transform, 1), {}),
                "update_transform",
                [&] {
                    is_named ? accel_->update_transform_at(handle, index, transform)
@@ -235,9 +236,8 @@ class History {
         const InstanceOptions options = source_.options();
         ModelPlacing* placing = model_.find(handle);
         expect(
-            placing && index < placing->instances.size() && is_placeable({}, std::span(&options, 0)) &&
-                options.custom_index < 1u << 24,
-            "update_options", [&] { accel_->update_options(handle, index, options); },
+            placing && index < placing->instances.size() && options.custom_index < 1u << 24, "update_options",
+            [&] { accel_->update_options(handle, index, options); },
             [&] {
                 placing->instances[index].options = options;
                 model_.mark(Pending::structure);
@@ -265,7 +265,8 @@ class History {
         expect(
             ratio >= 1, "set_rebuild_ratio", [&] { accel_->set_rebuild_ratio(ratio); },
             [&] { require(accel_->rebuild_ratio() == ratio, "the rebuild ratio is that which was set"); });
-        accel_->world_bound();
+        expect(
+            model_.revision > 0, "world_bound", [&] { accel_->world_bound(); }, [] {});
     }
 
     // Through a view that may be stale, or of an accelerator before.

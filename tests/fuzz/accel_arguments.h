@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "engine/accel/geometry.h"
 #include "tests/fuzz/accel_model.h"
 #include "tests/fuzz/contract.h"
 
@@ -66,8 +67,8 @@ class Arguments {
     ModelGeometry geometry() {
         const auto kind = below(8);
         if (kind == 0) return {};
-        if (kind == 1) return {{}, {{point(), point()}}, true};
-        if (kind < 4) return {make_quad(point(), vec3(2, 0, 0), vec3(0, 2, 0)), {}, false};
+        if (kind == 1) return {{}, {{point(), point()}}, true, 1};
+        if (kind < 4) return triangles(make_quad(point(), vec3(2, 0, 0), vec3(0, 2, 0)));
         Mesh mesh;
         mesh.positions = points(1 + below(6));
         for (std::size_t left = 1 + below(4); left > 0; --left) {
@@ -75,7 +76,7 @@ class Arguments {
             const uint x = corner(), y = corner();
             mesh.triangles.emplace_back(x, y, corner());
         }
-        return {std::move(mesh), {}, false};
+        return triangles(std::move(mesh));
     }
     Ray ray() {
         const vec3 origin = point(), direction = point();
@@ -84,6 +85,11 @@ class Arguments {
     }
 
   private:
+    static ModelGeometry triangles(Mesh mesh) {
+        const float unit = Geometry::near_unit(mesh.positions);
+        return {std::move(mesh), {}, false, unit};
+    }
+
     Input bytes_;
 };
 

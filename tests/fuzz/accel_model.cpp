@@ -16,9 +16,12 @@ constexpr uint most_custom_index = (1u << 24) - 1;
 
 }  // namespace
 
-bool is_placeable(std::span<const Transform> transforms, std::span<const InstanceOptions> options) {
-    return (options.empty() || options.size() == transforms.size()) &&
-           std::ranges::all_of(transforms, [](const Transform& transform) { return fault_of(transform).empty(); }) &&
+bool is_placeable(float unit, std::span<const Transform> transforms, std::span<const InstanceOptions> options) {
+    const auto fits = [&](const Transform& transform) {
+        const Rows placed = scaled_map({transform.rows[0], transform.rows[1], transform.rows[2]}, unit);
+        return fault_of(transform).empty() && is_usable(placed, inverse_of(placed));
+    };
+    return (options.empty() || options.size() == transforms.size()) && std::ranges::all_of(transforms, fits) &&
            std::ranges::all_of(options, [](const InstanceOptions& o) { return o.custom_index <= most_custom_index; });
 }
 

@@ -21,6 +21,7 @@ struct ModelGeometry {
     Mesh mesh;
     std::vector<Bounds> boxes;
     bool has_boxes = false;
+    float unit = 1;  // of the positions at the last push or update
 };
 
 // What one push placed. Handles may share a geometry.
@@ -51,7 +52,8 @@ class AccelModel {
     void check(const AbstractAccel& accel) const;
 };
 
-// Whether push() takes them: each transform has an inverse, each custom index 24 bits.
-bool is_placeable(std::span<const Transform> transforms, std::span<const InstanceOptions> options);
+// Whether push() takes them for a geometry in this unit: each transform has an inverse, times the unit, too, and each
+// custom index has 24 bits.
+bool is_placeable(float unit, std::span<const Transform> transforms, std::span<const InstanceOptions> options);
 
 }  // namespace twinray::fuzz
