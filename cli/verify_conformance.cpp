@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/verify_conformance.h"
 
-#include <unistd.h>
-
 #include <cstring>
+#include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -12,29 +11,13 @@
 #include "engine/core/error.h"
 #include "twinray_version.h"
 #include "validation/conformance/output.h"
+#include "validation/records/temporary_folder.h"
 
 namespace twinray::cli {
 namespace {
 
 // In the environment of a process that runs cases itself.
 constexpr const char* here_variable = "TWINRAY_CONFORMANCE_HERE";
-
-// A file that is there while this lives.
-class TemporaryFile {
-  public:
-    TemporaryFile() : path_((std::filesystem::temp_directory_path() / "twinray-conformance-XXXXXX").string()) {
-        const int file = mkstemp(path_.data());
-        if (file < 0) fail("'", path_, "' cannot be written: ", std::strerror(errno));
-        close(file);
-    }
-    ~TemporaryFile() { std::remove(path_.c_str()); }
-    TemporaryFile(const TemporaryFile&) = delete;
-    TemporaryFile& operator=(const TemporaryFile&) = delete;
-    const std::string& path() const { return path_; }
-
-  private:
-    std::string path_;
-};
 
 std::vector<std::string> arguments_of(const CommonOptions& options, std::span<const conformance::Case> cases,
                                       bool is_full, const std::string& json) {
@@ -84,9 +67,11 @@ void run_conformance(const CommonOptions& options, const std::vector<std::string
         if (on_record) on_record(recorder.records().back());
     };
     for (std::vector<conformance::Case> left = cases_left(only, all); !left.empty(); left = cases_left(only, all)) {
-        const TemporaryFile file;
-        const int status = run_twinray(arguments_of(options, left, is_full, file.path()), {{here_variable, "1"}});
-        const std::vector<Record> records = read_json_lines(file.path()).records;
+        const TemporaryFolder folder;
+        const std::string file = (folder.path() / "records.json").string();
+        std::ofstream{file};  // there, also where the process writes none
+        const int status = run_twinray(arguments_of(options, left, is_full, file), {{here_variable, "1"}});
+        const std::vector<Record> records = read_json_lines(file).records;
         for (const Record& record : records) take(record);
         if (status == 0) return;
         if (status < 128) fail("the cases of conformance could not be run: see above");

@@ -12,7 +12,6 @@
 
 namespace twinray {
 using glm::bitCount;
-using glm::findLSB;
 using glm::findMSB;
 struct BvhChild;
 using BvhChildren = Ref<BvhChild>;

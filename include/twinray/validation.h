@@ -78,7 +78,7 @@ struct ReferenceHit {
     double t = -1;        // in units of the ray's direction
     double u = 0, v = 0;  // the point is (1-u-v) v0 + u v1 + v v2
     uint primitive = 0, instance = 0, custom_index = 0;
-
+    bool is_front = false;  // whose front is met, as culling has it
     bool operator==(const ReferenceHit&) const = default;
 };
 

@@ -8,6 +8,12 @@
 #include "twinray/glsl/cpp_spawn.h"
 #include "twinray/glsl/cpp_sampling.h"
 
+namespace twinray {
+#include "twinray/glsl/cpp_begin.h"
+#include "twinray/glsl/word64.h"
+#include "twinray/glsl/cpp_end.h"
+}  // namespace twinray
+
 namespace twinray::path_tracer {
 
 constexpr uint LAYERS = ~0u;  // in kernels specialisation constants

@@ -24,7 +24,7 @@ bool accept_hit(Candidate candidate, float t, vec2 uv)
     hit.u = uv.x;
     hit.v = uv.y;
     hit.instance_index = candidate.instance_index;
-    hit.flags = 0u;
+    hit.flags = candidate.is_front ? HIT_FRONT : 0u;
     AT(args.found, slot).ray = args.first + global_index();
     AT(args.found, slot).hit = hit;
     return false;

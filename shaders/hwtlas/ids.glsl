@@ -7,12 +7,14 @@
 #include "shaders/shared/trace.h"
 
 // instance_id, primitive_id: what the driver calls InstanceId and PrimitiveId.
-Candidate candidate_of(HwTlasHeader scene, uint instance_id, uint primitive_id, uint custom_index, TraceOptions options)
+Candidate candidate_of(HwTlasHeader scene, uint instance_id, uint primitive_id, uint custom_index, bool is_front,
+                       TraceOptions options)
 {
     Candidate candidate;
     candidate.primitive_index = primitive_id;
     candidate.instance_index = instance_id;
     candidate.custom_index = custom_index;
+    candidate.is_front = is_front;
     candidate.user_data = options.user_data;
     if ((options.features & FEATURE_REMAP) != 0u && !is_absent(scene.instances))
     {
@@ -33,7 +35,7 @@ Hit hit_of(Candidate candidate, float t, vec2 uv)
     hit.u = uv.x;
     hit.v = uv.y;
     hit.instance_index = candidate.instance_index;
-    hit.flags = 0u;
+    hit.flags = candidate.is_front ? HIT_FRONT : 0u;
     return hit;
 }
 

@@ -4,11 +4,11 @@
 #define TWINRAY_HWTLAS_RAY_QUERY_GLSL
 #include "shaders/hwtlas/ids.glsl"
 
-Candidate candidate_of(HwTlasHeader scene, rayQueryEXT query, TraceOptions options)
+Candidate candidate_of(HwTlasHeader scene, rayQueryEXT query, bool is_front, TraceOptions options)
 {
     return candidate_of(scene, rayQueryGetIntersectionInstanceIdEXT(query, false),
                         rayQueryGetIntersectionPrimitiveIndexEXT(query, false),
-                        rayQueryGetIntersectionInstanceCustomIndexEXT(query, false), options);
+                        rayQueryGetIntersectionInstanceCustomIndexEXT(query, false), is_front, options);
 }
 
 bool has_hit(rayQueryEXT query)
@@ -18,7 +18,8 @@ bool has_hit(rayQueryEXT query)
 
 void consider_triangle(HwTlasHeader scene, rayQueryEXT query, TraceOptions options)
 {
-    if (accept_hit(candidate_of(scene, query, options), t_of_given(rayQueryGetIntersectionTEXT(query, false), options),
+    Candidate candidate = candidate_of(scene, query, rayQueryGetIntersectionFrontFaceEXT(query, false), options);
+    if (accept_hit(candidate, t_of_given(rayQueryGetIntersectionTEXT(query, false), options),
                    rayQueryGetIntersectionBarycentricsEXT(query, false)))
         rayQueryConfirmIntersectionEXT(query);
 }
@@ -26,7 +27,7 @@ void consider_triangle(HwTlasHeader scene, rayQueryEXT query, TraceOptions optio
 // uv: of the box that was hit last, for which the query has no place.
 void consider_box(HwTlasHeader scene, rayQueryEXT query, Ray ray, TraceOptions options, inout vec2 uv)
 {
-    Candidate candidate = candidate_of(scene, query, options);
+    Candidate candidate = candidate_of(scene, query, false, options);
     Ray ray_local;
     ray_local.origin = rayQueryGetIntersectionObjectRayOriginEXT(query, false);
     ray_local.direction = rayQueryGetIntersectionObjectRayDirectionEXT(query, false);
@@ -68,10 +69,15 @@ Hit trace_float32(Address accel, Ray ray, TraceOptions options)
     if (!has_hit(query)) return miss();
     bool is_triangle = (options.features & FEATURE_BOXES) == 0u ||
                        rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionTriangleEXT;
-    if (is_triangle) uv = rayQueryGetIntersectionBarycentricsEXT(query, true);
+    bool is_front = false;
+    if (is_triangle)
+    {
+        uv = rayQueryGetIntersectionBarycentricsEXT(query, true);
+        is_front = rayQueryGetIntersectionFrontFaceEXT(query, true);
+    }
     return hit_of(candidate_of(scene, rayQueryGetIntersectionInstanceIdEXT(query, true),
                                rayQueryGetIntersectionPrimitiveIndexEXT(query, true),
-                               rayQueryGetIntersectionInstanceCustomIndexEXT(query, true), options),
+                               rayQueryGetIntersectionInstanceCustomIndexEXT(query, true), is_front, options),
                   rayQueryGetIntersectionTEXT(query, true), uv);
 }
 #endif

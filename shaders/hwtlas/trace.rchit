@@ -9,6 +9,7 @@ hitAttributeEXT vec2 uv; // barycentrics of a triangle, what the intersection ga
 
 void main()
 {
-    Candidate found = candidate_of(scene(), gl_InstanceID, gl_PrimitiveID, gl_InstanceCustomIndexEXT, trace_options());
+    Candidate found = candidate_of(scene(), gl_InstanceID, gl_PrimitiveID, gl_InstanceCustomIndexEXT,
+                                   gl_HitKindEXT == gl_HitKindFrontFacingTriangleEXT, trace_options());
     payload = hit_of(found, gl_HitTEXT, uv);
 }

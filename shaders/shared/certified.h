@@ -101,10 +101,24 @@ FUNC dvec3 sheared_double(dvec3 vertex, dvec3 d, uint axis)
     return dvec3(x, y, p.z);
 }
 
-// Whether the given ray meets the triangle in world space within its interval, and where: t of the traced ray, which
-// begins `advance` behind the given one, as t + t_low.
-FUNC bool intersect_in_world(uint instance_index, uint primitive_index, TraceOptions options, INOUT(TriangleHit) hit)
+// may_begin_in_plane() of intersect.h.
+FUNC bool may_begin_in_plane_double(dvec3 a, dvec3 b, dvec3 c, double mean)
 {
+    const double ROUNDINGS = double(7.1054273576010019e-15f); // 64 u = 2^-47
+    dvec3 size = abs(a) + abs(b) + abs(c);
+    double across = size.x + size.y;
+    bool is_around = min(a.z, min(b.z, c.z)) <= double(0.0f) && max(a.z, max(b.z, c.z)) >= double(0.0f);
+    return is_around && abs(mean) <= ROUNDINGS * size.z * across * (across + size.z);
+}
+
+// Whether the given ray meets the triangle in world space within its interval, and where: t of the traced ray, which
+// begins `advance` behind the given one, as t + t_low. `triangle`, `space`: the same in object space, where the side of
+// the plane is asked for that float64 is not certain of.
+FUNC bool intersect_in_world(BvhTriangle triangle, RaySpace space, uint instance_index, TraceOptions options,
+                             INOUT(TriangleHit) hit)
+{
+    uint primitive_index = triangle.primitive_index;
+    const double LEAST_NORMAL = double(uintBitsToFloat(0x00800000u));
     GivenMesh mesh = load_given_mesh(options.instances, instance_index);
     vec3 o = options.given.origin;
     vec3 w = options.given.direction;
@@ -124,7 +138,14 @@ FUNC bool intersect_in_world(uint instance_index, uint primitive_index, TraceOpt
     PRECISE double det = area_a + area_b + area_c;
     PRECISE double z = area_a / det * a.z + area_b / det * b.z + area_c / det * c.z;
     PRECISE double given_t = z / d.z;
-    if (given_t <= double(options.given.t_min) || given_t >= double(options.given.t_max)) return false;
+    bool along_in_world = (det > double(0.0f)) == (d.z > double(0.0f));
+    bool along_in_object = along_in_world != (AT(options.instances, instance_index).is_mirrored != 0u);
+    int side = 0;
+    if (may_begin_in_plane_double(a, b, c, z * det) &&
+        plane_side(triangle.v0, triangle.v1, triangle.v2, space.origin, side))
+        given_t = side == (along_in_object ? 1 : -1) ? max(given_t, LEAST_NORMAL) : min(given_t, double(0.0f));
+    double t_min = max(double(options.given.t_min), double(0.0f));
+    if (given_t <= t_min || given_t >= double(options.given.t_max)) return false;
     PRECISE double t = given_t - options.advance;
     double high = rounded_to_24_bits(t);
     PRECISE double low = t - high;
@@ -132,8 +153,7 @@ FUNC bool intersect_in_world(uint instance_index, uint primitive_index, TraceOpt
     hit.t_low = float(low);
     hit.u = float(area_b / det);
     hit.v = float(area_c / det);
-    bool along_in_world = (det > double(0.0f)) == (d.z > double(0.0f));
-    hit.along = along_in_world != (AT(options.instances, instance_index).is_mirrored != 0u);
+    hit.along = along_in_object;
     return abs(hit.t) <= 3.402823466e+38f; // no t beyond the largest float can be reported
 }
 
@@ -148,6 +168,6 @@ FUNC bool intersect_certified(BvhTriangle triangle, RaySpace space, float error,
     int side_b = certain_side(c, a, error);
     int side_c = certain_side(a, b, error);
     if (side_a * side_b < 0 || side_b * side_c < 0 || side_c * side_a < 0) return false;
-    return intersect_in_world(instance_index, triangle.primitive_index, options, hit);
+    return intersect_in_world(triangle, space, instance_index, options, hit);
 }
 #endif

@@ -3,6 +3,7 @@
 #ifndef TWINRAY_SHARED_INTERSECT_H
 #define TWINRAY_SHARED_INTERSECT_H
 #include "twinray/glsl/exact.h"
+#include "twinray/glsl/word64.h"
 #include "shaders/shared/ray_space.h"
 
 // A vertex seen along the ray: x, y sheared so that the ray is the point (0, 0), z along the dominant axis. It depends
@@ -171,12 +172,113 @@ FUNC bool is_around_ray(INOUT(SeenTriangle) seen)
     return is_met;
 }
 
-// Whether the ray's line meets the triangle (v0, v1, v2), and where. No interval test.
-FUNC bool intersect_triangle(vec3 v0, vec3 v1, vec3 v2, RaySpace space, INOUT(TriangleHit) hit)
+// ---- The side of a triangle's plane on which a point lies, exact for floats, however near to it
+
+// The exponent of the lowest bit that is set; NONE of 0 and of denormals, which count as 0.
+FUNC int lowest_exponent(float x)
+{
+    const int NONE = 1000;
+    uint bits = floatBitsToUint(x);
+    uint field = bits >> 23u & 0xffu;
+    return field == 0u ? NONE : int(field) - 150 + int(findLSB((bits & 0x7fffffu) | 0x800000u));
+}
+
+// (x - from) / unit for two whole multiples of it.
+FUNC int whole_difference(float x, float from, float inverse_unit)
+{
+    PRECISE float difference = x - from;
+    float missing = sum_error(x, -from, difference);
+    return int(difference * inverse_unit) + int(missing * inverse_unit);
+}
+
+// Adds a (b d - c e), each of them below 2^30, to a number of 96 bits.
+FUNC uvec3 plus_product(uvec3 sum, int a, int b, int d, int c, int e)
+{
+    uvec2 minor = add64(signed_product(b, d), negate64(signed_product(c, e)));
+    bool is_negative = (a < 0) != (minor.y >> 31u != 0u);
+    if (minor.y >> 31u != 0u) minor = negate64(minor);
+    uvec2 low = multiply64(uint(abs(a)), minor.x);
+    uvec2 high = add64(multiply64(uint(abs(a)), minor.y), uvec2(low.y, 0u));
+    // In two's complement ~x + 1.
+    uint flips = is_negative ? 0xffffffffu : 0u;
+    uvec2 first = add64(uvec2(low.x ^ flips, 0u), uvec2(is_negative ? 1u : 0u, 0u));
+    first = add64(first, uvec2(sum.x, 0u));
+    uvec2 second = add64(uvec2(high.x ^ flips, 0u), uvec2(sum.y, 0u));
+    second = add64(second, uvec2(first.y, 0u));
+    return uvec3(first.x, second.x, sum.z + (high.y ^ flips) + second.y);
+}
+
+// The sign of det(v0 - from, v1 - from, v2 - from), 0 in the plane, in whole numbers. False where they have more than 30
+// bits: where coordinates of an axis differ by more than 2^30 of their lowest bit, and where that is below 2^-126.
+// Rarely asked: loops that turn the axes, as is_exactly_around() turns vertices. The whole numbers take the places of
+// the coordinates, and none a register of its own.
+FUNC bool plane_side(vec3 v0, vec3 v1, vec3 v2, vec3 from, INOUT(int) side)
+{
+    const float MOST = 1073741824.0f; // 2^30
+    uvec3 a = uvec3(floatBitsToUint(v0.x), floatBitsToUint(v0.y), floatBitsToUint(v0.z));
+    uvec3 b = uvec3(floatBitsToUint(v1.x), floatBitsToUint(v1.y), floatBitsToUint(v1.z));
+    uvec3 c = uvec3(floatBitsToUint(v2.x), floatBitsToUint(v2.y), floatBitsToUint(v2.z));
+    bool is_whole = true;
+    DONT_UNROLL for (uint axis = 0u; axis < 3u; axis = axis + 1u)
+    {
+        float x0 = uintBitsToFloat(a.x);
+        float x1 = uintBitsToFloat(b.x);
+        float x2 = uintBitsToFloat(c.x);
+        int exponent = min(min(lowest_exponent(x0), lowest_exponent(x1)),
+                           min(lowest_exponent(x2), lowest_exponent(from.x)));
+        float inverse_unit = uintBitsToFloat(uint(127 - min(max(exponent, -126), 126)) << 23u);
+        float size = max(abs(x0 - from.x), max(abs(x1 - from.x), abs(x2 - from.x)));
+        is_whole = is_whole && exponent >= -126 && size * inverse_unit < MOST;
+        a = uvec3(a.y, a.z, uint(whole_difference(x0, from.x, inverse_unit)));
+        b = uvec3(b.y, b.z, uint(whole_difference(x1, from.x, inverse_unit)));
+        c = uvec3(c.y, c.z, uint(whole_difference(x2, from.x, inverse_unit)));
+        from = vec3(from.y, from.z, from.x);
+    }
+    uvec3 sum = uvec3(0u);
+    DONT_UNROLL for (uint axis = 0u; axis < 3u; axis = axis + 1u)
+    {
+        sum = plus_product(sum, int(a.x), int(b.y), int(c.z), int(b.z), int(c.y));
+        a = uvec3(a.y, a.z, a.x);
+        b = uvec3(b.y, b.z, b.x);
+        c = uvec3(c.y, c.z, c.x);
+    }
+    side = (sum.x | sum.y | sum.z) == 0u ? 0 : (sum.z >> 31u != 0u ? -1 : 1);
+    return is_whole;
+}
+
+// Whether rounding may hide on which side of the triangle's plane the ray begins: where the triangle reaches behind the
+// origin and ahead of it, and its areas' mean of z is 0 but for an error. Vertices are sheared to within 6 u of their
+// distance from the origin, areas are off by that times the triangle's width and height (u = 2^-24).
+FUNC bool may_begin_in_plane(SeenTriangle seen)
+{
+    const float ROUNDINGS = 3.814697265625e-06f; // 64 u
+    float across = abs(seen.a.x) + abs(seen.b.x) + abs(seen.c.x) + abs(seen.a.y) + abs(seen.b.y) + abs(seen.c.y);
+    float along = abs(seen.a.z) + abs(seen.b.z) + abs(seen.c.z);
+    float mean = seen.area_a * seen.a.z + seen.area_b * seen.b.z + seen.area_c * seen.c.z;
+    bool is_around = min(seen.a.z, min(seen.b.z, seen.c.z)) <= 0.0f && max(seen.a.z, max(seen.b.z, seen.c.z)) >= 0.0f;
+    return is_around && abs(mean) <= ROUNDINGS * along * across * (across + along);
+}
+
+// crossing() of the ray and a triangle that its line meets, in whose plane it may begin, with the exact sign of t: 0
+// where it does.
+FUNC TriangleHit signed_crossing(SeenTriangle seen, vec3 v0, vec3 v1, vec3 v2, RaySpace space)
+{
+    const float LEAST_NORMAL = uintBitsToFloat(0x00800000u);
+    TriangleHit hit = crossing(seen.a, seen.b, seen.c, space.shear_z);
+    int side = 0;
+    if (plane_side(v0, v1, v2, space.origin, side))
+        hit.t = side == (hit.along ? 1 : -1) ? max(hit.t, LEAST_NORMAL) : min(hit.t, 0.0f);
+    return hit;
+}
+
+// Whether the ray's line meets the triangle (v0, v1, v2), and where. No interval test. has_exact_sign: t has, which costs
+// registers; a constant.
+FUNC bool intersect_triangle(vec3 v0, vec3 v1, vec3 v2, RaySpace space, bool has_exact_sign, INOUT(TriangleHit) hit)
 {
     SeenTriangle seen = seen_triangle(v0, v1, v2, space);
     bool is_met = is_around_ray(seen);
-    if (is_met) hit = crossing(seen.a, seen.b, seen.c, space.shear_z);
+    if (has_exact_sign && is_met && may_begin_in_plane(seen)) hit = signed_crossing(seen, v0, v1, v2, space);
+    else if (is_met) hit = crossing(seen.a, seen.b, seen.c, space.shear_z);
     return is_met;
 }
 

@@ -34,6 +34,7 @@ struct InInstance
     uint culled; // side of its triangles that is not hit
     bool has_boxes;
     bool is_non_opaque;
+    bool is_flipped; // what culling takes for the front of its triangles is the back
     float error; // at LEVEL_CERTIFIED: see CertifiedRay; else 0
 };
 
@@ -45,6 +46,7 @@ FUNC InInstance enter_instance(SwInstance instance, uint index, TraceOptions opt
     inside.culled = culled_side(options.flags, instance.flags);
     inside.has_boxes = instance.kind == GEOMETRY_BOXES;
     inside.error = 0.0f;
+    inside.is_flipped = (instance.flags & INSTANCE_FLIP_FACING) != 0u;
     inside.is_non_opaque = (instance.flags & INSTANCE_NON_OPAQUE) != 0u || (options.flags & ALL_NON_OPAQUE) != 0u;
     return inside;
 }
@@ -57,6 +59,7 @@ FUNC InInstance in_no_instance()
     inside.culled = 0u;
     inside.has_boxes = false;
     inside.is_non_opaque = false;
+    inside.is_flipped = false;
     inside.error = 0.0f;
     return inside;
 }

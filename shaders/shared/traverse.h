@@ -196,6 +196,6 @@ FUNC Hit traverse(SwTlasHeader scene, Ray ray, TraceOptions options)
         }
         if (!descends) is_traced = visit_next(here, scene, binary, options);
     }
-    return hit_of(search, scene, here.inside.custom_index, options);
+    return hit_of(search, scene, options);
 }
 #endif

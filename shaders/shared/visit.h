@@ -16,6 +16,7 @@ struct Search
     float v;
     uint primitive_index; // NOTHING: no hit so far
     uint instance_index;
+    bool along; // see TriangleHit
 };
 
 FUNC Search begin_search(Ray ray)
@@ -28,15 +29,17 @@ FUNC Search begin_search(Ray ray)
     search.v = 0.0f;
     search.primitive_index = NOTHING;
     search.instance_index = 0u;
+    search.along = false;
     return search;
 }
 
-FUNC Candidate candidate_of(InInstance inside, uint primitive_index, TraceOptions options)
+FUNC Candidate candidate_of(InInstance inside, uint primitive_index, bool is_front, TraceOptions options)
 {
     Candidate candidate;
     candidate.primitive_index = primitive_index;
     candidate.instance_index = inside.index;
     candidate.custom_index = inside.custom_index;
+    candidate.is_front = is_front;
     candidate.user_data = options.user_data;
     return candidate;
 }
@@ -55,7 +58,7 @@ FUNC bool intersect_box(BvhTriangle box, InInstance inside, RaySpace space, Sear
     hit.t = 0.0f;
     hit.t_low = 0.0f;
     hit.along = false;
-    bool is_met = intersect_primitive(candidate_of(inside, box.primitive_index, options), ray_local, hit.t, uv);
+    bool is_met = intersect_primitive(candidate_of(inside, box.primitive_index, false, options), ray_local, hit.t, uv);
     hit.u = uv.x;
     hit.v = uv.y;
     return is_met;
@@ -74,7 +77,7 @@ FUNC bool intersect_leaf(BvhTriangle leaf, InInstance inside, RaySpace space, Se
     else
 #endif
     if (options.level == LEVEL_FAST) is_met = intersect_triangle_fast(leaf.v0, leaf.v1, leaf.v2, space, hit);
-    else is_met = intersect_triangle(leaf.v0, leaf.v1, leaf.v2, space, hit);
+    else is_met = intersect_triangle(leaf.v0, leaf.v1, leaf.v2, space, options.level >= LEVEL_REFINED, hit);
     if ((options.features & FEATURE_CULLING) == 0u) return is_met;
     return is_met && (inside.culled == 0u || inside.culled != (hit.along ? CULL_BACK : CULL_FRONT));
 }
@@ -98,20 +101,20 @@ FUNC uint visit_order(float enter, float leave, bool is_there, uint query)
     return is_there && enter <= leave ? key & 0x7ffffffcu : NO_ENTRY; // of zeros the sign may be either
 }
 
-// custom_index: of a scene of one instance.
-FUNC Hit hit_of(Search search, SwTlasHeader scene, uint custom_index, TraceOptions options)
+FUNC Hit hit_of(Search search, SwTlasHeader scene, TraceOptions options)
 {
     Hit hit = miss();
     if (search.primitive_index == NOTHING) return hit;
+    InInstance inside = enter_instance(AT(scene.instances, search.instance_index), search.instance_index, options);
+    bool is_box = (options.features & FEATURE_BOXES) != 0u && inside.has_boxes;
     hit.hit = 1u;
     hit.t = search.t_best;
     hit.u = search.u;
     hit.v = search.v;
     hit.primitive_index = search.primitive_index;
     hit.instance_index = search.instance_index;
-    hit.custom_index = custom_index;
-    if ((options.features & FEATURE_INSTANCES) != 0u)
-        hit.custom_index = AT(scene.instances, search.instance_index).custom_index_mask & 0xffffffu;
+    hit.custom_index = inside.custom_index;
+    hit.flags = search.along == inside.is_flipped && !is_box ? HIT_FRONT : 0u;
     return hit;
 }
 
@@ -142,14 +145,18 @@ FUNC bool find_in_leaf(BvhTriangle leaf, InInstance inside, RaySpace space, Trac
         is_first = comes_after(hit, search.t_min, options) &&
             comes_before(hit, inside.index, leaf.primitive_index, search, options);
         if ((options.features & FEATURE_FILTERS) != 0u && is_first && inside.is_non_opaque)
-            is_first = accept_hit(candidate_of(inside, leaf.primitive_index, options), t_of_given(hit.t, options),
-                                  vec2(hit.u, hit.v));
+        {
+            bool is_front = hit.along == inside.is_flipped && !inside.has_boxes;
+            is_first = accept_hit(candidate_of(inside, leaf.primitive_index, is_front, options),
+                                  t_of_given(hit.t, options), vec2(hit.u, hit.v));
+        }
         if (is_first)
         {
             search.t_best = hit.t;
             if (options.level == LEVEL_CERTIFIED) search.t_best_low = hit.t_low;
             search.u = hit.u;
             search.v = hit.v;
+            search.along = hit.along;
             search.primitive_index = leaf.primitive_index;
             if ((options.features & FEATURE_INSTANCES) != 0u) search.instance_index = inside.index;
         }
@@ -160,7 +167,8 @@ FUNC bool find_in_leaf(BvhTriangle leaf, InInstance inside, RaySpace space, Trac
 FUNC bool leaf_occludes(BvhTriangle leaf, InInstance inside, RaySpace space, TraceOptions options, INOUT(Search) search)
 {
     bool along = false;
-    bool occludes = triangle_occludes(leaf.v0, leaf.v1, leaf.v2, space, vec2(search.t_min, search.t_best), along);
+    bool occludes = triangle_occludes(leaf.v0, leaf.v1, leaf.v2, space, options.level >= LEVEL_REFINED,
+                                      vec2(search.t_min, search.t_best), along);
     if ((options.features & FEATURE_CULLING) != 0u)
         occludes = occludes && (inside.culled == 0u || inside.culled != (along ? CULL_BACK : CULL_FRONT));
     if (occludes) search.primitive_index = leaf.primitive_index;

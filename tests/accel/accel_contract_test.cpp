@@ -29,7 +29,7 @@ TEST_P(Accel, FindsTheClosestHitAndFillsEveryField) {
     EXPECT_EQ(hit.t, 8.0f);
     EXPECT_EQ(hit.instance_index, 1u);
     EXPECT_EQ(hit.custom_index, 77u);
-    EXPECT_EQ(hit.flags, 0u);
+    EXPECT_EQ(hit.flags, HIT_FRONT);
     const Mesh mesh = square(2);
     const uvec3 corners = mesh.triangles[hit.primitive_index];
     const vec3 point = (1 - hit.u - hit.v) * mesh.positions[corners.x] + hit.u * mesh.positions[corners.y] +
@@ -756,6 +756,7 @@ TEST_P(Accel, CullingHidesOneSideAndInstancesMayTurnOrRefuseIt) {
     const std::pair<Cull, std::vector<uint>> cases[] = {{Cull::none, {1, 1, 1, 1, 1, 1, 1, 1, 1, 1}},
                                                         {Cull::back, {1, 0, 0, 1, 1, 1, 1, 1, 1, 0}},
                                                         {Cull::front, {0, 1, 1, 0, 1, 1, 1, 1, 0, 1}}};
+    const std::vector<uint> fronts = {1, 0, 0, 1, 1, 0, 0, 1, 1, 0};
     for (const Query query : {Query::closest, Query::any})
         for (const auto& [cull, expected] : cases) {
             Commands commands(context(), "culling");
@@ -767,8 +768,10 @@ TEST_P(Accel, CullingHidesOneSideAndInstancesMayTurnOrRefuseIt) {
                            .cull = cull});
             commands.submit();
             const std::vector<Hit> found = download<Hit>(context(), hits, rays.size());
-            for (std::size_t i = 0; i < rays.size(); ++i)
+            for (std::size_t i = 0; i < rays.size(); ++i) {
                 EXPECT_EQ(found[i].hit, expected[i]) << "ray " << i << ", cull " << static_cast<int>(cull);
+                EXPECT_EQ(found[i].flags, found[i].hit && fronts[i] ? HIT_FRONT : 0u) << "ray " << i;
+            }
         }
 }
 

@@ -42,6 +42,7 @@ TEST_P(AllHitsTest, EachTriangleOnTheWayOnceInOrder) {
             EXPECT_EQ(next.primitive_index, hit.primitive_index);
             EXPECT_EQ(next.t, hit.t);
             EXPECT_EQ(next.u, hit.u);
+            EXPECT_EQ(next.flags, hit.flags);
             rest.t_min = hit.t;
             ++total;
         }

@@ -94,6 +94,7 @@ TEST_P(Surfaces, AreWhatFloat64MakesOfTheHit) {
         ASSERT_LE(length(dvec3(s.point.normal) - geometric), 1e-5) << i;
         const bool seen = dot(geometric, dvec3(rays[i].direction)) < 0;
         ASSERT_EQ(s.is_front != 0, seen != placed->options[index].flip_facing);
+        ASSERT_EQ(hits[i].flags, s.is_front ? HIT_FRONT : 0u) << i;
 
         dvec3 normal(0);
         const double w[] = {1 - double(s.uv.x) - double(s.uv.y), s.uv.x, s.uv.y};

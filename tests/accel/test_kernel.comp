@@ -22,11 +22,11 @@ void main()
     Hit hit;
     bool is_hit = push.mask == 0xffu ? closest_hit(push.accel, ray, hit)
                                      : closest_hit(push.accel, ray, push.mask, CULL_BACK, hit);
-    if (is_hit != (hit.hit == 1u)) hit.flags = 1u;
+    if (is_hit != (hit.hit == 1u)) hit.flags = 0x100u;
     Hit any;
     uint flags = push.mask == 0xffu ? 0u : CULL_BACK;
     bool has_any = any_hit(push.accel, ray, push.mask, flags, any);
-    if (has_any != (any.hit == 1u) || has_any != is_hit || (has_any && any.t < hit.t)) hit.flags = 2u;
+    if (has_any != (any.hit == 1u) || has_any != is_hit || (has_any && any.t < hit.t)) hit.flags = 0x200u;
     AT(push.hits, i) = hit;
     AT(push.blocked, i) = any_hit(push.accel, ray, push.mask, push.mask == 0xffu ? 0u : CULL_BACK) ? 1u : 0u;
 }

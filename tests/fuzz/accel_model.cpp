@@ -67,9 +67,9 @@ std::vector<Hit> AccelModel::closest_hits(std::span<const Ray> rays, std::uint8_
     for (const Ray& ray : rays) {
         const ReferenceHit found = scene.closest_hit_brute_force(ray, {mask, flags_of(cull)});
         const std::optional<float> t = found.hit ? reported_t(found.t, ray) : std::nullopt;
-        hits.push_back(
-            t ? Hit{1, *t, found.primitive, found.custom_index, float(found.u), float(found.v), found.instance, 0}
-              : miss());
+        hits.push_back(t ? Hit{1, *t, found.primitive, found.custom_index, float(found.u), float(found.v),
+                               found.instance, found.is_front ? HIT_FRONT : 0}
+                         : miss());
     }
     return hits;
 }

@@ -51,7 +51,7 @@ TEST_P(HwTlasTest, FillsEveryFieldOfAHit) {
         EXPECT_EQ(hit.u, 0.25f);
         EXPECT_EQ(hit.v, 0.5f);
         EXPECT_EQ(hit.instance_index, 0u);
-        EXPECT_EQ(hit.flags, 0u);
+        EXPECT_EQ(hit.flags, HIT_FRONT);
     }
     const Ray beside{vec3(0.75f, 0.75f, 2), 0, vec3(0, 0, -4), INFINITY};
     EXPECT_TRUE(same_bytes(closest(beside), miss()));

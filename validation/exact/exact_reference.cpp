@@ -96,7 +96,8 @@ ReferenceHit to_float64(const std::optional<ClosestHit>& hit, const ReferenceSce
             rounded(at.v),
             primitive,
             instance,
-            reference.options(instance).custom_index};
+            reference.options(instance).custom_index,
+            at.along == reference.options(instance).flip_facing};
 }
 
 }  // namespace twinray::exact

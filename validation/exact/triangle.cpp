@@ -41,8 +41,9 @@ std::optional<Crossing> crossing(const Line& line, const Triangle64& triangle) {
     const Rational sum = values[0] + values[1] + values[2];
     if (sum == 0) return std::nullopt;
     const Vector normal = cross(vertices[1] - vertices[0], vertices[2] - vertices[0]);
-    return Crossing{dot(normal, vertices[0]) / dot(normal, line.direction), values[1] / sum, values[2] / sum,
-                    static_cast<Incidence>(count(0))};
+    const Rational along = dot(normal, line.direction);
+    return Crossing{dot(normal, vertices[0]) / along, values[1] / sum, values[2] / sum,
+                    static_cast<Incidence>(count(0)), along > 0};
 }
 
 }  // namespace twinray::exact

@@ -22,6 +22,7 @@ struct Crossing {
     Rational t;     // in units of the line's direction
     Rational u, v;  // the point is (1-u-v) v0 + u v1 + v v2
     Incidence incidence = Incidence::interior;
+    bool along = false;  // the normal (v1 - v0) x (v2 - v0) points along the line
 };
 
 // Six times the signed volumes of (direction, b, c), (direction, c, a) and (direction, a, b), vertices a, b, c taken

@@ -30,7 +30,14 @@ GeometryBox box_of(const Geometry& geometry, const Geometry64& triangles) {
 Hit hit_of(const ReferenceHit& found, const Ray& ray) {
     const std::optional<float> t = found.hit ? reported_t(found.t, ray) : std::nullopt;
     if (!t) return miss();
-    return {1, *t, found.primitive, found.custom_index, float(found.u), float(found.v), found.instance, 0};
+    return {1,
+            *t,
+            found.primitive,
+            found.custom_index,
+            float(found.u),
+            float(found.v),
+            found.instance,
+            found.is_front ? HIT_FRONT : 0};
 }
 
 // As accelerators see it, a transform that kernels have made unusable hides the instance.

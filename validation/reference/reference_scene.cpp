@@ -135,7 +135,8 @@ void ReferenceScene::search_instance(uint instance, Search& search) const {
     const auto test = [&](const ActiveTriangle& triangle) {
         const auto hit = triangle.intersect(ray, clip);
         if (hit && !is_culled(placed.options, search.query.flags, hit->along))
-            search.offer({true, hit->t, hit->u, hit->v, triangle.primitive, instance, placed.options.custom_index});
+            search.offer({true, hit->t, hit->u, hit->v, triangle.primitive, instance, placed.options.custom_index,
+                          hit->along == placed.options.flip_facing});
         return !search.is_done();
     };
     if constexpr (BRUTE_FORCE) {

@@ -101,7 +101,7 @@ void Explainer::print_test(std::ostream& out, exact::TriangleId triangle) const 
         out << "; exactly " << truth.get_d() << " (" << sign_of(sgn(truth)) << ")\n";
     }
     TriangleHit hit{};
-    if (intersect_triangle(leaf->v0, leaf->v1, leaf->v2, space, hit))
+    if (intersect_triangle(leaf->v0, leaf->v1, leaf->v2, space, false, hit))
         out << "    float32: hit at t = " << hit.t << ", u = " << hit.u << ", v = " << hit.v << '\n';
     else
         out << "    float32: the ray passes\n";

@@ -309,6 +309,11 @@ std::vector<SuiteCase> build_cases() {
          "hits that differ in a bit", "0", both_shapes_of_kernels},
         {"B14", "one mesh in every layout, and by every build quality",
          "hits that differ in a bit from the usual tree's", "0", layouts_and_qualities},
+        {"B15", "skins and morph targets on the device: weights of 0 for what is not finite, an axis scaled by 0",
+         "vertices, hits", "vertices as in float64 within 32 roundings; 0 SW_LEAK, SW_FALSE, T_ERR",
+         deformed_meshes_on_device},
+        {"B16", "a thousand meshes and more, pushed, moved, bent, erased, saved and loaded", "hits",
+         "0 SW_LEAK, SW_FALSE, T_ERR", long_histories},
     };
 }
 

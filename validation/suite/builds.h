@@ -14,4 +14,8 @@ void refit_many_times(CaseRun& run);
 void refit_collapse(CaseRun& run);
 void both_shapes_of_kernels(CaseRun& run);
 
+// builds_deformed.cpp, histories.cpp
+void deformed_meshes_on_device(CaseRun& run);
+void long_histories(CaseRun& run);
+
 }  // namespace twinray::suite

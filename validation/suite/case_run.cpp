@@ -13,6 +13,14 @@ namespace {
 
 constexpr std::size_t least_reps = 3, full_reps = 15;
 
+// A record of what must show faults.
+void set_control(Record& record, const std::string& what) {
+    record.variant = "control: " + what;
+    record.criterion = record.variant + " must show faults, which proves that the case sees them";
+    record.pass = record.faults > 0;
+    record.fault_of = *record.pass ? "" : "twinray";
+}
+
 // Sets pass and whose fault it is where it is false.
 void decide(Record& record, const Configuration& configuration, const Measurement& measurement) {
     if (const auto& control = measurement.control) {
@@ -27,10 +35,7 @@ void decide(Record& record, const Configuration& configuration, const Measuremen
             record.criterion = "none: fast promises nothing at edges";
             return;
         }
-        record.variant = "control: fast";
-        record.criterion = "control: fast must show faults, which proves that the case sees them";
-        record.pass = record.faults > 0;
-        record.fault_of = *record.pass ? "" : "twinray";
+        set_control(record, "fast");
         return;
     }
     record.pass = record.faults == 0;
@@ -221,6 +226,11 @@ void CaseRun::expect(const Configuration& configuration, const Outcome& outcome)
     result.faults = outcome.faults;
     result.bound95 = upper_bound_95(outcome.faults, outcome.n);
     result.time = outcome.time;
+    if (!outcome.control.empty()) {
+        set_control(result, outcome.control);
+        add(result);
+        return;
+    }
     if (!outcome.only_measured.empty()) {
         result.criterion = "none: " + outcome.only_measured;
         add(result);

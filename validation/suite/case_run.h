@@ -78,6 +78,7 @@ class CaseRun {
         std::string fault_of = {};
         std::optional<TimeFigures> time = {};
         std::string only_measured = {};
+        std::string control = {};
     };
     void expect(const Configuration& configuration, const Outcome& outcome);
 

@@ -2,9 +2,11 @@
 // Triangles and instances that touch: classes that are known, or that arithmetic without error gives.
 #include <twinray/queries.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "validation/suite/contacts.h"
+#include "validation/suite/scenes.h"
 #include "engine/collide/exact_class.h"
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
@@ -82,7 +84,8 @@ void colliding_slivers(CaseRun& run) {
 // Turned, what was in one plane or on one line is so but for rounding.
 void lattice(CaseRun& run) {
     std::vector<TrianglePair> pairs = lattice_pairs(run.amount(20'000, 1'000'000), run.seed());
-    measure_lattice(run, "as it is", pairs);
+    for (const std::size_t part : {64u, 16u, 4u, 1u})
+        measure_lattice(run, "as it is", std::span(pairs).first(pairs.size() / part));
     const glm::dmat3 turn(dvec3(2, 2, -1) / 3.0, dvec3(-1, 2, 2) / 3.0, dvec3(2, -1, 2) / 3.0);
     for (TrianglePair& pair : pairs)
         for (WorldTriangle* t : {&pair.a, &pair.b}) *t = {turn * t->a, turn * t->b, turn * t->c};
@@ -201,6 +204,60 @@ void colliding_identical_boxes(CaseRun& run) {
     }
 }
 
+// Cubes of 10^-30 to 10^37 around points as far from 0 as they are large.
+std::vector<Transform> cubes_of_all_sizes(std::size_t count, std::uint64_t seed) {
+    Random random(seed);
+    std::vector<Transform> cubes;
+    for (std::size_t i = 0; i < count; ++i) {
+        const float size = std::pow(10.0f, random.between(-30, 37));
+        cubes.push_back(Transform::translation(random.in_box(3) * size) * Transform::scaling(vec3(size)));
+    }
+    return cubes;
+}
+
+// Whether the boxes overlap that are around the cubes, larger by a share of their size and place.
+bool overlap(const Transform& a, const Transform& b, double margin) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto reach = [&](const Transform& cube) {
+            return double{cube.rows[axis][axis]} * (1 + margin) + std::abs(double{cube.rows[axis].w}) * margin;
+        };
+        if (std::abs(double{a.rows[axis].w} - double{b.rows[axis].w}) > reach(a) + reach(b)) return false;
+    }
+    return true;
+}
+
+// Overlapping pairs that were not found, and found ones that are apart by more than rounding.
+std::uint64_t wrong_pairs(const std::vector<Transform>& cubes, std::span<const InstancePair> found) {
+    std::uint64_t wrong = 0;
+    for (uint a = 0; a < cubes.size(); ++a)
+        for (uint b = a + 1; b < cubes.size(); ++b) {
+            const bool is_found = std::ranges::binary_search(found, InstancePair{a, b});
+            wrong += is_found ? !overlap(cubes[a], cubes[b], 0x1p-20) : overlap(cubes[a], cubes[b], -0x1p-24);
+        }
+    return wrong;
+}
+
+void colliding_sizes(CaseRun& run) {
+    const std::vector<Transform> cubes = cubes_of_all_sizes(run.amount(500, 5'000), run.seed());
+    const Mesh cube = make_box(vec3(-1), vec3(1));
+    for (const Configuration& configuration : run.one_configuration_each()) {
+        AbstractAccel& accel = run.devices().empty_accel(configuration);
+        accel.push(cube, cubes);
+        const std::vector<InstancePair> found = BroadPhase(accel.context()).instance_pairs(accel);
+        const CaseRun::Outcome outcome{.results = {{"pairs", found.size()}},
+                                       .n = cubes.size() * (cubes.size() - 1) / 2,
+                                       .faults = wrong_pairs(cubes, found),
+                                       .what = "pairs that are missing, or apart",
+                                       .reference = "f64",
+                                       .fault_of = "twinray"};
+        run.expect(configuration, outcome);
+        CaseRun::Outcome control = outcome;
+        control.faults = wrong_pairs(cubes, std::span(found).subspan(1));
+        control.control = "one pair left out";
+        run.expect(configuration, control);
+    }
+}
+
 }  // namespace
 
 std::vector<SuiteCase> collision_cases() {
@@ -222,6 +279,8 @@ std::vector<SuiteCase> collision_cases() {
         {"C12", "triangles without area", classes, none, degenerate},
         {"C13", "an instance that is moved, and its mesh moved", "contacts of only one of them", "the same contacts",
          baked},
+        {"C14", "cubes of 10^-30 to 10^37 in one scene", "pairs of instances", "those whose boxes overlap",
+         colliding_sizes},
     };
 }
 

@@ -13,7 +13,7 @@ namespace twinray::suite {
 namespace {
 
 template <class ClassOf>
-void measure_host(CaseRun& run, const std::string& lattice, const std::vector<TrianglePair>& pairs,
+void measure_host(CaseRun& run, const std::string& lattice, std::span<const TrianglePair> pairs,
                   const std::vector<PairClass>& known, const std::string& variant, const ClassOf& class_of) {
     std::vector<double> times;
     std::uint64_t wrong = 0;
@@ -25,7 +25,7 @@ void measure_host(CaseRun& run, const std::string& lattice, const std::vector<Tr
                         }) *
                         1e9 / static_cast<double>(pairs.size()));
     Record record = query_record(run, "exact", variant);
-    record.params = {{"lattice", lattice}};
+    record.params = {{"lattice", lattice}, {"pairs", pairs.size()}};
     record.backend = "cpu";
     record.n = pairs.size();
     record.faults = wrong;
@@ -81,7 +81,7 @@ void ask_classes(CaseRun& run, const std::vector<KnownPair>& pairs, const std::s
     add_checked(run, record, wrong, first);
 }
 
-void measure_lattice(CaseRun& run, const std::string& lattice, const std::vector<TrianglePair>& pairs) {
+void measure_lattice(CaseRun& run, const std::string& lattice, std::span<const TrianglePair> pairs) {
     std::vector<PairClass> known;
     for (const TrianglePair& pair : pairs) known.push_back(exact_class(pair.a, pair.b));
     NarrowPhase narrow_phase(query_context(run));
@@ -93,7 +93,7 @@ void measure_lattice(CaseRun& run, const std::string& lattice, const std::vector
     std::uint64_t wrong = 0;
     for (std::size_t i = 0; i < pairs.size(); ++i) wrong += found[i] != known[i];
     Record record = query_record(run, "exact");
-    record.params = {{"lattice", lattice}};
+    record.params = {{"lattice", lattice}, {"pairs", pairs.size()}};
     record.n = pairs.size();
     record.time = time_figures("ns_per_pair", times);
     add_checked(run, record, wrong, "classes differ from those of exact arithmetic");

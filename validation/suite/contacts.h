@@ -24,7 +24,7 @@ std::vector<WorldTriangle> permutations(const WorldTriangle& triangle);
 void ask_classes(CaseRun& run, const std::vector<KnownPair>& pairs, const std::string& reference = "analytic");
 // Time and wrong classes of the GPU, of exact arithmetic on the host, and, as controls, of the same decisions by signs
 // that float32 and float64 give without a bound.
-void measure_lattice(CaseRun& run, const std::string& lattice, const std::vector<TrianglePair>& pairs);
+void measure_lattice(CaseRun& run, const std::string& lattice, std::span<const TrianglePair> pairs);
 
 using ContactCounts = std::map<PairClass, std::uint64_t>;
 // Between instances, or within them.

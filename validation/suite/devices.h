@@ -5,6 +5,7 @@
 #include <map>
 #include <tuple>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -62,5 +63,18 @@ class Devices {
     std::map<std::tuple<Backend, Level, Layout>, std::unique_ptr<AbstractAccel>> accels_;
     std::map<std::pair<Backend, Level>, std::unique_ptr<CrossingCounter>> counters_;
 };
+
+// A buffer that holds them for all that is submitted later.
+template <class T>
+Buffer uploaded(Context& context, const char* name, std::span<const T> data) {
+    Buffer buffer(context, {.name = name, .bytes = data.size_bytes()});
+    Commands commands(context, name);
+    {
+        const auto pass = commands.pass(name);
+        commands.upload(buffer, data);
+    }
+    commands.submit();
+    return buffer;
+}
 
 }  // namespace twinray::suite

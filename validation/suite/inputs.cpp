@@ -186,6 +186,10 @@ std::vector<SuiteCase> input_cases() {
          "errors, hits, leaks", "an Error, nothing left alive, and the right hits from the next try", failing_calls},
         {"N14", "sorted rays, every second with NaN, infinity, 1e38 or a denormal number in it",
          "hits that differ in a bit from those of rays in the given order", "0", extreme_rays_in_order},
+        {"N15",
+         "meshes in device memory, in each format: coordinates that are not finite, indices out of range, the count "
+         "there",
+         "hits of the other triangles", "0 SW_LEAK, SW_FALSE, T_ERR", device_meshes},
     };
 }
 

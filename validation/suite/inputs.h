@@ -15,6 +15,9 @@ void empty_and_small(CaseRun& run);
 void too_many(CaseRun& run);
 void masks_and_culling(CaseRun& run);
 
+// inputs_device.cpp
+void device_meshes(CaseRun& run);
+
 // inputs_large.cpp, inputs_failures.cpp
 void large_buffers(CaseRun& run);
 void failing_calls(CaseRun& run);

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Instances: transforms that are hard on the ray, on the box and on the inverse.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <set>
 
 #include <twinray/scene.h>
 
 #include "validation/suite/case_run.h"
+#include "validation/suite/demands.h"
 #include "validation/suite/scenes.h"
 #include "validation/suite/spawning.h"
 #include "engine/core/error.h"
@@ -156,6 +159,64 @@ void axes_far_apart(CaseRun& run) {
     }
 }
 
+// The upper and the lower half of a sphere as meshes of their own, and the edges that they share.
+struct Halves {
+    Mesh upper, lower;
+    std::vector<std::pair<uint, uint>> seam;  // vertices of both
+};
+
+Halves halves_of(const Mesh& sphere) {
+    Halves halves;
+    halves.upper.positions = halves.lower.positions = sphere.positions;
+    std::set<std::pair<uint, uint>> of_upper, of_lower;
+    for (const uvec3& t : sphere.triangles) {
+        const bool is_upper = sphere.positions[t.x].z + sphere.positions[t.y].z + sphere.positions[t.z].z > 0;
+        (is_upper ? halves.upper : halves.lower).triangles.push_back(t);
+        for (int k = 0; k < 3; ++k) (is_upper ? of_upper : of_lower).insert(std::minmax({t[k], t[(k + 1) % 3]}));
+    }
+    std::ranges::set_intersection(of_upper, of_lower, std::back_inserter(halves.seam));
+    return halves;
+}
+
+Transform transposed(const Transform& rotation) {
+    Transform result;
+    for (std::size_t row = 0; row < 3; ++row)
+        for (std::size_t column = 0; column < 3; ++column) result.rows[row][column] = rotation.rows[column][row];
+    return result;
+}
+
+// From the middle to the seam, at its vertices and along its edges. Each half sees a ray rounded by its own transform:
+// where that is the same, so is the ray, and none passes between.
+void shared_seam(CaseRun& run) {
+    const Halves halves = halves_of(make_icosphere(3));
+    const std::size_t count = run.amount(2'048, 200'000);
+    for (const bool is_same : {true, false}) {
+        Random random(run.seed());
+        Scene scene;
+        const Transform place = Transform::translation(random.in_box(3)) * random.rotation();
+        const Transform turn = is_same ? Transform() : random.rotation();
+        Mesh lower = halves.lower;  // the same in the world, but for rounding
+        for (vec3& position : lower.positions) position = transform_point(turn, position);
+        scene.meshes = {halves.upper, lower};
+        scene.instances = {{"", 0, place, {}}, {"", 1, place * transposed(turn), {}}};
+        std::vector<Ray> rays;
+        for (std::size_t i = 0; i < count; ++i) {
+            const auto& [a, b] = halves.seam[random.below(halves.seam.size())];
+            const float share = i % 2 ? 0 : random.between(0, 1);
+            const vec3 target = (1 - share) * halves.upper.positions[a] + share * halves.upper.positions[b];
+            rays.push_back({transform_point(place, vec3(0)), 0, transform_vector(place, target), inf});
+        }
+        for (const Traced& traced : trace(run.devices(), run.configurations(), world_of(scene), {rays, 0})) {
+            CaseRun::Outcome outcome = ask_each(
+                traced, rays, [](std::size_t, const Hit& hit) { return std::string(hit.hit ? "" : "missed"); });
+            outcome.params = {{"transforms", is_same ? "equal" : "different"}};
+            outcome.reference = "analytic";
+            if (!is_same) outcome.only_measured = "transforms that differ round a ray apart";
+            run.expect(traced.configuration, outcome);
+        }
+    }
+}
+
 // Every ray meets every box; the lowest instance counts.
 void identical_boxes(CaseRun& run) {
     const std::size_t count = run.amount(5'000, 100'000);
@@ -284,6 +345,10 @@ std::vector<SuiteCase> instance_cases() {
          instances_by_powers_of_two},
         {"I14", "axes scaled by 10^-36 to 10^36, then turned", "hits, t", "watertight: all hit, at t = 2",
          axes_far_apart},
+        {"I15", "surfaces of instances with axes scaled by 10^-9 to 10^9, then turned", "normals",
+         "within 1e-5 rad of float64's, of length 1", surfaces_of_scaled_instances},
+        {"I16", "two halves of a sphere as instances, of equal transforms and of such as agree but for rounding",
+         "rays lost where they meet", "0 of equal transforms; of others it is measured", shared_seam},
     };
 }
 

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The path tracer's pictures against those of another renderer.
-#include <unistd.h>
-
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <fstream>
 
 #include <nlohmann/json.hpp>
@@ -13,6 +9,7 @@
 
 #include "cornell_box.gltf.h"
 #include "cornell_box.json.h"
+#include "validation/records/temporary_folder.h"
 #include "validation/suite/estimators.h"
 #include "validation/suite/pictures.h"
 #include "samples/path_tracer/camera.h"
@@ -44,27 +41,6 @@ Scores scores_of(std::span<const std::vector<double>> runs, std::span<const doub
     scores.rms = std::sqrt(scores.rms);
     return scores;
 }
-
-// A folder for temporary files, while it lives.
-class TemporaryFolder {
-  public:
-    TemporaryFolder() {
-        std::string name = (std::filesystem::temp_directory_path() / "twinray-XXXXXX").string();
-        if (!mkdtemp(name.data())) fail(name, ": no folder for temporary files; TMPDIR has to name one to write to");
-        path_ = name;
-    }
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-    const std::filesystem::path& path() const { return path_; }
-
-  private:
-    std::filesystem::path path_;
-};
 
 // Of a file with this text, all of which is in it.
 Scene scene_of_gltf(std::string_view gltf) {

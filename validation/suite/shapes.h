@@ -18,6 +18,7 @@ void in_the_plane(CaseRun& run);
 void in_the_plane_of_a_face(CaseRun& run);
 void tied_axes(CaseRun& run);
 void along_edges(CaseRun& run);
+void from_the_plane(CaseRun& run);
 
 // all_hits.cpp
 void all_hits_through_layers(CaseRun& run);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Rays nearly in the planes of triangles, in them, and along edges.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 
 #include "validation/suite/demands.h"
 #include "validation/suite/scenes.h"
@@ -145,6 +147,75 @@ void along_edges(CaseRun& run) {
         outcome.reference = "exact";
         run.expect(traced.configuration, outcome);
     }
+}
+
+namespace {
+
+// A triangle of whole numbers, and a ray from within it, or from 2^-4 off its plane, that its line meets inside.
+struct Departing {
+    std::array<vec3, 3> corners;
+    Ray ray;
+    bool hits;
+};
+
+std::optional<Departing> departing(Random& random, vec3 at) {
+    const auto whole = [&] { return 4.0f * static_cast<float>(random.below(1'025)) - 2'048.0f; };
+    const auto lattice = [&] {
+        const float x = whole(), y = whole();
+        return vec3(x, y, whole());
+    };
+    const vec3 first = lattice(), second = lattice();
+    vec3 off = vec3(0);
+    if (const uint which = random.below(4); which < 3) off[which] = random.below(2) ? 0x1p-4f : -0x1p-4f;
+    const vec3 from = (first + second) * 0.25f + off;
+    vec3 way = random.direction();
+    if (random.below(2)) {
+        const float u = random.between(-1, 1), v = random.between(-1, 1);
+        way = u * first + v * second + 10.0f * way;
+    }
+    // From here on in float64, where all of it is exact but the division.
+    const dvec3 normal = cross(dvec3(first), dvec3(second));
+    const double above = -dot(normal, dvec3(from)), along = dot(normal, dvec3(way));
+    if (dot(normal, normal) == 0 || std::abs(along) < 1e-3 * length(normal) * length(dvec3(way))) return {};
+    const double t = above / along;
+    const dvec3 met = dvec3(from) + t * dvec3(way), u = cross(met, dvec3(second)), v = cross(dvec3(first), met);
+    const double share_u = dot(u, normal) / dot(normal, normal), share_v = dot(v, normal) / dot(normal, normal);
+    if (t > 0.5 || share_u < 0.01 || share_v < 0.01 || share_u + share_v > 0.99) return {};
+    return Departing{{at, at + first, at + second}, {at + from, 0, way, 1}, t > 0};
+}
+
+}  // namespace
+
+void from_the_plane(CaseRun& run) {
+    Random random(run.seed());
+    Mesh mesh;
+    std::vector<Ray> rays;
+    std::vector<bool> hits;
+    for (std::size_t i = 0; i < run.amount(2'048, 65'536); ++i) {
+        // Too far apart for a ray to meet another one.
+        const vec3 at = 16'384.0f * vec3(i % 40, i / 40 % 40, i / 1'600);
+        const std::optional<Departing> made = departing(random, at);
+        if (!made) continue;
+        add_triangle(mesh, made->corners[0], made->corners[1], made->corners[2]);
+        rays.push_back(made->ray);
+        hits.push_back(made->hits);
+    }
+    for (const Query query : {Query::closest, Query::any})
+        for (const Traced& traced : trace(run.devices(), run.configurations(), world_of(mesh), {rays, 0, query})) {
+            CaseRun::Outcome outcome = ask_each(traced, rays, [&](std::size_t i, const Hit& hit) -> std::string {
+                if ((hit.hit != 0) == hits[i]) return "";
+                return hit.hit ? text("hit at t = ", hit.t) : "missed";
+            });
+            outcome.params = {{"query", query == Query::any ? "any" : "closest"}};
+            outcome.reference = "exact";
+            if (!is_ours(traced.configuration.backend))
+                outcome.only_measured = "Vulkan demands no exact sign of t";
+            else if (!is_robust(traced.configuration))
+                outcome.control = "fast";
+            else if (traced.configuration.level == Level::watertight)
+                outcome.only_measured = "t of watertight is rounded, and its sign";
+            run.expect(traced.configuration, outcome);
+        }
 }
 
 }  // namespace twinray::suite

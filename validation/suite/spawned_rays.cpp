@@ -4,23 +4,9 @@
 #include <algorithm>
 
 #include "suite_spawn.spv.h"
+#include "validation/suite/devices.h"
 
 namespace twinray::suite {
-namespace {
-
-template <class T>
-Buffer uploaded(Context& context, const char* name, std::span<const T> data) {
-    Buffer buffer(context, {.name = name, .bytes = data.size_bytes()});
-    Commands commands(context, name);
-    {
-        const auto pass = commands.pass(name);
-        commands.upload(buffer, data);
-    }
-    commands.submit();
-    return buffer;
-}
-
-}  // namespace
 
 Spawner::Spawner(Context& context)
     : context_(context), kernel_(context, {.name = "suite_spawn", .spirv = suite_spawn_spirv}) {}

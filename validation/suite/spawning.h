@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Cases about rays that leave surfaces: rows F01 to F05 and I10.
+// Cases about points of surfaces and rays that leave them: rows F01 to F05, I10 and I15.
 #pragma once
 
 #include "validation/suite/case_run.h"
@@ -12,6 +12,8 @@ void leave_triangles_of_all_kinds(CaseRun& run);
 void leave_cancelled_offsets(CaseRun& run);
 void leave_between_plates(CaseRun& run);
 void leave_a_concave_corner(CaseRun& run);
+// scaled_surfaces.cpp
+void surfaces_of_scaled_instances(CaseRun& run);
 
 // What came of a ray that left a surface.
 enum class SpawnOutcome : std::uint8_t {

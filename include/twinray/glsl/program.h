@@ -11,6 +11,7 @@ struct Candidate {
     uint primitive_index;  // box or triangle of the geometry, in the user's numbering
     uint instance_index;
     uint custom_index;
+    bool is_front;      // of a triangle, as culling has it: its front is met
     Address user_data;  // TraceDesc::user_data, or what a kernel gave closest_hit or any_hit; is_absent() where it gave
                         // none
 };

@@ -21,7 +21,7 @@ struct Hit {
     float u;
     float v;
     uint instance_index;  // position in the accelerator's instance array
-    uint flags;           // 0, kept for later use
+    uint flags;           // HIT_FRONT or 0
 };
 BUFFER_OF(Hit, 8);
 
@@ -31,4 +31,6 @@ const uint QUERY_ANY = 1u;      // whichever hit is found first
 // Flags of a trace, with the values of SPIR-V's ray flags.
 const uint CULL_BACK = 0x10u;  // triangles seen from behind are not hit
 const uint CULL_FRONT = 0x20u;
+
+const uint HIT_FRONT = 1u;  // of a hit: of the front of a triangle, as culling has it; boxes have none
 #endif

@@ -149,6 +149,7 @@ template <int N, class T>
 Vec<N, T> mix(const Vec<N, T>& a, const Vec<N, T>& b, const Vec<N, T>& t) {
     return glm::mix(to_glm(a), to_glm(b), to_glm(t));
 }
+using glm::findLSB;
 using glm::umulExtended;
 
 }  // namespace twinray

@@ -12,8 +12,8 @@ namespace {
 TEST(Catalogue, HasEveryCaseOnce) {
     std::set<std::string> ids;
     for (const SuiteCase& row : catalogue()) EXPECT_TRUE(ids.insert(row.id).second) << row.id << " is there twice";
-    const std::map<char, int> sizes = {{'W', 17}, {'S', 13}, {'T', 16}, {'N', 14}, {'I', 14}, {'B', 14}, {'F', 9},
-                                       {'L', 4},  {'V', 15}, {'R', 2},  {'G', 6},  {'C', 13}, {'D', 8},  {'P', 19}};
+    const std::map<char, int> sizes = {{'W', 17}, {'S', 13}, {'T', 17}, {'N', 15}, {'I', 16}, {'B', 16}, {'F', 9},
+                                       {'L', 4},  {'V', 15}, {'R', 2},  {'G', 6},  {'C', 14}, {'D', 8},  {'P', 19}};
     std::size_t total = 0;
     for (const auto& [letter, size] : sizes)
         for (int i = 1; i <= size; ++i, ++total) {
