@@ -208,8 +208,8 @@ FUNC uvec3 plus_product(uvec3 sum, int a, int b, int d, int c, int e)
     return uvec3(first.x, second.x, sum.z + (high.y ^ flips) + second.y);
 }
 
-// The sign of det(v0 - from, v1 - from, v2 - from), 0 in the plane, in whole numbers. False where they have more than 30
-// bits: where coordinates of an axis differ by more than 2^30 of their lowest bit, and where that is below 2^-126.
+// The sign of det(v0 - from, v1 - from, v2 - from), 0 in the plane, in whole numbers. False where they have more than
+// 30 bits: where coordinates of an axis differ by more than 2^30 of their lowest bit, and where that is below 2^-126.
 // Rarely asked: loops that turn the axes, as is_exactly_around() turns vertices. The whole numbers take the places of
 // the coordinates, and none a register of its own.
 FUNC bool plane_side(vec3 v0, vec3 v1, vec3 v2, vec3 from, INOUT(int) side)
@@ -271,8 +271,8 @@ FUNC TriangleHit signed_crossing(SeenTriangle seen, vec3 v0, vec3 v1, vec3 v2, R
     return hit;
 }
 
-// Whether the ray's line meets the triangle (v0, v1, v2), and where. No interval test. has_exact_sign: t has, which costs
-// registers; a constant.
+// Whether the ray's line meets the triangle (v0, v1, v2), and where. No interval test. has_exact_sign: t has, which
+// costs registers; a constant.
 FUNC bool intersect_triangle(vec3 v0, vec3 v1, vec3 v2, RaySpace space, bool has_exact_sign, INOUT(TriangleHit) hit)
 {
     SeenTriangle seen = seen_triangle(v0, v1, v2, space);
