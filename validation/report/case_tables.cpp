@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "engine/core/error.h"
 #include "validation/report/verdict.h"
 #include "validation/report/wording.h"
 
@@ -86,10 +87,10 @@ std::string fault_text(const Record& record) {
 // `told`: what the rows above say of their faults, which is not said again.
 void write_row(std::ostream& out, const Key& key, const Group& group, std::set<std::string>& told) {
     const Record& worst = group.worst();
-    out << "<tr><td>" << escaped(key[0] + ' ' + key[1]) << (key[2].empty() ? "" : " (" + escaped(key[2]) + ')')
-        << "</td><td>" << group.records.size() << "</td><td>" << count_text(group.n()) << "</td><td>"
-        << (group.faults() ? rate_text(group.faults(), group.n()) : "0") << "</td><td>" << escaped(classes_of(group))
-        << "</td><td>"
+    out << "<tr><td>" << escaped(key[1].empty() ? key[0] : key[0] + ' ' + key[1])
+        << (key[2].empty() ? "" : " (" + escaped(key[2]) + ')') << "</td><td>" << group.records.size() << "</td><td>"
+        << count_text(group.n()) << "</td><td>" << (group.faults() ? rate_text(group.faults(), group.n()) : "0")
+        << "</td><td>" << escaped(classes_of(group)) << "</td><td>"
         << range(group, [](const Record& r) { return r.error ? std::optional(r.error->p99) : std::nullopt; })
         << escaped(unit_of(group, false)) << "</td><td>"
         << range(group, [](const Record& r) { return r.time ? std::optional(r.time->median) : std::nullopt; })
@@ -102,10 +103,18 @@ void write_row(std::ostream& out, const Key& key, const Group& group, std::set<s
     out << "</td></tr>\n";
 }
 
+// A control that shows faults, as it must.
+bool is_control_that_passes(const Record& record) { return !is_users_kernel(record) && record.pass == true; }
+
 void write_case(std::ostream& out, const suite::SuiteCase& row, const std::vector<const Record*>& records) {
     std::vector<Key> order;
     std::map<Key, Group> groups;
+    std::size_t controls = 0;
     for (const Record* record : records) {
+        if (is_control_that_passes(*record)) {
+            ++controls;
+            continue;
+        }
         const Key key{record->backend, record->level, record->variant};
         if (groups[key].records.empty()) order.push_back(key);
         groups[key].records.push_back(record);
@@ -113,7 +122,9 @@ void write_case(std::ostream& out, const suite::SuiteCase& row, const std::vecto
     const Group all{records};
     out << "<details id=\"" << row.id << "\"><summary><span class=\"" << style_of(all.worst()) << "\">" << row.id
         << "</span> " << escaped(row.title) << "</summary>\n<p>Measures " << escaped(row.measures)
-        << ". Passes with: " << escaped(row.criterion) << ".</p>\n<div class=\"wide\"><table><tr><th>by</th>"
+        << ". Passes with: " << escaped(row.criterion) << '.'
+        << (controls ? text(" Controls that show faults, as they must: ", controls, '.') : "")
+        << "</p>\n<div class=\"wide\"><table><tr><th>by</th>"
         << "<th>settings</th><th>n</th><th>faults</th><th>classes</th><th>error</th><th>time</th><th>result</th></"
            "tr>\n";
     std::set<std::string> told;
