@@ -288,7 +288,7 @@ constexpr uint max_custom_index = (1u << 24) - 1;
 }  // namespace twinray
 
 namespace std {
-// By its id.
+// Handles hash by their id.
 template <>
 struct hash<twinray::AccelHandle> {
     size_t operator()(const twinray::AccelHandle& handle) const noexcept { return hash<uint64_t>()(handle.id); }

@@ -663,20 +663,14 @@ TEST_P(Accel, EveryTransformThatPushAcceptsIsActive) {
     const AccelHandle base = accel().push(make_box(vec3(-1), vec3(1)));
     int accepted = 0;
     for (const double most : {14.0, 20.0, 36.0})
-        for (int i = 0; i < 200; ++i) {
-            std::uniform_real_distribution<double> exponent(-most, most);
-            std::uniform_real_distribution<float> angle(-4, 4);
-            const auto power = [&] { return static_cast<float>(std::pow(10.0, exponent(random))); };
-            const Transform scaling = Transform::scaling({power(), power(), power()}),
-                            turned = test::rotation(angle(random), angle(random));
-            for (const Transform& transform : {turned * scaling, scaling * turned})
+        for (int i = 0; i < 200; ++i)
+            for (const auto made = test::scaled_and_turned(random, most); const Transform& transform : made.both)
                 if (const std::string fault =
                         error_if_any([&] { accel().push_instances_of(base, std::span(&transform, 1)); });
                     fault.empty())
                     ++accepted;
                 else
                     EXPECT_NE(fault.find("transform has no inverse in float32"), std::string::npos) << fault;
-        }
     EXPECT_GT(accepted, 1000) << "of 1200";
     for (const float tiny : {1e-38f, 1e-40f})
         EXPECT_NE(error_if_any([&] { accel().push(square(0), Transform::scaling(vec3(tiny))); }).find("denormal"),

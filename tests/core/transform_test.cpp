@@ -69,13 +69,9 @@ TEST(Transform, TheShadersInverseHoldsForScalesFarApart) {
     int refused = 0;
     for (const double most : {14.0, 20.0, 36.0})
         for (int i = 0; i < 1000; ++i) {
-            std::uniform_real_distribution<double> exponent(-most, most);
-            std::uniform_real_distribution<float> angle(-4, 4);
-            const auto power = [&] { return static_cast<float>(std::pow(10.0, exponent(random))); };
-            const Transform scaling = Transform::scaling({power(), power(), power()}),
-                            turned = test::rotation(angle(random), angle(random));
+            const auto [scaling, both] = test::scaled_and_turned(random, most);
             for (const bool scaled_first : {true, false}) {
-                const Transform m = scaled_first ? turned * scaling : scaling * turned;
+                const Transform& m = both[scaled_first ? 0 : 1];
                 if (!fault_of(m).empty()) {
                     EXPECT_FALSE(scaled_first && most <= 20) << "scaled by 10^" << most;
                     ++refused;

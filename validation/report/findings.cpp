@@ -125,7 +125,7 @@ std::uint64_t Finding::n() const {
 
 double Finding::rate() const { return mean_rate(strata_of(kinds)); }
 Interval Finding::rate_95() const {
-    // Where none was seen, the whole chance to miss is above.
+    // An interval from 0 can miss the truth on its upper side alone, which then gets the whole 5 %.
     return mean_rate_interval(strata_of(kinds), faults_in(kinds) ? 0.05 : 0.1);
 }
 

@@ -169,7 +169,7 @@ std::string error_text(const Record& record) {
     return text(number(record.error->p99, 2), " (", number(record.error->max, 2), ") ", record.error->metric);
 }
 
-// Of a refit beside that of a build.
+// A refit's time stands beside that of a build.
 std::string time_text(const Record& record) {
     std::string time = text(number(record.time->median, 3), ' ', record.time->metric);
     if (const auto build = record.time->phases_ms.find("build");

@@ -13,7 +13,7 @@
 namespace twinray::suite {
 namespace {
 
-// Of 2^-24 of the mesh's size: a dozen sums of numbers up to four times as large.
+// Errors count in 2^-24 of the mesh's size. A vertex is a dozen sums of numbers up to four times as large.
 constexpr double most_error = 32;
 
 // Joints of a sphere: one turns, one flattens it, one is nowhere and has no weight.

@@ -75,7 +75,7 @@ class History {
     std::vector<Placed> all_;
 };
 
-// As it was saved and is loaded; its handles are others.
+// Saves the accelerator and loads it again, with other handles.
 std::unique_ptr<AbstractAccel> saved_and_loaded(AbstractAccel& accel, History& history) {
     const TemporaryFolder folder;
     const std::filesystem::path file = folder.path() / "accel";

@@ -22,8 +22,7 @@ double angle_between(const dvec3& a, const dvec3& b) {
     return std::atan2(length(cross(u, v)), dot(u, v));
 }
 
-// A sphere that has normals, under a transform of its own for each ray. Rays run along the axis that is scaled least:
-// what rounding does to them moves them by little in object space.
+// A sphere that has normals, under a transform of its own for each ray.
 struct Scaled {
     Mesh mesh;
     std::vector<Transform> transforms;
@@ -35,14 +34,9 @@ Scaled scaled_spheres(float most, std::size_t count, std::uint64_t seed) {
     Scaled made{make_icosphere(2), {}, {}};
     made.mesh.normals = made.mesh.positions;
     for (std::size_t i = 0; i < count; ++i) {
-        vec3 factors;
-        for (int axis = 0; axis < 3; ++axis) factors[axis] = std::pow(10.0f, random.between(-most, most));
-        const int least = factors.x < factors.y ? (factors.x < factors.z ? 0 : 2) : (factors.y < factors.z ? 1 : 2);
-        vec3 along(0);
-        along[least] = random.below(2) ? 1.0f : -1.0f;
-        made.transforms.push_back(random.rotation() * Transform::scaling(factors));
-        made.rays.push_back({transform_vector(made.transforms.back(), -3.0f * along), 0,
-                             transform_vector(made.transforms.back(), along), inf});
+        const ScaledPlace placed = scaled_place(random, most);
+        made.transforms.push_back(placed.transform);
+        made.rays.push_back(placed.ray);
     }
     return made;
 }

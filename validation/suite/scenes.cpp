@@ -77,6 +77,16 @@ std::vector<Ray> scaled(std::vector<Ray> rays, float factor) {
     return rays;
 }
 
+ScaledPlace scaled_place(Random& random, float most) {
+    vec3 factors;
+    for (int axis = 0; axis < 3; ++axis) factors[axis] = std::pow(10.0f, random.between(-most, most));
+    const int least = factors.x < factors.y ? (factors.x < factors.z ? 0 : 2) : (factors.y < factors.z ? 1 : 2);
+    vec3 along(0);
+    along[least] = 1;
+    const Transform place = random.rotation() * Transform::scaling(factors);
+    return {place, {transform_vector(place, -3.0f * along), 0, transform_vector(place, along), inf}};
+}
+
 Ray ray_to(const dvec3& target, const dvec3& origin) {
     const vec3 rounded(origin);
     return {rounded, 0, vec3(normalize(target - dvec3(rounded))), inf};

@@ -37,6 +37,14 @@ vec3 turned(vec3 v, int times);
 // Moves the origins only; t changes by the factor.
 std::vector<Ray> scaled(std::vector<Ray> rays, float factor);
 
+// Axes scaled within 10^most and 10^-most, then turned. The ray follows the axis that is scaled least, from 3 before
+// the middle in object space to 1 a unit of t: what rounding does to it moves it by little in object space.
+struct ScaledPlace {
+    Transform transform;
+    Ray ray;
+};
+ScaledPlace scaled_place(Random& random, float most);
+
 // From an origin, which is rounded first, to the target: passes it within float32 rounding. |direction| = 1.
 Ray ray_to(const dvec3& target, const dvec3& origin);
 // Half of them spread over the bounds, a quarter each aimed at vertices and at edges.

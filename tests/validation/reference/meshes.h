@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -120,6 +121,20 @@ inline Soup cube() {
 inline Transform rotation(float angle_x, float angle_y) {
     const float cx = std::cos(angle_x), sx = std::sin(angle_x), cy = std::cos(angle_y), sy = std::sin(angle_y);
     return {{vec4(cy, 0, sy, 0), vec4(sx * sy, cx, -sx * cy, 0), vec4(-cx * sy, sx, cx * cy, 0)}};
+}
+
+// Scales along axes within 10^most and 10^-most, with a rotation after them and before them.
+struct ScaledAndTurned {
+    Transform scaling;
+    std::array<Transform, 2> both;
+};
+inline ScaledAndTurned scaled_and_turned(std::mt19937& random, double most) {
+    std::uniform_real_distribution<double> exponent(-most, most);
+    std::uniform_real_distribution<float> angle(-4, 4);
+    const auto power = [&] { return static_cast<float>(std::pow(10.0, exponent(random))); };
+    const Transform scaling = Transform::scaling({power(), power(), power()}),
+                    turned = rotation(angle(random), angle(random));
+    return {scaling, {turned * scaling, scaling * turned}};
 }
 
 // Scaled, sheared, and moved by up to `spread` along each axis.
