@@ -45,8 +45,8 @@ constexpr std::string_view name_of(RayOrder order) { return order == RayOrder::s
 // driver's own test: AbstractAccel::capability says what a level is there.
 enum class Level : std::uint8_t {
     fast,        // Moeller-Trumbore: may lose rays at edges
-    watertight,  // exact edge signs: no leaks, a single hit at an edge
-    refined,     // and float64 for t, u, v of the hit that counts; the sign of t is exact
+    watertight,  // exact signs of edges and of t: no leaks, a single hit at an edge
+    refined,     // and float64 for t, u, v of the hit that counts
     certified,   // float64 decides what is hit and in which order; software only
 };
 inline constexpr std::array all_levels = {Level::fast, Level::watertight, Level::refined, Level::certified};

@@ -112,12 +112,11 @@ FUNC bool may_begin_in_plane_double(dvec3 a, dvec3 b, dvec3 c, double mean)
 }
 
 // Whether the given ray meets the triangle in world space within its interval, and where: t of the traced ray, which
-// begins `advance` behind the given one, as t + t_low. `triangle`, `space`: the same in object space, where the side of
-// the plane is asked for that float64 is not certain of.
-FUNC bool intersect_in_world(BvhTriangle triangle, RaySpace space, uint instance_index, TraceOptions options,
+// begins `advance` behind the given one, as t + t_low. False with sign_of_t asked: float64 is not certain of it, see
+// told_sign(), which tells it in object space.
+FUNC bool intersect_in_world(uint primitive_index, uint instance_index, TraceOptions options, INOUT(uint) sign_of_t,
                              INOUT(TriangleHit) hit)
 {
-    uint primitive_index = triangle.primitive_index;
     const double LEAST_NORMAL = double(uintBitsToFloat(0x00800000u));
     GivenMesh mesh = load_given_mesh(options.instances, instance_index);
     vec3 o = options.given.origin;
@@ -140,10 +139,12 @@ FUNC bool intersect_in_world(BvhTriangle triangle, RaySpace space, uint instance
     PRECISE double given_t = z / d.z;
     bool along_in_world = (det > double(0.0f)) == (d.z > double(0.0f));
     bool along_in_object = along_in_world != (AT(options.instances, instance_index).is_mirrored != 0u);
-    int side = 0;
-    if (may_begin_in_plane_double(a, b, c, z * det) &&
-        plane_side(triangle.v0, triangle.v1, triangle.v2, space.origin, side))
-        given_t = side == (along_in_object ? 1 : -1) ? max(given_t, LEAST_NORMAL) : min(given_t, double(0.0f));
+    if (sign_of_t == SIGN_UNASKED && may_begin_in_plane_double(a, b, c, z * det))
+    {
+        sign_of_t = asked_sign(along_in_object);
+        return false;
+    }
+    if (sign_of_t == SIGN_POSITIVE) given_t = max(given_t, LEAST_NORMAL);
     double t_min = max(double(options.given.t_min), double(0.0f));
     if (given_t <= t_min || given_t >= double(options.given.t_max)) return false;
     PRECISE double t = given_t - options.advance;
@@ -159,7 +160,7 @@ FUNC bool intersect_in_world(BvhTriangle triangle, RaySpace space, uint instance
 
 // The same for a triangle in object space that float32 may refuse. `error`: see CertifiedRay.
 FUNC bool intersect_certified(BvhTriangle triangle, RaySpace space, float error, uint instance_index,
-                              TraceOptions options, INOUT(TriangleHit) hit)
+                              TraceOptions options, INOUT(uint) sign_of_t, INOUT(TriangleHit) hit)
 {
     vec3 a = sheared(triangle.v0, space);
     vec3 b = sheared(triangle.v1, space);
@@ -168,6 +169,6 @@ FUNC bool intersect_certified(BvhTriangle triangle, RaySpace space, float error,
     int side_b = certain_side(c, a, error);
     int side_c = certain_side(a, b, error);
     if (side_a * side_b < 0 || side_b * side_c < 0 || side_c * side_a < 0) return false;
-    return intersect_in_world(triangle, space, instance_index, options, hit);
+    return intersect_in_world(triangle.primitive_index, instance_index, options, sign_of_t, hit);
 }
 #endif

@@ -20,7 +20,7 @@ const uint FEATURES_ALL = 2047u;
 
 // How a ray is tested against triangles.
 const uint LEVEL_FAST = 0u;       // Moeller-Trumbore: may lose rays at edges
-const uint LEVEL_WATERTIGHT = 1u; // exact edge signs: no leaks, a single hit at an edge
+const uint LEVEL_WATERTIGHT = 1u; // exact signs of edges and of t: no leaks, a single hit at an edge
 const uint LEVEL_REFINED = 2u;    // and float64 for t, u, v of the hit
 const uint LEVEL_CERTIFIED = 3u;  // float64 decides what is hit, and first
 

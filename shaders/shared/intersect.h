@@ -183,25 +183,23 @@ FUNC int lowest_exponent(float x)
     return field == 0u ? NONE : int(field) - 150 + int(findLSB((bits & 0x7fffffu) | 0x800000u));
 }
 
-// (x - from) / unit for two whole multiples of it.
+// (x - from) / unit for two whole multiples of it; some number below 2^31 where they are none.
 FUNC int whole_difference(float x, float from, float inverse_unit)
 {
     PRECISE float difference = x - from;
     float missing = sum_error(x, -from, difference);
-    return int(difference * inverse_unit) + int(missing * inverse_unit);
+    return int(within(difference * inverse_unit, 1073741824.0f)) + int(within(missing * inverse_unit, 1048576.0f));
 }
 
-// Adds a (b d - c e), each of them below 2^30, to a number of 96 bits.
-FUNC uvec3 plus_product(uvec3 sum, int a, int b, int d, int c, int e)
+// Adds a b c, each of them below 2^30, to a number of 96 bits.
+FUNC uvec3 plus_product(uvec3 sum, int a, int b, int c)
 {
-    uvec2 minor = add64(signed_product(b, d), negate64(signed_product(c, e)));
-    bool is_negative = (a < 0) != (minor.y >> 31u != 0u);
-    if (minor.y >> 31u != 0u) minor = negate64(minor);
-    uvec2 low = multiply64(uint(abs(a)), minor.x);
-    uvec2 high = add64(multiply64(uint(abs(a)), minor.y), uvec2(low.y, 0u));
+    uvec2 of_two = multiply64(uint(abs(b)), uint(abs(c)));
+    uvec2 low = multiply64(uint(abs(a)), of_two.x);
+    uvec2 high = add64(multiply64(uint(abs(a)), of_two.y), uvec2(low.y, 0u));
     // In two's complement ~x + 1.
-    uint flips = is_negative ? 0xffffffffu : 0u;
-    uvec2 first = add64(uvec2(low.x ^ flips, 0u), uvec2(is_negative ? 1u : 0u, 0u));
+    uint flips = (a ^ b ^ c) < 0 ? 0xffffffffu : 0u;
+    uvec2 first = add64(uvec2(low.x ^ flips, 0u), uvec2(flips & 1u, 0u));
     first = add64(first, uvec2(sum.x, 0u));
     uvec2 second = add64(uvec2(high.x ^ flips, 0u), uvec2(sum.y, 0u));
     second = add64(second, uvec2(first.y, 0u));
@@ -224,23 +222,25 @@ FUNC bool plane_side(vec3 v0, vec3 v1, vec3 v2, vec3 from, INOUT(int) side)
         float x0 = uintBitsToFloat(a.x);
         float x1 = uintBitsToFloat(b.x);
         float x2 = uintBitsToFloat(c.x);
-        int exponent = min(min(lowest_exponent(x0), lowest_exponent(x1)),
-                           min(lowest_exponent(x2), lowest_exponent(from.x)));
+        float x = axis == 0u ? from.x : (axis == 1u ? from.y : from.z);
+        int exponent = min(min(lowest_exponent(x0), lowest_exponent(x1)), min(lowest_exponent(x2), lowest_exponent(x)));
         float inverse_unit = uintBitsToFloat(uint(127 - min(max(exponent, -126), 126)) << 23u);
-        float size = max(abs(x0 - from.x), max(abs(x1 - from.x), abs(x2 - from.x)));
+        float size = max(abs(x0 - x), max(abs(x1 - x), abs(x2 - x)));
         is_whole = is_whole && exponent >= -126 && size * inverse_unit < MOST;
-        a = uvec3(a.y, a.z, uint(whole_difference(x0, from.x, inverse_unit)));
-        b = uvec3(b.y, b.z, uint(whole_difference(x1, from.x, inverse_unit)));
-        c = uvec3(c.y, c.z, uint(whole_difference(x2, from.x, inverse_unit)));
-        from = vec3(from.y, from.z, from.x);
+        a = uvec3(a.y, a.z, uint(whole_difference(x0, x, inverse_unit)));
+        b = uvec3(b.y, b.z, uint(whole_difference(x1, x, inverse_unit)));
+        c = uvec3(c.y, c.z, uint(whole_difference(x2, x, inverse_unit)));
     }
+    // The loop adds the three even products, exchanges b and c, and subtracts the three odd ones.
     uvec3 sum = uvec3(0u);
-    DONT_UNROLL for (uint axis = 0u; axis < 3u; axis = axis + 1u)
+    DONT_UNROLL for (uint i = 0u; i < 6u; i = i + 1u)
     {
-        sum = plus_product(sum, int(a.x), int(b.y), int(c.z), int(b.z), int(c.y));
+        sum = plus_product(sum, i < 3u ? int(a.x) : -int(a.x), int(b.y), int(c.z));
         a = uvec3(a.y, a.z, a.x);
-        b = uvec3(b.y, b.z, b.x);
-        c = uvec3(c.y, c.z, c.x);
+        uvec3 next_b = uvec3(b.y, b.z, b.x);
+        uvec3 next_c = uvec3(c.y, c.z, c.x);
+        b = i == 2u ? next_c : next_b;
+        c = i == 2u ? next_b : next_c;
     }
     side = (sum.x | sum.y | sum.z) == 0u ? 0 : (sum.z >> 31u != 0u ? -1 : 1);
     return is_whole;
@@ -259,31 +259,63 @@ FUNC bool may_begin_in_plane(SeenTriangle seen)
     return is_around && abs(mean) <= ROUNDINGS * along * across * (across + along);
 }
 
-// crossing() of the ray and a triangle that its line meets, in whose plane it may begin, with the exact sign of t: 0
-// where it does.
-FUNC TriangleHit signed_crossing(SeenTriangle seen, vec3 v0, vec3 v1, vec3 v2, RaySpace space)
+// The sign of t where rounding may hide it, at all levels but fast. It is asked for in one visit of the triangle, told
+// between two, and used in the next: telling it needs many registers, which a visit holds for itself.
+const uint SIGN_UNASKED = 0u;       // nothing is asked; or told: the triangle is not ahead of the ray's origin
+const uint SIGN_ASKED_AGAINST = 1u; // asked; TriangleHit::along is false
+const uint SIGN_ASKED_ALONG = 2u;   // asked; it is true
+const uint SIGN_POSITIVE = 3u;      // told
+const uint SIGN_AS_ROUNDED = 4u;    // told: plane_side() cannot tell
+
+FUNC uint asked_sign(bool along) { return along ? SIGN_ASKED_ALONG : SIGN_ASKED_AGAINST; }
+FUNC bool is_sign_asked(uint sign_of_t) { return sign_of_t == SIGN_ASKED_ALONG || sign_of_t == SIGN_ASKED_AGAINST; }
+
+// Tells the sign that was asked for.
+FUNC uint told_sign(vec3 v0, vec3 v1, vec3 v2, vec3 origin, uint asked)
 {
-    const float LEAST_NORMAL = uintBitsToFloat(0x00800000u);
-    TriangleHit hit = crossing(seen.a, seen.b, seen.c, space.shear_z);
     int side = 0;
-    if (plane_side(v0, v1, v2, space.origin, side))
-        hit.t = side == (hit.along ? 1 : -1) ? max(hit.t, LEAST_NORMAL) : min(hit.t, 0.0f);
-    return hit;
+    if (!plane_side(v0, v1, v2, origin, side)) return SIGN_AS_ROUNDED;
+    return side == (asked == SIGN_ASKED_ALONG ? 1 : -1) ? SIGN_POSITIVE : SIGN_UNASKED;
 }
 
-// Whether the ray's line meets the triangle (v0, v1, v2), and where. No interval test. has_exact_sign: t has, which
-// costs registers; a constant.
-FUNC bool intersect_triangle(vec3 v0, vec3 v1, vec3 v2, RaySpace space, bool has_exact_sign, INOUT(TriangleHit) hit)
+// Gives t the sign that was told.
+FUNC float signed_t(float t, uint sign_of_t)
+{
+    const float LEAST_NORMAL = uintBitsToFloat(0x00800000u);
+    return sign_of_t == SIGN_POSITIVE ? max(t, LEAST_NORMAL) : t;
+}
+
+// Whether the ray's line meets the triangle (v0, v1, v2), and where. No interval test. False with sign_of_t asked: not
+// known yet, see told_sign().
+FUNC bool intersect_triangle(vec3 v0, vec3 v1, vec3 v2, RaySpace space, INOUT(uint) sign_of_t, INOUT(TriangleHit) hit)
 {
     SeenTriangle seen = seen_triangle(v0, v1, v2, space);
     bool is_met = is_around_ray(seen);
-    if (has_exact_sign && is_met && may_begin_in_plane(seen)) hit = signed_crossing(seen, v0, v1, v2, space);
-    else if (is_met) hit = crossing(seen.a, seen.b, seen.c, space.shear_z);
+    if (is_met)
+    {
+        bool asks = sign_of_t == SIGN_UNASKED && may_begin_in_plane(seen);
+        hit = crossing(seen.a, seen.b, seen.c, space.shear_z);
+        hit.t = signed_t(hit.t, sign_of_t);
+        if (asks) sign_of_t = asked_sign(hit.along);
+        is_met = !asks;
+    }
     return is_met;
 }
 
-// The same by Moeller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997: fewer operations, but each
-// triangle decides for itself about a ray through an edge, so that it may be lost or found twice.
+// The same, with the sign of t told at once: for hosts, which have registers enough. False where t is not positive by
+// what was told.
+FUNC bool intersect_triangle_signed(vec3 v0, vec3 v1, vec3 v2, RaySpace space, INOUT(TriangleHit) hit)
+{
+    uint sign_of_t = SIGN_UNASKED;
+    bool is_met = intersect_triangle(v0, v1, v2, space, sign_of_t, hit);
+    if (!is_sign_asked(sign_of_t)) return is_met;
+    sign_of_t = told_sign(v0, v1, v2, space.origin, sign_of_t);
+    return sign_of_t != SIGN_UNASKED && intersect_triangle(v0, v1, v2, space, sign_of_t, hit);
+}
+
+// The same as intersect_triangle() by Moeller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997:
+// fewer operations, but each triangle decides for itself about a ray through an edge, so that it may be lost or found
+// twice.
 FUNC bool intersect_triangle_fast(vec3 v0, vec3 v1, vec3 v2, RaySpace space, INOUT(TriangleHit) hit)
 {
     vec3 e1 = v1 - v0;

@@ -49,33 +49,27 @@ FUNC HitInterval hit_interval(SeenTriangle seen, float shear_z, float t_min, flo
 }
 
 // Whether intersect_triangle() finds a hit with t_min < t < t_max, the `ends`, 0 <= t_min, and then TriangleHit::along.
-// That t costs as much as the rest of the test; here it is computed only where the ends of the interval are within its
-// rounding error.
-FUNC bool triangle_occludes(vec3 v0, vec3 v1, vec3 v2, RaySpace space, bool has_exact_sign, vec2 ends,
+// False with sign_of_t asked: not known yet. That t costs as much as the rest of the test; here it is computed only
+// where rounding hides its sign or on which side of an end it is.
+FUNC bool triangle_occludes(vec3 v0, vec3 v1, vec3 v2, RaySpace space, vec2 ends, INOUT(uint) sign_of_t,
                             INOUT(bool) along)
 {
     float t_min = ends.x;
     float t_max = ends.y;
     SeenTriangle seen = seen_triangle(v0, v1, v2, space);
     bool is_met = is_around_ray(seen);
-    bool is_within = false;
+    bool is_hidden = is_met && may_begin_in_plane(seen);
+    HitInterval interval = hit_interval(seen, space.shear_z, t_min, t_max);
+    bool is_within = interval.is_after && interval.is_before;
     along = (seen.area_a + seen.area_b + seen.area_c > 0.0f) == (space.shear_z > 0.0f);
-    if (has_exact_sign && is_met && may_begin_in_plane(seen))
+    if (is_hidden || (is_met && !is_within && !interval.is_behind))
     {
-        TriangleHit hit = signed_crossing(seen, v0, v1, v2, space);
+        TriangleHit hit = crossing(seen.a, seen.b, seen.c, space.shear_z);
+        bool asks = is_hidden && sign_of_t == SIGN_UNASKED;
+        float t = signed_t(hit.t, sign_of_t);
         along = hit.along;
-        is_within = hit.t > t_min && hit.t < t_max;
-    }
-    else
-    {
-        HitInterval interval = hit_interval(seen, space.shear_z, t_min, t_max);
-        is_within = interval.is_after && interval.is_before;
-        if (is_met && !is_within && !interval.is_behind)
-        {
-            TriangleHit hit = crossing(seen.a, seen.b, seen.c, space.shear_z);
-            along = hit.along;
-            is_within = hit.t > t_min && hit.t < t_max;
-        }
+        if (asks) sign_of_t = asked_sign(hit.along);
+        is_within = !asks && t > t_min && t < t_max;
     }
     return is_met && is_within;
 }

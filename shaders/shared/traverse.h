@@ -183,11 +183,22 @@ FUNC Hit traverse(SwTlasHeader scene, Ray ray, TraceOptions options)
         }
         else if (!is_place)
         {
-            COUNT_STEPS(primitives, 1u);
+            COUNT_STEPS(primitives, search.sign_of_t == SIGN_UNASKED ? 1u : 0u);
             BvhTriangle leaf;
             if (binary) leaf = load_triangle(here.tree.triangles, here.at.item & ~LEAF_BIT);
             else leaf = primitive_of(record);
-            if (visit_leaf(leaf, here.inside, here.space, options, search) && options.query == QUERY_ANY) break;
+            if (options.level != LEVEL_FAST && is_sign_asked(search.sign_of_t))
+            {
+                search.sign_of_t = told_sign(leaf.v0, leaf.v1, leaf.v2, here.space.origin, search.sign_of_t);
+                descends = search.sign_of_t != SIGN_UNASKED; // to the same leaf
+            }
+            else
+            {
+                bool is_found = visit_leaf(leaf, here.inside, here.space, options, search);
+                if (is_found && options.query == QUERY_ANY) break;
+                descends = options.level != LEVEL_FAST && is_sign_asked(search.sign_of_t);
+                if (!descends) search.sign_of_t = SIGN_UNASKED;
+            }
         }
         else
         {

@@ -17,6 +17,7 @@ struct Search
     uint primitive_index; // NOTHING: no hit so far
     uint instance_index;
     bool along; // see TriangleHit
+    uint sign_of_t; // SIGN_*, of the triangle that is visited
 };
 
 FUNC Search begin_search(Ray ray)
@@ -30,6 +31,7 @@ FUNC Search begin_search(Ray ray)
     search.primitive_index = NOTHING;
     search.instance_index = 0u;
     search.along = false;
+    search.sign_of_t = SIGN_UNASKED;
     return search;
 }
 
@@ -65,19 +67,19 @@ FUNC bool intersect_box(BvhTriangle box, InInstance inside, RaySpace space, Sear
 }
 
 // Whether the ray's line meets the primitive on a side that counts, and where.
-FUNC bool intersect_leaf(BvhTriangle leaf, InInstance inside, RaySpace space, Search search, TraceOptions options,
-                         INOUT(TriangleHit) hit)
+FUNC bool intersect_leaf(BvhTriangle leaf, InInstance inside, RaySpace space, TraceOptions options,
+                         INOUT(Search) search, INOUT(TriangleHit) hit)
 {
     if ((options.features & FEATURE_BOXES) != 0u && inside.has_boxes)
         return intersect_box(leaf, inside, space, search, options, hit);
     bool is_met = false;
 #ifdef TWINRAY_REFINED
     if (options.level == LEVEL_CERTIFIED)
-        is_met = intersect_certified(leaf, space, inside.error, inside.index, options, hit);
+        is_met = intersect_certified(leaf, space, inside.error, inside.index, options, search.sign_of_t, hit);
     else
 #endif
     if (options.level == LEVEL_FAST) is_met = intersect_triangle_fast(leaf.v0, leaf.v1, leaf.v2, space, hit);
-    else is_met = intersect_triangle(leaf.v0, leaf.v1, leaf.v2, space, options.level >= LEVEL_REFINED, hit);
+    else is_met = intersect_triangle(leaf.v0, leaf.v1, leaf.v2, space, search.sign_of_t, hit);
     if ((options.features & FEATURE_CULLING) == 0u) return is_met;
     return is_met && (inside.culled == 0u || inside.culled != (hit.along ? CULL_BACK : CULL_FRONT));
 }
@@ -140,7 +142,7 @@ FUNC bool find_in_leaf(BvhTriangle leaf, InInstance inside, RaySpace space, Trac
     hit.v = 0.0f;
     hit.along = false;
     bool is_first = false;
-    if (intersect_leaf(leaf, inside, space, search, options, hit))
+    if (intersect_leaf(leaf, inside, space, options, search, hit))
     {
         is_first = comes_after(hit, search.t_min, options) &&
             comes_before(hit, inside.index, leaf.primitive_index, search, options);
@@ -167,8 +169,8 @@ FUNC bool find_in_leaf(BvhTriangle leaf, InInstance inside, RaySpace space, Trac
 FUNC bool leaf_occludes(BvhTriangle leaf, InInstance inside, RaySpace space, TraceOptions options, INOUT(Search) search)
 {
     bool along = false;
-    bool occludes = triangle_occludes(leaf.v0, leaf.v1, leaf.v2, space, options.level >= LEVEL_REFINED,
-                                      vec2(search.t_min, search.t_best), along);
+    bool occludes = triangle_occludes(leaf.v0, leaf.v1, leaf.v2, space, vec2(search.t_min, search.t_best),
+                                      search.sign_of_t, along);
     if ((options.features & FEATURE_CULLING) != 0u)
         occludes = occludes && (inside.culled == 0u || inside.culled != (along ? CULL_BACK : CULL_FRONT));
     if (occludes) search.primitive_index = leaf.primitive_index;

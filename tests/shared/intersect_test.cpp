@@ -19,8 +19,8 @@ int hits_of(const Mesh& mesh, vec3 origin, vec3 direction) {
     int count = 0;
     for (const uvec3& corners : mesh.triangles) {
         TriangleHit hit;
-        count += intersect_triangle(mesh.positions[corners.x], mesh.positions[corners.y], mesh.positions[corners.z],
-                                    space, true, hit);
+        count += intersect_triangle_signed(mesh.positions[corners.x], mesh.positions[corners.y],
+                                           mesh.positions[corners.z], space, hit);
     }
     return count;
 }
@@ -69,8 +69,8 @@ TEST(IntersectTriangle, ATinyEdgeOfNeedlesBelongsToExactlyOneOfThem) {
     for (const vec3 c : {vec3(-1, 1, 0), vec3(-0x1p-40f, 0x1p-40f, 0), vec3(-0x1p40f, 0x1p40f, 0)}) {
         const RaySpace space = make_ray_space(vec3(0, 0, 1), vec3(0, 0, -1), 0);
         TriangleHit hit;
-        const bool first = intersect_triangle(a, c, b, space, true, hit),
-                   second = intersect_triangle(b, a, d, space, true, hit);
+        const bool first = intersect_triangle_signed(a, c, b, space, hit),
+                   second = intersect_triangle_signed(b, a, d, space, hit);
         EXPECT_NE(first, second) << c.x;
     }
 }

@@ -139,14 +139,27 @@ TEST(PlaneSide, GivesTItsSign) {
         if (!crossing || crossing->incidence != exact::Incidence::interior) continue;
         const RaySpace space = make_ray_space(from, direction, 0);
         TriangleHit hit{};
-        if (!intersect_triangle(corners[0], corners[1], corners[2], space, true, hit)) continue;
-        const bool is_ahead = sgn(crossing->t) > 0;
+        uint sign_of_t = SIGN_UNASKED;
+        bool is_hit = intersect_triangle(corners[0], corners[1], corners[2], space, sign_of_t, hit);
+        const bool is_ahead = sgn(crossing->t) > 0, asks = is_sign_asked(sign_of_t);
+        if (!is_hit && !asks) continue;
+        if (asks) {
+            sign_of_t = told_sign(corners[0], corners[1], corners[2], from, sign_of_t);
+            is_hit = sign_of_t != SIGN_UNASKED &&
+                     intersect_triangle(corners[0], corners[1], corners[2], space, sign_of_t, hit);
+        }
         ++met;
         at_origin += sgn(crossing->t) == 0;
-        EXPECT_EQ(hit.t > 0, is_ahead) << i;
+        EXPECT_EQ(is_hit && hit.t > 0, is_ahead) << i;
         bool along = false;
-        EXPECT_EQ(triangle_occludes(corners[0], corners[1], corners[2], space, true, vec2(0, INFINITY), along),
-                  is_ahead);
+        uint of_occluder = SIGN_UNASKED;
+        const vec2 ends(0, INFINITY);
+        bool occludes = triangle_occludes(corners[0], corners[1], corners[2], space, ends, of_occluder, along);
+        EXPECT_EQ(is_sign_asked(of_occluder), asks) << i;
+        if (asks)
+            occludes = sign_of_t != SIGN_UNASKED &&
+                       triangle_occludes(corners[0], corners[1], corners[2], space, ends, sign_of_t, along);
+        EXPECT_EQ(occludes, is_ahead) << i;
         const SeenTriangle seen = seen_triangle(corners[0], corners[1], corners[2], space);
         rounded_wrong += (twinray::crossing(seen.a, seen.b, seen.c, space.shear_z).t > 0) != is_ahead;
     }

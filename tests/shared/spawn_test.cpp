@@ -119,7 +119,7 @@ bool meets(Rows to_object, TriangleVertices vertices, const Ray& ray) {
     const RaySpace space =
         make_ray_space(transform_point(to_object, ray.origin), transform_vector(to_object, ray.direction), 0);
     TriangleHit hit{};
-    return intersect_triangle(vertices.a, vertices.b, vertices.c, space, false, hit) && hit.t > ray.t_min &&
+    return intersect_triangle_signed(vertices.a, vertices.b, vertices.c, space, hit) && hit.t > ray.t_min &&
            hit.t < ray.t_max;
 }
 

@@ -100,7 +100,9 @@ std::vector<KernelRow> read_rows(const std::filesystem::path& file) {
         try {
             const nlohmann::json json = parse_json<nlohmann::json>(line);
             if (json.contains("driver")) drivers[json.at("device")] = json.at("driver");
-            if (json.contains("kernel")) rows.push_back(row_of(json, drivers));
+            if (!json.contains("kernel")) continue;
+            if (!drivers.contains(json.at("device"))) fail("no line before it names the driver of its device");
+            rows.push_back(row_of(json, drivers));
         } catch (const std::exception& failure) {
             fail("'", file.string(), "', line ", number, ": ", failure.what());
         }

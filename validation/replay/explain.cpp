@@ -101,10 +101,10 @@ void Explainer::print_test(std::ostream& out, exact::TriangleId triangle) const 
         out << "; exactly " << truth.get_d() << " (" << sign_of(sgn(truth)) << ")\n";
     }
     TriangleHit hit{};
-    if (intersect_triangle(leaf->v0, leaf->v1, leaf->v2, space, false, hit))
+    if (intersect_triangle_signed(leaf->v0, leaf->v1, leaf->v2, space, hit))
         out << "    float32: hit at t = " << hit.t << ", u = " << hit.u << ", v = " << hit.v << '\n';
     else
-        out << "    float32: the ray passes\n";
+        out << "    float32: the ray passes, or begins in the triangle's plane or behind it\n";
     if (const auto crossing = exact::crossing(line, active->vertices64())) {
         const char* where[] = {"inside", "on an edge", "at a vertex"};
         out << "    exactly: hit at t = " << exact::rounded(crossing->t) << ", "

@@ -212,8 +212,6 @@ void from_the_plane(CaseRun& run) {
                 outcome.only_measured = "Vulkan demands no exact sign of t";
             else if (!is_robust(traced.configuration))
                 outcome.control = "fast";
-            else if (traced.configuration.level == Level::watertight)
-                outcome.only_measured = "t of watertight is rounded, and its sign";
             run.expect(traced.configuration, outcome);
         }
 }

@@ -30,12 +30,6 @@ FUNC uvec2 multiply64(uint a, uint b) {
     return uvec2(low, high);
 }
 
-// The same of signed numbers, in two's complement.
-FUNC uvec2 signed_product(int a, int b) {
-    uvec2 product = multiply64(uint(abs(a)), uint(abs(b)));
-    return (a < 0) != (b < 0) ? negate64(product) : product;
-}
-
 // Whether a < b, both without a sign.
 FUNC bool less64(uvec2 a, uvec2 b) { return a.y < b.y || (a.y == b.y && a.x < b.x); }
 #endif

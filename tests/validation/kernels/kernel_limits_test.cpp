@@ -105,6 +105,8 @@ TEST(KernelLimits, ADamagedFileIsNamedWithTheLine) {
         EXPECT_TRUE(contains(error.what(), file.path.string() + "', line 2")) << error.what();
     }
     EXPECT_THROW(read_rows("/nowhere/limits.json"), Error);
+    file.write(to_json(row()).dump() + '\n');
+    EXPECT_THROW(read_rows(file.path), Error) << "no line says which driver";
 }
 
 TEST(KernelLimits, TablesLeaveEmptyWhatIsNotTold) {
