@@ -122,10 +122,16 @@ BuildBytes HwBackend::scene_bytes(std::size_t count, std::size_t capacity) const
     return tlas_builder_.bytes(count, capacity);
 }
 
-bool HwBackend::can_compact(const BuiltGeometry& built, SyncPoint done) const {
+bool HwBackend::has_compaction(const BuiltGeometry& built) const {
+    return HwBuiltGeometry::of(&built)->compacted != nullptr;
+}
+
+AccelBackend::Compaction HwBackend::compaction_of(const BuiltGeometry& built, SyncPoint done) const {
     const Blas& blas = *HwBuiltGeometry::of(&built);
-    const auto bytes = blas.compacted ? blas.compacted->of(blas.compacted_index, done) : std::nullopt;
-    return bytes && *bytes < blas.structure.bytes();
+    if (!blas.compacted) return Compaction::none;
+    const auto bytes = blas.compacted->of(blas.compacted_index, done);
+    if (!bytes) return Compaction::untold;
+    return *bytes < blas.structure.bytes() ? Compaction::possible : Compaction::none;
 }
 
 HwBackend::Built HwBackend::compact_geometries(Commands& commands, std::span<const GeometryInput> inputs) {
@@ -158,6 +164,11 @@ std::unique_ptr<AccelBackend::BuiltTlas> HwBackend::build_tlas(Commands& command
     tlas_builder_.record_build(commands, level->tlas, {input.records, input.count, input.bound, input.cost},
                                input.will_move);
     return made;
+}
+
+void HwBackend::measure_tlas(Commands& commands, const TlasInput& input, const BuiltTlas& current) const {
+    tlas_builder_.record_measure(commands, static_cast<const HwTopLevel&>(current).tlas,
+                                 {input.records, input.count, input.bound, input.cost});
 }
 
 void HwBackend::refit_tlas(Commands& commands, const TlasInput& input, const BuiltTlas& current) {

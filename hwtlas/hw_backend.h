@@ -29,11 +29,13 @@ class HwBackend final : public AccelBackend {
     Built refit_geometries(Commands& commands, std::span<const GeometryInput> inputs) override;
     BuildBytes geometry_bytes(std::span<const GeometrySize> geometries) const override;
     BuildBytes scene_bytes(std::size_t count, std::size_t capacity) const override;
-    bool can_compact(const BuiltGeometry& built, SyncPoint done) const override;
+    bool has_compaction(const BuiltGeometry& built) const override;
+    Compaction compaction_of(const BuiltGeometry& built, SyncPoint done) const override;
     Built compact_geometries(Commands& commands, std::span<const GeometryInput> inputs) override;
     std::unique_ptr<BuiltTlas> build_tlas(Commands& commands, const TlasInput& input,
                                           const BuiltTlas* current) override;
     void refit_tlas(Commands& commands, const TlasInput& input, const BuiltTlas& current) override;
+    void measure_tlas(Commands& commands, const TlasInput& input, const BuiltTlas& current) const override;
     std::unique_ptr<TraceProgram> create_program(const TraceProgramCode* code, uint features) const override;
 
     struct HwBuiltGeometry;

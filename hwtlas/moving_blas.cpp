@@ -13,7 +13,7 @@ namespace twinray {
 namespace {
 
 KernelDesc kernel(const char* name, std::span<const std::uint32_t> spirv) {
-    return {.name = name, .spirv = spirv, .group_size = WORLD_BOUND_GROUP};
+    return {.name = name, .spirv = spirv, .group_size = WORLD_BOUND_GROUP, .compiles_when_used = true};
 }
 
 // Three vertices of its own for each triangle.

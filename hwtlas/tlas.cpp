@@ -34,6 +34,11 @@ StructureBuild build_of(std::uint64_t driver_records, std::size_t count, bool ca
     return build;
 }
 
+HwGatherArgs gather_args(const Tlas& tlas, const TlasInput& input, Uints order) {
+    return {input.records, order, tlas.driver_records.ref<InstanceRecord>(), tlas.instances.ref<HwInstance>(), {},
+            input.count,   0};
+}
+
 }  // namespace
 
 TlasBuilder::TlasBuilder(Context& context, bool reorder)
@@ -41,10 +46,14 @@ TlasBuilder::TlasBuilder(Context& context, bool reorder)
       reorder_(reorder),
       sort_(context),
       areas_(context),
-      codes_(context,
-             {.name = "hwtlas_instance_codes", .spirv = hwtlas_instance_codes_spirv, .group_size = group_size}),
-      gather_(context,
-              {.name = "hwtlas_gather_instances", .spirv = hwtlas_gather_instances_spirv, .group_size = group_size}) {}
+      codes_(context, {.name = "hwtlas_instance_codes",
+                       .spirv = hwtlas_instance_codes_spirv,
+                       .group_size = group_size,
+                       .compiles_when_used = true}),
+      gather_(context, {.name = "hwtlas_gather_instances",
+                        .spirv = hwtlas_gather_instances_spirv,
+                        .group_size = group_size,
+                        .compiles_when_used = true}) {}
 
 // Room for either kind of build, so that the first move does not change the structure's address.
 TlasBuilder::Sizes TlasBuilder::sizes(std::size_t capacity) const {
@@ -96,26 +105,33 @@ Uints TlasBuilder::record_order(Commands& commands, const TlasInput& input) cons
     return sorted.values;
 }
 
-void TlasBuilder::record_gather(Commands& commands, const Tlas& tlas, const TlasInput& input, Uints order,
+// The boxes, too, where they are measured.
+void TlasBuilder::record_gather(Commands& commands, const HwGatherArgs& args, const TlasInput& input,
                                 bool is_build) const {
-    std::vector<AreaWork> areas = {{input.count, {input.bound.address}, input.cost, is_build}};
+    std::vector<AreaWork> areas;
+    if (input.cost.result.address) areas.push_back({input.count, {input.bound.address}, input.cost, is_build});
     SurfaceArea::place(commands, areas);
-    gather_.dispatch(commands,
-                     {input.records, order, tlas.driver_records.ref<InstanceRecord>(), tlas.instances.ref<HwInstance>(),
-                      areas[0].items, input.count, 0},
-                     input.count);
+    HwGatherArgs with_areas = args;
+    if (!areas.empty()) with_areas.areas = areas[0].items;
+    gather_.dispatch(commands, with_areas, input.count);
     areas_.record(commands, std::move(areas));
 }
 
+void TlasBuilder::record_measure(Commands& commands, const Tlas& tlas, const TlasInput& input) const {
+    HwGatherArgs args = gather_args(tlas, input, {});
+    args.driver_records = {};
+    record_gather(commands, args, input, true);
+}
+
 void TlasBuilder::record_build(Commands& commands, const Tlas& tlas, const TlasInput& input, bool can_update) const {
-    record_gather(commands, tlas, input, record_order(commands, input), true);
+    record_gather(commands, gather_args(tlas, input, record_order(commands, input)), input, true);
     const StructureWork work{build_of(tlas.driver_records.address(), input.count, can_update), BuildMode::build,
                              &tlas.structure};
     record_builds(commands, "hwtlas_build_tlas", std::span(&work, 1), tlas.scratch.address());
 }
 
 void TlasBuilder::record_update(Commands& commands, const Tlas& tlas, const TlasInput& input) const {
-    record_gather(commands, tlas, input, {}, false);
+    record_gather(commands, gather_args(tlas, input, {}), input, false);
     const StructureWork work{build_of(tlas.driver_records.address(), input.count, true), BuildMode::update,
                              &tlas.structure};
     record_builds(commands, "hwtlas_update_tlas", std::span(&work, 1), tlas.scratch.address());

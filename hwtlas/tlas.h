@@ -41,6 +41,8 @@ class TlasBuilder {
     Tlas make(Commands& commands, std::size_t capacity, const AccelHeader& header) const;
     // can_update: record_update() may follow.
     void record_build(Commands& commands, const Tlas& tlas, const TlasInput& input, bool can_update) const;
+    // What sah() tells of it as it was built, and nothing else.
+    void record_measure(Commands& commands, const Tlas& tlas, const TlasInput& input) const;
     // The instances only moved since the last build.
     void record_update(Commands& commands, const Tlas& tlas, const TlasInput& input) const;
 
@@ -50,7 +52,7 @@ class TlasBuilder {
     };
     Sizes sizes(std::size_t capacity) const;
     Uints record_order(Commands& commands, const TlasInput& input) const;
-    void record_gather(Commands& commands, const Tlas& tlas, const TlasInput& input, Uints order, bool is_build) const;
+    void record_gather(Commands& commands, const HwGatherArgs& args, const TlasInput& input, bool is_build) const;
 
     Context& context_;
     bool reorder_;

@@ -16,6 +16,7 @@
 #include "swtlas_leaves_instances.spv.h"
 #include "swtlas_leaves_triangles.spv.h"
 #include "swtlas_link_nodes.spv.h"
+#include "swtlas_lone_leaves.spv.h"
 #include "swtlas_morton.spv.h"
 #include "swtlas_node_areas.spv.h"
 #include "swtlas_ploc.spv.h"
@@ -27,10 +28,8 @@
 namespace twinray {
 namespace {
 
-// `is_needed`: else it is compiled only should it be used after all.
-KernelDesc stage(const char* name, std::span<const std::uint32_t> spirv, bool is_needed,
-                 uint group_size = BUILD_GROUP) {
-    return {.name = name, .spirv = spirv, .group_size = group_size, .compiles_when_used = !is_needed};
+KernelDesc stage(const char* name, std::span<const std::uint32_t> spirv, uint group_size = BUILD_GROUP) {
+    return {.name = name, .spirv = spirv, .group_size = group_size, .compiles_when_used = true};
 }
 
 KernelDesc specialized(KernelDesc desc, uint value) {
@@ -54,50 +53,30 @@ KernelDesc of_width(KernelDesc desc, Layout layout) {
 }
 
 KernelDesc leaves_stage(const Context& context, const char* name, std::span<const std::uint32_t> spirv) {
-    return grouped(context, stage(name, spirv, true), LEAVES_GROUP);
+    return grouped(context, stage(name, spirv), LEAVES_GROUP);
 }
 
-KernelDesc morton_stage(const Context& context) {
-    return grouped(context, stage("swtlas_morton", swtlas_morton_spirv, true), BUILD_GROUP);
+KernelDesc build_stage(const Context& context, const char* name, std::span<const std::uint32_t> spirv) {
+    return grouped(context, stage(name, spirv), BUILD_GROUP);
 }
 
 KernelDesc hierarchy_stage(const Context& context, BuildQuality quality) {
-    const KernelDesc desc =
-        grouped(context, stage("swtlas_hierarchy", swtlas_hierarchy_spirv, quality != BuildQuality::ploc), BUILD_GROUP);
-    return specialized(desc, quality == BuildQuality::high ? HIERARCHY_HIGH : HIERARCHY_FAST);
+    return specialized(build_stage(context, "swtlas_hierarchy", swtlas_hierarchy_spirv),
+                       quality == BuildQuality::high ? HIERARCHY_HIGH : HIERARCHY_FAST);
 }
 
-KernelDesc ploc_stage(const Context& context, BuildQuality quality) {
-    const KernelDesc desc = stage("swtlas_ploc", swtlas_ploc_spirv, quality == BuildQuality::ploc);
-    return grouped(context, desc, PLOC_GROUP, PLOC_GROUP);
+KernelDesc collapse_stage(uint step, Layout layout) {
+    return of_width(specialized(stage("swtlas_collapse", swtlas_collapse_spirv, COLLAPSE_GROUP), step), layout);
 }
 
-KernelDesc encode_stage(const Context& context, bool is_needed) {
-    return grouped(context, stage("swtlas_encode_records", swtlas_encode_records_spirv, is_needed), BUILD_GROUP);
-}
-
-KernelDesc subtrees_stage(const Context& context, Layout layout, bool is_needed) {
-    const KernelDesc desc = stage("swtlas_collapse_subtrees", swtlas_collapse_subtrees_spirv, is_needed);
-    return of_width(grouped(context, desc, COLLAPSE_GROUP), layout);
-}
-
-KernelDesc collapse_stage(uint step, Layout layout, bool is_needed) {
-    return of_width(specialized(stage("swtlas_collapse", swtlas_collapse_spirv, is_needed, COLLAPSE_GROUP), step),
+KernelDesc subtrees_stage(const Context& context, Layout layout) {
+    return of_width(grouped(context, stage("swtlas_collapse_subtrees", swtlas_collapse_subtrees_spirv), COLLAPSE_GROUP),
                     layout);
 }
 
 }  // namespace
 
-// Which kernels an accelerator is made for.
-struct Builder::Needs {
-    explicit Needs(const AccelOptions& options)
-        : records(has_records(options.layout)), binary(!records), moves(options.can_move) {}
-    bool records, binary, moves;
-};
-
-Builder::Builder(Context& context, const AccelOptions& options) : Builder(context, options, Needs(options)) {}
-
-Builder::Builder(Context& context, const AccelOptions& options, const Needs& needs)
+Builder::Builder(Context& context, const AccelOptions& options)
     : layout_(options.layout),
       quality_(options.build_quality),
       leaves_per_invocation_(context.state().tuning().leaves_per_invocation),
@@ -105,34 +84,26 @@ Builder::Builder(Context& context, const AccelOptions& options, const Needs& nee
       areas_(context),
       leaves_triangles_(context, leaves_stage(context, "swtlas_leaves_triangles", swtlas_leaves_triangles_spirv)),
       leaves_instances_(context, leaves_stage(context, "swtlas_leaves_instances", swtlas_leaves_instances_spirv)),
-      morton_(context, morton_stage(context)),
-      node_areas_(context,
-                  grouped(context, stage("swtlas_node_areas", swtlas_node_areas_spirv, needs.moves), AREA_GROUP)),
-      duplicate_codes_(
-          context, grouped(context, stage("swtlas_duplicate_codes", swtlas_duplicate_codes_spirv, true), BUILD_GROUP)),
-      low_codes_(context, stage("swtlas_low_codes", swtlas_low_codes_spirv, true)),
-      gather_keys_(context, stage("swtlas_gather_keys", swtlas_gather_keys_spirv, true)),
+      morton_(context, build_stage(context, "swtlas_morton", swtlas_morton_spirv)),
+      node_areas_(context, grouped(context, stage("swtlas_node_areas", swtlas_node_areas_spirv), AREA_GROUP)),
+      duplicate_codes_(context, build_stage(context, "swtlas_duplicate_codes", swtlas_duplicate_codes_spirv)),
+      low_codes_(context, stage("swtlas_low_codes", swtlas_low_codes_spirv)),
+      gather_keys_(context, stage("swtlas_gather_keys", swtlas_gather_keys_spirv)),
       hierarchy_(context, hierarchy_stage(context, options.build_quality)),
-      ploc_(context, ploc_stage(context, options.build_quality)),
-      encode_triangles_(context, stage("swtlas_encode_triangles", swtlas_encode_triangles_spirv, needs.binary)),
-      collapse_roots_(context, collapse_stage(COLLAPSE_ROOTS, layout_, needs.records)),
-      collapse_level_(context, collapse_stage(COLLAPSE_LEVEL, layout_, needs.records)),
-      collapse_subtrees_(context, subtrees_stage(context, layout_, needs.records)),
-      encode_records_(context, encode_stage(context, needs.records)),
-      record_parents_(
-          context,
-          of_width(stage("swtlas_record_parents", swtlas_record_parents_spirv, needs.records && needs.moves), layout_)),
-      refit_records_(
-          context,
-          of_width(
-              grouped(context, stage("swtlas_refit_records", swtlas_refit_records_spirv, needs.records && needs.moves),
-                      BUILD_GROUP),
-              layout_)),
-      link_nodes_(context, stage("swtlas_link_nodes", swtlas_link_nodes_spirv, needs.binary)),
-      leaf_edges_(context, stage("swtlas_leaf_edges", swtlas_leaf_edges_spirv, needs.binary && needs.moves)),
-      refit_(context, stage("swtlas_refit", swtlas_refit_spirv, needs.binary && needs.moves)),
-      refit_triangles_(context,
-                       stage("swtlas_refit_triangles", swtlas_refit_triangles_spirv, needs.binary && needs.moves)) {}
+      ploc_(context, grouped(context, stage("swtlas_ploc", swtlas_ploc_spirv), PLOC_GROUP, PLOC_GROUP)),
+      encode_triangles_(context, stage("swtlas_encode_triangles", swtlas_encode_triangles_spirv)),
+      collapse_roots_(context, collapse_stage(COLLAPSE_ROOTS, layout_)),
+      collapse_level_(context, collapse_stage(COLLAPSE_LEVEL, layout_)),
+      collapse_subtrees_(context, subtrees_stage(context, layout_)),
+      encode_records_(context, build_stage(context, "swtlas_encode_records", swtlas_encode_records_spirv)),
+      record_parents_(context, of_width(stage("swtlas_record_parents", swtlas_record_parents_spirv), layout_)),
+      refit_records_(context,
+                     of_width(build_stage(context, "swtlas_refit_records", swtlas_refit_records_spirv), layout_)),
+      lone_leaves_(context, of_width(stage("swtlas_lone_leaves", swtlas_lone_leaves_spirv, 64), layout_)),
+      link_nodes_(context, stage("swtlas_link_nodes", swtlas_link_nodes_spirv)),
+      leaf_edges_(context, stage("swtlas_leaf_edges", swtlas_leaf_edges_spirv)),
+      refit_(context, stage("swtlas_refit", swtlas_refit_spirv)),
+      refit_triangles_(context, stage("swtlas_refit_triangles", swtlas_refit_triangles_spirv)) {}
 
 Builder::Batch Builder::begin(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,
                               const Buffer& scratch) const {
@@ -239,6 +210,7 @@ void Builder::record_60_bit_order(Commands& commands, const BuildPlan& plan, con
 
 // From leaves in the order of their codes to a tree as its layout has it.
 void Builder::record_tree(Commands& commands, const BuildPlan& plan, const Batch& batch) const {
+    if (plan.has_lone_leaves) return lone_leaves_.dispatch(commands, batch.args, plan.leaf_count);
     const BuildArgs args = batch.sorted(record_order(commands, plan, batch));
     const std::uint64_t leaves = std::uint64_t{args.chunk_count} * BUILD_GROUP;
     if (quality_ == BuildQuality::ploc)

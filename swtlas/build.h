@@ -12,11 +12,13 @@ namespace twinray {
 //     leaves -> morton -> sort by code (-> sort by tree) (-> sort again, by 60-bit codes) -> hierarchy or ploc
 //     -> encode triangles, or -> collapse -> encode records
 //
+// Trees of one leaf each are whole after their leaves and one stage more.
+//
 // Each stage is one kernel over all trees of the batch; what it computes has a CPU reference of the same name in
 // validation/cpu_reference/reference.h.
 class Builder {
   public:
-    // Compiles what accelerators with these options use.
+    // Kernels are compiled by the first build or refit that records them.
     Builder(Context& context, const AccelOptions& options);
 
     // trees[i] has leaf_counts[i] triangles; its Bvh must describe an empty tree, and names its node array if it keeps
@@ -47,8 +49,6 @@ class Builder {
     void record_costs(Commands& commands, std::span<const Measured> trees, bool is_build) const;
 
   private:
-    struct Needs;
-    Builder(Context& context, const AccelOptions& options, const Needs& needs);
     struct Batch;
     Batch begin(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,
                 const Buffer& scratch) const;
@@ -79,7 +79,7 @@ class Builder {
     Kernel<CollapseArgs> collapse_roots_, collapse_level_, collapse_subtrees_;
     Kernel<BuildArgs> encode_records_;
     Kernel<RefitArgs> record_parents_, refit_records_;
-    Kernel<BuildArgs> link_nodes_;
+    Kernel<BuildArgs> lone_leaves_, link_nodes_;
     Kernel<RefitArgs> leaf_edges_, refit_, refit_triangles_;
 };
 

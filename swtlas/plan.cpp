@@ -96,6 +96,7 @@ BuildPlan plan_build(std::span<const uint> leaf_counts, Layout layout, const Ker
         if (total >= NOTHING) fail("build: ", total, " primitives in one sync; at most ", NOTHING - 1, " fit");
     }
     plan.leaf_count = static_cast<uint>(total);
+    plan.has_lone_leaves = std::ranges::all_of(leaf_counts, [](uint count) { return count == 1; });
     if (leaf_counts.size() > 1) plan.tree_bits = static_cast<uint>(std::bit_width(leaf_counts.size() - 1));
     plan.subtree_leaves = tuning.subtree_leaves;
     if (!leaf_counts.empty())

@@ -32,6 +32,7 @@ struct BuildPlan {
     std::vector<uint> first;        // by tree: its first leaf in the batch
     std::vector<LeafChunk> chunks;  // of leaves of one tree, a group each
     uint leaf_count = 0;            // of the batch
+    bool has_lone_leaves = false;   // each tree has one
     uint tree_bits = 0;             // bits of the largest tree index; 0 = one tree, no sort by tree
     uint collapse_levels = 0;       // below the roots that are collapsed one by one; the rest goes by subtrees
     uint subtree_leaves = 0;        // of a subtree that a group collapses whole, at most, while there are levels left

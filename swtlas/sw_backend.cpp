@@ -193,8 +193,7 @@ std::unique_ptr<AccelBackend::BuiltTlas> SwBackend::build_tlas(Commands& command
     builder_.record_instances(commands,
                               plan_build(std::span(&input.count, 1), options().layout, context().state().tuning()),
                               {scene->tree(input.count), input.records, scene->instances()});
-    const Builder::Measured measured{scene->bvh(), scene->records(), input.count, input.cost};
-    builder_.record_costs(commands, std::span(&measured, 1), true);
+    record_costs(commands, input, *scene, true);
     return made;
 }
 
@@ -223,8 +222,18 @@ void SwBackend::refit_tlas(Commands& commands, const TlasInput& input, const Bui
     builder_.record_refit(commands,
                           plan_build(std::span(&input.count, 1), options().layout, context().state().tuning()),
                           {scene.tree(input.count), input.records, scene.instances()});
+    record_costs(commands, input, scene, false);
+}
+
+void SwBackend::measure_tlas(Commands& commands, const TlasInput& input, const BuiltTlas& current) const {
+    record_costs(commands, input, static_cast<const SwBuiltTlas&>(current), true);
+}
+
+void SwBackend::record_costs(Commands& commands, const TlasInput& input, const SwBuiltTlas& scene,
+                             bool is_build) const {
+    if (!input.cost.result.address) return;
     const Builder::Measured measured{scene.bvh(), scene.records(), input.count, input.cost};
-    builder_.record_costs(commands, std::span(&measured, 1), false);
+    builder_.record_costs(commands, std::span(&measured, 1), is_build);
 }
 
 std::unique_ptr<TraceProgram> SwBackend::create_program(const TraceProgramCode* code, uint features) const {

@@ -48,6 +48,8 @@ class SwBackend final : public AccelBackend {
     std::unique_ptr<BuiltTlas> build_tlas(Commands& commands, const TlasInput& input,
                                           const BuiltTlas* current) override;
     void refit_tlas(Commands& commands, const TlasInput& input, const BuiltTlas& current) override;
+    void measure_tlas(Commands& commands, const TlasInput& input, const BuiltTlas& current) const override;
+    void record_costs(Commands& commands, const TlasInput& input, const SwBuiltTlas& scene, bool is_build) const;
     float unit_of(std::span<const vec3> positions) const override { return software_unit(positions); }
     std::unique_ptr<TraceProgram> create_program(const TraceProgramCode* code, uint features) const override;
 

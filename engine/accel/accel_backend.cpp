@@ -104,10 +104,26 @@ AccelHandle AccelBackend::place(std::shared_ptr<HeldGeometry> held, std::span<co
     for (std::size_t i = 0; i < transforms.size(); ++i)
         pushed.instances.records.push_back(
             checked_record(pushed, i, transforms[i], options.empty() ? InstanceOptions{} : options[i]));
+    return add(std::move(pushed));
+}
+
+AccelHandle AccelBackend::add(PushedGeometry&& pushed) {
     const AccelHandle handle{next_handle()};
+    instance_count_ += pushed.instances.records.size();
+    ++pushed.held->handles;
+    edit(pushed.held, Dirty::structure);
     pushed_.emplace(handle.id, std::move(pushed));
-    mark(Dirty::structure);
     return handle;
+}
+
+void AccelBackend::edit(const std::shared_ptr<HeldGeometry>& held, Dirty what) {
+    if (!std::exchange(held->is_listed, true)) edited_.push_back(held);
+    mark(what);
+}
+
+void AccelBackend::edit(AccelHandle handle, Dirty what) {
+    edited_instances_.insert(handle.id);
+    mark(what);
 }
 
 AccelHandle AccelBackend::push_instances_of(AccelHandle handle, std::span<const Transform> transforms,
@@ -139,15 +155,17 @@ AccelHandle AccelBackend::push_built(Geometry&& geometry, Buffer&& block, std::u
         pushed.instances.records.push_back(make_instance_record(transform_of(record), options_of(record)));
         pushed.instances.records.back().geometry = pushed.held->block.address();
     }
-    const AccelHandle handle{next_handle()};
-    pushed_.emplace(handle.id, std::move(pushed));
-    mark(Dirty::structure);
-    return handle;
+    return add(std::move(pushed));
 }
 
 bool AccelBackend::erase(AccelHandle handle) {
     const auto found = pushed_.find(handle.id);
     if (found == pushed_.end()) return false;
+    instance_count_ -= found->second.instances.records.size();
+    edited_instances_.erase(handle.id);
+    HeldGeometry& held = *found->second.held;
+    if (--held.handles == 0 && held.is_listed)
+        std::erase_if(edited_, [&](const std::weak_ptr<HeldGeometry>& listed) { return listed.lock().get() == &held; });
     if (found->second.is_synced()) outdated_.push_back(std::move(found->second));
     pushed_.erase(found);
     mark(Dirty::structure);
@@ -174,7 +192,7 @@ void AccelBackend::update(AccelHandle handle, const DeviceMesh& mesh) {
     pushed.held->vertices.read_again();
     pushed.held->vertices.rebuilds = true;
     pushed.held->has_source = false;
-    mark(Dirty::moves);
+    edit(pushed.held, Dirty::moves);
 }
 
 void AccelBackend::mark_vertices_dirty(AccelHandle handle) {
@@ -184,7 +202,7 @@ void AccelBackend::mark_vertices_dirty(AccelHandle handle) {
         fail(name_, ": mark_vertices_dirty: mesh '", pushed.held->geometry.name,
              "' is not in place in memory of the caller's");
     pushed.held->vertices.read_again();
-    mark(Dirty::moves);
+    edit(pushed.held, Dirty::moves);
 }
 
 void AccelBackend::replace(AccelHandle handle, Geometry&& geometry, SurfaceSlice&& surface) {
@@ -202,7 +220,7 @@ void AccelBackend::replace(AccelHandle handle, Geometry&& geometry, SurfaceSlice
     if (held.geometry.device) held.vertices.read_again();
     held.surface = std::move(surface);
     held.has_source = false;
-    mark(Dirty::structure);
+    edit(pushed.held, Dirty::structure);
 }
 
 AccelBackend::PushedGeometry& AccelBackend::checked_for_vertices(AccelHandle handle, std::size_t count) {
@@ -231,7 +249,7 @@ void AccelBackend::update_vertices(AccelHandle handle, std::span<const vec3> pos
     pushed.held->vertices.device_wrote = false;
     pushed.held->vertices.edited =
         pushed.held->built || pushed.held->vertices.on_device() || pushed.held->vertices.gathers;
-    mark(Dirty::moves);
+    edit(pushed.held, Dirty::moves);
 }
 
 void AccelBackend::update_vertices(AccelHandle handle, Floats positions, std::size_t count) {
@@ -242,7 +260,7 @@ void AccelBackend::update_vertices(AccelHandle handle, Floats positions, std::si
     if (pushed.held->geometry.triangle_count() == 0) return;
     pushed.held->vertices.incoming = positions;
     pushed.held->vertices.edited = true;
-    mark(Dirty::moves);
+    edit(pushed.held, Dirty::moves);
 }
 
 void AccelBackend::PushedGeometry::add_to(SceneTraits& traits) const {
@@ -295,12 +313,6 @@ const AccelBackend::PushedGeometry& AccelBackend::live(AccelHandle handle, const
 
 AccelBackend::PushedGeometry& AccelBackend::live(AccelHandle handle, const char* action) {
     return const_cast<PushedGeometry&>(std::as_const(*this).live(handle, action));
-}
-
-std::size_t AccelBackend::n_instances() const {
-    std::size_t count = 0;
-    for (const auto& [id, pushed] : pushed_) count += pushed.instances.records.size();
-    return count;
 }
 
 std::size_t AccelBackend::n_instances(AccelHandle handle) const {

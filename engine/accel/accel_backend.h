@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -64,7 +65,7 @@ class AccelBackend {
     bool is_valid(AccelHandle handle) const { return pushed_.contains(handle.id); }
     InstanceState get_instance(AccelHandle handle, std::size_t index) const;
     std::vector<InstanceState> get_instances(AccelHandle handle) const;
-    std::size_t n_instances() const;
+    std::size_t n_instances() const { return instance_count_; }
     std::size_t n_instances(AccelHandle handle) const;  // 0 for a dead handle
     std::size_t n_geometries() const { return held_geometries().size(); }
     std::size_t n_primitives(AccelHandle handle) const;  // triangles or boxes of its geometry; 0 for a dead handle
@@ -80,7 +81,7 @@ class AccelBackend {
     Bounds world_bound() const;
     std::optional<Bounds> world_bound_if_ready() const;
     Ref<WorldBound> world_bound_on_device() const { return bound_.result(); }
-    std::optional<double> sah() const { return sah_of(scene_costs_, Wait::yes); }
+    std::optional<double> sah() const;
     std::optional<double> sah(AccelHandle handle) const;
     std::optional<double> sah_if_ready() const { return sah_of(scene_costs_, Wait::no); }
     std::optional<double> sah_if_ready(AccelHandle handle) const;
@@ -138,9 +139,12 @@ class AccelBackend {
         const BuiltGeometry* current;  // of an earlier sync and the same triangles, or null
         CostTarget cost;               // wants the cost measured that sah() tells, unless null
     };
-    // Whether what was built by `done` could be smaller; nothing may wait.
-    virtual bool can_compact(const BuiltGeometry&, SyncPoint) const { return false; }
-    // Moves each `current`, of which can_compact() is true, into less memory.
+    // Whether a build asked the GPU how small it can be.
+    virtual bool has_compaction(const BuiltGeometry&) const { return false; }
+    // Whether what was built by `done` can be smaller, or the GPU has not told yet; nothing may wait.
+    enum class Compaction : std::uint8_t { none, untold, possible };
+    virtual Compaction compaction_of(const BuiltGeometry&, SyncPoint) const { return Compaction::none; }
+    // Moves each `current`, which can be smaller, into less memory.
     virtual std::vector<std::unique_ptr<BuiltGeometry>> compact_geometries(Commands& commands,
                                                                            std::span<const GeometryInput> inputs);
     // The top level as the implementation built it.
@@ -157,7 +161,7 @@ class AccelBackend {
         uint count = 0;
         Ref<WorldBound> bound;
         bool will_move = false;   // refits may follow
-        CostTarget cost;          // as in GeometryInput
+        CostTarget cost = {};     // as in GeometryInput
         AccelHeader header = {};  // what the top level begins with
     };
     static constexpr std::uint64_t geometry_block_bytes = GEOMETRY_SOURCE_OFFSET + sizeof(GeometrySource);
@@ -176,6 +180,8 @@ class AccelBackend {
     virtual BuildBytes geometry_bytes(std::span<const GeometrySize> geometries) const = 0;
     // What building a top level for `count` instances takes, with room for `capacity`.
     virtual BuildBytes scene_bytes(std::size_t count, std::size_t capacity) const = 0;
+    // Measures `current` as it was built last.
+    virtual void measure_tlas(Commands& commands, const TlasInput& input, const BuiltTlas& current) const = 0;
     // Adapts `current`, built with will_move, to instances that only moved.
     virtual void refit_tlas(Commands& commands, const TlasInput& input, const BuiltTlas& current) = 0;
     // What an implementation built; throws Error on a dead handle or pending edits.
@@ -210,7 +216,9 @@ class AccelBackend {
         SyncPoint built_at = {};
         VertexSlice vertices = {};
         SurfaceSlice surface = {};
+        std::size_t handles = 0;  // alive
         bool has_source = false;  // the block's GeometrySource is that of `geometry`
+        bool is_listed = false;   // among edited_
     };
     // What one push placed.
     struct PushedGeometry {
@@ -230,8 +238,10 @@ class AccelBackend {
         std::optional<Buffer> refinement;
         SurfaceTables::Staged surfaces;
         std::vector<HeldGeometry*> building;
-        std::vector<std::unique_ptr<BuiltGeometry>> built;  // by `building`
-        std::vector<InstanceSlice*> slices;
+        std::vector<std::unique_ptr<BuiltGeometry>> built;      // by `building`
+        std::vector<std::shared_ptr<HeldGeometry>> geometries;  // that it looked at
+        std::vector<std::weak_ptr<HeldGeometry>> uncompacted;   // of which the GPU has not told yet
+        std::vector<InstanceSlice*> slices;                     // those that were edited, or all
         InstanceArray::Staged instances;
         std::unique_ptr<BuiltTlas> scene;
         bool is_scene_built = false;  // not refitted
@@ -252,10 +262,14 @@ class AccelBackend {
     enum class Dirty : std::uint8_t { no, compaction, moves, structure };  // moves: of instances and of vertices
 
     void mark(Dirty what) { dirty_ = std::max(dirty_, what); }
+    // The next sync looks at the geometry, and at the handle's instances.
+    void edit(const std::shared_ptr<HeldGeometry>& held, Dirty what);
+    void edit(AccelHandle handle, Dirty what);
     AccelHandle place(std::shared_ptr<HeldGeometry> held, std::span<const Transform> transforms,
                       std::span<const InstanceOptions> options);
     AccelHandle place(Geometry&& geometry, SurfaceSlice&& surface, std::span<const Transform> transforms,
                       std::span<const InstanceOptions> options);
+    AccelHandle add(PushedGeometry&& pushed);
     void replace(AccelHandle handle, Geometry&& geometry, SurfaceSlice&& surface);
     template <class Mesh>
     SurfaceSlice surface_of(const Mesh& mesh);
@@ -277,6 +291,8 @@ class AccelBackend {
     void check_count(AccelHandle handle, const PushedGeometry& pushed, std::size_t count) const;
     void check_index(AccelHandle handle, const PushedGeometry& pushed, std::size_t index, const char* action) const;
     Staged stage(Commands& commands);
+    void list_geometries(Staged& staged) const;
+    std::vector<InstanceSlice*> slices_to_stage();
     void stage_vertices(Commands& commands, Staged& staged);
     void stage_surfaces(Commands& commands, Staged& staged);
     // On the device, whether their vertices move or not.
@@ -290,7 +306,7 @@ class AccelBackend {
     enum class Wait : std::uint8_t { no, yes };
     std::optional<double> sah_of(const CostLog& costs, Wait wait) const;
     bool has_degraded(const CostLog& costs) const;
-    bool is_compactable(const HeldGeometry& held) const;
+    Compaction compaction_of(const HeldGeometry& held) const;
     std::vector<HeldGeometry*> held_geometries() const;  // each once, in push order
     AccelTraits accel_traits() const { return {is_software(), options_.layout, reorders()}; }
     SceneTraits scene_traits() const;
@@ -314,11 +330,17 @@ class AccelBackend {
     mutable std::unique_ptr<SurfaceKernels> surface_kernels_;  // made by the first host that asks for surfaces
     mutable InstanceOwners owners_;
     WorldBoundKernel bound_;
-    CostLog scene_costs_;
+    mutable CostLog scene_costs_;  // the first question measures a top level of which nothing has moved
     double rebuild_ratio_ = default_rebuild_ratio;
     std::uint64_t scratch_budget_ = 64 << 20;
     std::map<std::uint64_t, PushedGeometry> pushed_;  // in push order: ids only grow
+    std::size_t instance_count_ = 0;                  // of all of them
     Dirty dirty_ = Dirty::structure;
+    // What the next sync looks at; where it changes the structure, at all instances. A sync costs what they are.
+    std::vector<std::weak_ptr<HeldGeometry>> edited_;
+    std::set<std::uint64_t> edited_instances_;  // handles
+    // Built, and perhaps smaller once the GPU tells.
+    std::vector<std::weak_ptr<HeldGeometry>> uncompacted_;
     bool has_moved_ = false;  // something has moved after a build, so that builds allow refits
     std::uint64_t revision_ = 0;
     std::uint64_t edit_count_ = 0;

@@ -62,7 +62,9 @@ void InstanceSlice::append(std::span<const InstanceRecord> more) {
 
 InstanceArray::InstanceArray(Context& context)
     : context_(context),
-      copy_transforms_(context, {.name = "engine_copy_transforms", .spirv = engine_copy_transforms_spirv}) {}
+      copy_transforms_(
+          context,
+          {.name = "engine_copy_transforms", .spirv = engine_copy_transforms_spirv, .compiles_when_used = true}) {}
 
 bool InstanceArray::must_replace(const Staged& staged, std::span<InstanceSlice* const> slices) const {
     if (capacity_for(staged.count, capacity()) != capacity()) return true;
@@ -85,6 +87,16 @@ InstanceArray::Staged InstanceArray::stage(Commands& commands, std::span<Instanc
     staged.records = target.ref<InstanceRecord>();
     record_moves(commands, staged, slices);
     record_uploads(commands, staged, slices);
+    record_incoming(commands, staged, slices);
+    record_edits(commands, staged, slices);
+    return staged;
+}
+
+InstanceArray::Staged InstanceArray::stage_edits(Commands& commands, std::span<InstanceSlice* const> slices) const {
+    Staged staged;
+    for (const InstanceSlice* slice : slices) staged.firsts.push_back(*slice->first);
+    staged.count = count_;
+    staged.records = buffer_.ref<InstanceRecord>();
     record_incoming(commands, staged, slices);
     record_edits(commands, staged, slices);
     return staged;
@@ -147,6 +159,7 @@ void InstanceArray::record_edits(Commands& commands, const Staged& staged,
 
 void InstanceArray::commit(Staged&& staged, std::span<InstanceSlice* const> slices) {
     if (staged.replacement) buffer_ = std::move(*staged.replacement);
+    count_ = staged.count;
     for (std::size_t i = 0; i < slices.size(); ++i) {
         slices[i]->first = staged.firsts[i];
         slices[i]->placed = slices[i]->records.size();

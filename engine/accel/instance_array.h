@@ -55,6 +55,8 @@ class InstanceArray {
     };
     // Records what brings these slices, in this order, to the device.
     Staged stage(Commands& commands, std::span<InstanceSlice* const> slices) const;
+    // The same for some of the slices that the last commit placed, of which none has changed its length.
+    Staged stage_edits(Commands& commands, std::span<InstanceSlice* const> slices) const;
     void commit(Staged&& staged, std::span<InstanceSlice* const> slices);
 
     const Buffer& buffer() const { return buffer_; }
@@ -70,6 +72,7 @@ class InstanceArray {
     Context& context_;
     Kernel<CopyTransformsArgs> copy_transforms_;
     Buffer buffer_;
+    std::size_t count_ = 0;  // of the records in it
 };
 
 }  // namespace twinray

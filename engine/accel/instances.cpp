@@ -32,7 +32,7 @@ void AccelBackend::update_transforms(AccelHandle handle, std::span<const Transfo
     for (std::size_t i = 0; i < transforms.size(); ++i)
         records.push_back(checked_record(pushed, i, transforms[i], options_of(pushed.instances.records[i])));
     pushed.instances.edit_all(std::move(records));
-    mark(Dirty::moves);
+    edit(handle, Dirty::moves);
 }
 
 void AccelBackend::update_transforms(AccelHandle handle, Ref<Transform> transforms, std::size_t count) {
@@ -42,7 +42,7 @@ void AccelBackend::update_transforms(AccelHandle handle, Ref<Transform> transfor
     if (!transforms.address || transforms.address % 4)
         fail(name_, ": update_transforms: device address ", transforms.address, " must be a multiple of 4 and not 0");
     pushed.instances.replace_transforms(transforms);
-    mark(Dirty::moves);
+    edit(handle, Dirty::moves);
 }
 
 void AccelBackend::check_count(AccelHandle handle, const PushedGeometry& pushed, std::size_t count) const {
@@ -62,14 +62,14 @@ void AccelBackend::update_transform_at(AccelHandle handle, std::size_t index, co
     check_index(handle, pushed, index, "update_transform_at");
     const InstanceOptions options = options_of(pushed.instances.records[index]);
     pushed.instances.edit(index, checked_record(pushed, index, transform, options));
-    mark(Dirty::moves);
+    edit(handle, Dirty::moves);
 }
 
 void AccelBackend::update_options(AccelHandle handle, std::size_t index, const InstanceOptions& options) {
     PushedGeometry& pushed = live(handle, "update_options");
     check_index(handle, pushed, index, "update_options");
     pushed.instances.edit_options(index, checked_record(pushed, index, Transform{}, options));
-    mark(Dirty::structure);
+    edit(handle, Dirty::structure);
 }
 
 std::size_t AccelBackend::append_instances(AccelHandle handle, std::span<const Transform> transforms,
@@ -82,7 +82,8 @@ std::size_t AccelBackend::append_instances(AccelHandle handle, std::span<const T
         more.push_back(
             checked_record(pushed, before + i, transforms[i], options.empty() ? InstanceOptions{} : options[i]));
     pushed.instances.append(more);
-    mark(Dirty::structure);
+    instance_count_ += more.size();
+    edit(handle, Dirty::structure);
     return before;
 }
 
@@ -95,10 +96,11 @@ void AccelBackend::erase_instance(AccelHandle handle, std::size_t index) {
     std::vector<InstanceRecord> records = newest_records(pushed.instances);
     for (InstanceRecord& record : records) record.geometry = pushed.held->block.address();  // kernels may write there
     records.erase(records.begin() + static_cast<std::ptrdiff_t>(index));
+    --instance_count_;
     pushed.instances.edit_all(std::move(records));
     pushed.instances.options_edited.clear();
     pushed.instances.first.reset();  // what the device has is of other instances
-    mark(Dirty::structure);
+    edit(handle, Dirty::structure);
 }
 
 InstanceRange AccelBackend::instance_buffer(AccelHandle handle) const {
@@ -116,7 +118,7 @@ void AccelBackend::mark_transforms_dirty(AccelHandle handle) {
     if (!pushed.instances.first)
         fail(name_, ": mark_transforms_dirty: handle ", handle.id, " is not on the device yet; call sync() first");
     pushed.instances.device_wrote = true;
-    mark(Dirty::moves);
+    edit(handle, Dirty::moves);
 }
 
 InstanceState AccelBackend::get_instance(AccelHandle handle, std::size_t index) const {

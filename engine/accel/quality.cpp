@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/accel/accel_backend.h"
+#include "engine/core/commands.h"
 #include "engine/core/error.h"
 
 namespace twinray {
@@ -12,6 +13,21 @@ std::optional<double> AccelBackend::sah_of(const CostLog& costs, Wait wait) cons
     if (wait == Wait::yes && costs.last_point().value) context_.wait(costs.last_point());
     const std::optional<TreeCost> cost = costs.newest(context_);
     return cost ? std::optional<double>(cost->now) : std::nullopt;
+}
+
+std::optional<double> AccelBackend::sah() const {
+    if (works_on_device() && scene_ && !has_moved_ && !scene_costs_.newest(context_)) {
+        context_.wait(synced_);
+        Commands commands(context_, name_ + " sah");
+        measure_tlas(commands,
+                     {.records = instances_.buffer().ref<InstanceRecord>(),
+                      .count = static_cast<uint>(scene_count_),
+                      .bound = bound_.result(),
+                      .cost = scene_costs_.target()},
+                     *scene_);
+        scene_costs_.commit(true, commands.submit());
+    }
+    return sah_of(scene_costs_, Wait::yes);
 }
 
 std::optional<double> AccelBackend::sah(AccelHandle handle) const {
@@ -32,13 +48,15 @@ bool AccelBackend::has_degraded(const CostLog& costs) const {
     return cost && cost->now > rebuild_ratio_ * cost->at_build;
 }
 
-bool AccelBackend::is_compactable(const HeldGeometry& held) const {
-    return held.built && !held.vertices.edited && can_compact(*held.built, held.built_at);
+AccelBackend::Compaction AccelBackend::compaction_of(const HeldGeometry& held) const {
+    return held.built && held.handles ? compaction_of(*held.built, held.built_at) : Compaction::none;
 }
 
 bool AccelBackend::compact() {
-    const bool any =
-        std::ranges::any_of(held_geometries(), [&](const HeldGeometry* held) { return is_compactable(*held); });
+    const bool any = std::ranges::any_of(uncompacted_, [&](const std::weak_ptr<HeldGeometry>& listed) {
+        const auto held = listed.lock();
+        return held && !held->vertices.edited && compaction_of(*held) == Compaction::possible;
+    });
     if (any) mark(Dirty::compaction);
     return any;
 }

@@ -31,8 +31,14 @@ struct Columns {
 }  // namespace
 
 RaySort::RaySort(Context& context)
-    : box_(context, {.name = "engine_ray_box", .spirv = engine_ray_box_spirv, .group_size = WORLD_BOUND_GROUP}),
-      keys_(context, {.name = "engine_ray_keys", .spirv = engine_ray_keys_spirv, .group_size = WORLD_BOUND_GROUP}),
+    : box_(context, {.name = "engine_ray_box",
+                     .spirv = engine_ray_box_spirv,
+                     .group_size = WORLD_BOUND_GROUP,
+                     .compiles_when_used = true}),
+      keys_(context, {.name = "engine_ray_keys",
+                      .spirv = engine_ray_keys_spirv,
+                      .group_size = WORLD_BOUND_GROUP,
+                      .compiles_when_used = true}),
       sort_(context) {}
 
 std::uint64_t RaySort::scratch_bytes(std::uint64_t count, const KernelTuning& tuning) {

@@ -11,7 +11,10 @@ namespace twinray {
 
 Refinement::Refinement(Context& context)
     : context_(context),
-      gather_(context, {.name = "engine_refine_gather", .spirv = engine_refine_gather_spirv, .group_size = 256}),
+      gather_(context, {.name = "engine_refine_gather",
+                        .spirv = engine_refine_gather_spirv,
+                        .group_size = 256,
+                        .compiles_when_used = true}),
       exact_hits_(context, {.name = "engine_exact_hits", .spirv = engine_exact_hits_spirv, .compiles_when_used = true}),
       scene_(context, {.name = "refinement", .bytes = sizeof(RefineScene)}) {}
 

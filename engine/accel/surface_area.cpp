@@ -40,7 +40,10 @@ std::optional<TreeCost> CostLog::newest(const Context& context) const {
 }
 
 SurfaceArea::SurfaceArea(Context& context)
-    : join_(context, {.name = "engine_join_areas", .spirv = engine_join_areas_spirv, .group_size = AREA_GROUP}) {}
+    : join_(context, {.name = "engine_join_areas",
+                      .spirv = engine_join_areas_spirv,
+                      .group_size = AREA_GROUP,
+                      .compiles_when_used = true}) {}
 
 std::uint64_t AreaWork::bytes() const { return (item_count + groups_of(item_count)) * sizeof(AreaItem); }
 

@@ -33,6 +33,7 @@ class CostLog {
     // Where the next measure goes.
     CostTarget target() const;
     void commit(bool is_build, SyncPoint done);
+    void forget() { points_ = {}; }  // the tree was built and not measured
     // The latest measure since the last build that the GPU has finished; none: there is none.
     std::optional<TreeCost> newest(const Context& context) const;
     SyncPoint last_point() const { return last_; }

@@ -14,8 +14,9 @@
 namespace twinray {
 
 SurfaceKernels::SurfaceKernels(Context& context)
-    : surfaces(context, {.name = "engine_surfaces", .spirv = engine_surfaces_spirv}),
-      interpolate(context, {.name = "engine_interpolate", .spirv = engine_interpolate_spirv}) {}
+    : surfaces(context, {.name = "engine_surfaces", .spirv = engine_surfaces_spirv, .compiles_when_used = true}),
+      interpolate(context,
+                  {.name = "engine_interpolate", .spirv = engine_interpolate_spirv, .compiles_when_used = true}) {}
 
 const AccelBackend::InstanceOwners& AccelBackend::instance_owners(const char* action) const {
     check_synced(action);

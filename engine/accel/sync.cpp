@@ -49,19 +49,43 @@ AccelBackend::Staged AccelBackend::stage(Commands& commands) {
         fail(name_, ": sync: ", n, " instances; at most ", max_instances, " fit");
     warn_of_unusable_instances();
     Staged staged;
-    for (auto& [id, pushed] : pushed_) staged.slices.push_back(&pushed.instances);
+    list_geometries(staged);
+    staged.slices = slices_to_stage();
     stage_geometries(commands, staged);
-    staged.instances = instances_.stage(commands, staged.slices);
+    staged.instances = dirty_ == Dirty::structure ? instances_.stage(commands, staged.slices)
+                                                  : instances_.stage_edits(commands, staged.slices);
     bound_.record(commands, staged.instances.records, static_cast<uint>(staged.instances.count));
     stage_scene(commands, staged);
     return staged;
 }
 
+// Those that were edited or can be compacted, each once.
+void AccelBackend::list_geometries(Staged& staged) const {
+    for (const std::weak_ptr<HeldGeometry>& listed : edited_)
+        if (auto held = listed.lock()) staged.geometries.push_back(std::move(held));
+    for (const std::weak_ptr<HeldGeometry>& listed : uncompacted_) {
+        auto held = listed.lock();
+        if (!held || held->is_listed) continue;
+        const Compaction compaction = compaction_of(*held);
+        if (compaction == Compaction::untold) staged.uncompacted.push_back(held);
+        if (compaction == Compaction::possible) staged.geometries.push_back(std::move(held));
+    }
+}
+
+std::vector<InstanceSlice*> AccelBackend::slices_to_stage() {
+    std::vector<InstanceSlice*> slices;
+    if (dirty_ == Dirty::structure)
+        for (auto& [id, pushed] : pushed_) slices.push_back(&pushed.instances);
+    else
+        for (const std::uint64_t id : edited_instances_) slices.push_back(&pushed_.at(id).instances);
+    return slices;
+}
+
 void AccelBackend::stage_vertices(Commands& commands, Staged& staged) {
     std::vector<VertexArrays::Item> items;
-    for (HeldGeometry* held : held_geometries())
+    for (const auto& held : staged.geometries)
         if (held->vertices.edited) items.push_back({&held->geometry, &held->vertices});
-    for (HeldGeometry* held : held_geometries())
+    for (const auto& held : staged.geometries)
         if (lacks_mesh(*held)) items.push_back({&held->geometry, &held->vertices});
     staged.vertices = vertices_.stage(commands, std::move(items));
     stage_sources(commands, staged);
@@ -74,8 +98,8 @@ bool AccelBackend::lacks_mesh(const HeldGeometry& held) const {
 }
 
 void AccelBackend::stage_sources(Commands& commands, Staged& staged) {
-    for (HeldGeometry* held : held_geometries())
-        if (!held->has_source) staged.sources.push_back(held);
+    for (const auto& held : staged.geometries)
+        if (!held->has_source) staged.sources.push_back(held.get());
     if (staged.sources.empty()) return;
     const auto pass = commands.pass("geometry sources");
     for (const HeldGeometry* held : staged.sources) {
@@ -96,7 +120,7 @@ PackedMesh AccelBackend::kept_mesh(const HeldGeometry& held, const Staged& stage
 void AccelBackend::stage_geometries(Commands& commands, Staged& staged) {
     stage_vertices(commands, staged);
     Work builds, refits, compactions;
-    for (HeldGeometry* held : held_geometries()) {
+    for (const auto& held : staged.geometries) {
         GeometryInput input{&held->geometry, &held->block, {}, held->built.get(), {}};
         const bool is_refit =
             held->vertices.edited && held->built && !held->vertices.rebuilds && !has_degraded(held->vertices.costs);
@@ -109,7 +133,7 @@ void AccelBackend::stage_geometries(Commands& commands, Staged& staged) {
             refits.add(*held, input);
         else if (!held->built || held->vertices.edited)
             builds.add(*held, input);
-        else if (is_compactable(*held))
+        else if (compaction_of(*held) == Compaction::possible)
             compactions.add(*held, input);
     }
     staged.add(builds, build_geometries(commands, builds.inputs));
@@ -124,7 +148,7 @@ void AccelBackend::stage_scene(Commands& commands, Staged& staged) {
                           static_cast<uint>(staged.instances.count),
                           bound_.result(),
                           staged.has_moved,
-                          scene_costs_.target(),
+                          staged.has_moved ? scene_costs_.target() : CostTarget{},
                           {surfaces_ ? surfaces_->table().address : context_.absent(),
                            refinement_ ? refinement_->scene().address : context_.absent()}};
     if (refinement_) staged.refinement = refinement_->stage(commands, input.records, input.count, input.bound);
@@ -160,7 +184,10 @@ void AccelBackend::commit(Staged&& staged, SyncPoint done) {
     for (HeldGeometry* held : staged.sources) held->has_source = true;
     if (refinement_) refinement_->commit(std::move(staged.refinement));
     if (surfaces_) surfaces_->commit(std::move(staged.surfaces));
-    scene_costs_.commit(staged.is_scene_built, done);
+    if (staged.has_moved)
+        scene_costs_.commit(staged.is_scene_built, done);
+    else
+        scene_costs_.forget();
     scene_count_ = staged.instances.count;
     has_moved_ = staged.has_moved;
     revision_ += dirty_ == Dirty::structure;
@@ -168,6 +195,13 @@ void AccelBackend::commit(Staged&& staged, SyncPoint done) {
     if (dirty_ == Dirty::structure) traits_ = scene_traits();
     if (staged.scene) scene_ = std::move(staged.scene);
     instances_.commit(std::move(staged.instances), staged.slices);
+    uncompacted_ = std::move(staged.uncompacted);
+    for (const auto& held : staged.geometries) {
+        held->is_listed = false;
+        if (held->built && has_compaction(*held->built)) uncompacted_.push_back(held);
+    }
+    edited_.clear();
+    edited_instances_.clear();
     outdated_.clear();
     replaced_.clear();
     dirty_ = Dirty::no;

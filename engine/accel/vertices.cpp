@@ -33,7 +33,8 @@ MeshGather::Item gather_item(const Geometry& geometry, const PackedMesh& target)
 VertexArrays::VertexArrays(Context& context)
     : context_(context),
       gather_(context),
-      copy_floats_(context, {.name = "engine_copy_floats", .spirv = engine_copy_floats_spirv}) {}
+      copy_floats_(context,
+                   {.name = "engine_copy_floats", .spirv = engine_copy_floats_spirv, .compiles_when_used = true}) {}
 
 VertexArrays::Staged VertexArrays::stage(Commands& commands, std::vector<Item> items) const {
     Staged staged;

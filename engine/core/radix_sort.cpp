@@ -20,7 +20,8 @@ KernelDesc sort_kernel(const char* name, std::span<const std::uint32_t> spirv, u
     return {.name = name,
             .spirv = spirv,
             .group_size = size,
-            .constants = {{GROUP_SIZE_CONSTANT, size}, {DIGIT_BITS_CONSTANT, RadixSort::digit_bits(threads)}}};
+            .constants = {{GROUP_SIZE_CONSTANT, size}, {DIGIT_BITS_CONSTANT, RadixSort::digit_bits(threads)}},
+            .compiles_when_used = true};
 }
 
 KernelDesc scatter_kernel(uint threads, bool values_are_places) {
@@ -34,7 +35,8 @@ KernelDesc scan_kernel(uint threads) {
     return {.name = "sort_scan",
             .spirv = engine_sort_scan_spirv,
             .group_size = size,
-            .constants = {{GROUP_SIZE_CONSTANT, size}}};
+            .constants = {{GROUP_SIZE_CONSTANT, size}},
+            .compiles_when_used = true};
 }
 
 }  // namespace

@@ -145,13 +145,13 @@ class AbstractAccel {
     // box, a measure of the time that rays take (the surface area heuristic); 0 where the root's box has no area.
     // Measured by the GPU in float32, with pairwise sums: right to 1e-5 of itself. What a driver builds is hidden: for
     // HwTlas it is an estimate, the cost of the tree that halves the driver's input again and again. The form without a
-    // handle is about the top level, measured in each sync, the other about a geometry, measured from the first sync on
-    // that follows update_vertices() of what is built, a DeviceMesh's from its first sync: nothing before. They wait
-    // for the last sync that measured.
+    // handle is about the top level: syncs measure it once something has moved, and the first question before that
+    // does. The other is about a geometry, measured from the first sync on that follows update_vertices() of what is
+    // built, a DeviceMesh's from its first sync: nothing before. They wait for what measures.
     std::optional<double> sah() const;
     std::optional<double> sah(AccelHandle handle) const;
-    // The same without waiting: the latest that the GPU has done since the tree was last built; nothing while it has
-    // none.
+    // The latest measure that the GPU has done since the tree was last built; nothing while it has none. They do not
+    // wait, and start no measure: before something has moved the top level has none but for sah().
     std::optional<double> sah_if_ready() const;
     std::optional<double> sah_if_ready(AccelHandle handle) const;
     // A sync rebuilds what it would refit where sah_if_ready() has grown past this ratio to what it was at the last

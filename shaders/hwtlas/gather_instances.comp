@@ -35,7 +35,8 @@ void main()
         area.lo = box.lo;
         area.hi = box.hi;
     }
-    AT(args.areas, position) = area;
+    if (!is_absent(args.areas)) AT(args.areas, position) = area;
+    if (is_absent(args.driver_records)) return;
     record.geometry = usable ? geometry.blas : NULL_ADDRESS;
     record.sbt_offset_flags |= geometry.kind; // the hit group of a pipeline
     AT(args.driver_records, position) = record;

@@ -9,9 +9,9 @@ struct HwGatherArgs
 {
     REF(InstanceRecord) records;
     Uints order;                // absent: the order that `instances` has already
-    REF(InstanceRecord) driver_records;
+    REF(InstanceRecord) driver_records; // absent: the boxes alone are written
     REF(HwInstance) instances;  // absent: the records keep their order
-    REF(AreaItem) areas;        // the boxes in the world, in build order
+    REF(AreaItem) areas;        // absent, or the boxes in the world, in build order
     uint count;
     uint reserved;
 };

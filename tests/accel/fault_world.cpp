@@ -137,6 +137,8 @@ World::State World::state() {
     for (const vec3& corner : {bound.lo, bound.hi})
         state.world_bound.insert(state.world_bound.end(), {corner.x, corner.y, corner.z});
     state.live = faults_.live_objects();
+    for (const char* compiled : {"VkPipeline", "VkPipelineLayout"})
+        state.live.erase(compiled);  // when first used; kept
     state.allocated_bytes = context().allocated_bytes();
     return state;
 }

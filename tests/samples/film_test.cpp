@@ -162,7 +162,8 @@ TEST_F(FilmFile, GivesBackWhatWasSaved) {
 }
 
 TEST_F(FilmFile, SeesDamageAndForeignFiles) {
-    save_film(file_, film_of(some_samples(5, 3), 0, {{"seed", "1"}}));
+    const Configuration configuration = {{"seed", "1"}};
+    save_film(file_, film_of(some_samples(5, 3), 0, configuration));
     const auto size = std::filesystem::file_size(file_);
     const auto broken = [&](std::streamoff at) {
         std::fstream stream(file_, std::ios::binary | std::ios::in | std::ios::out);

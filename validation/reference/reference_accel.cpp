@@ -79,6 +79,7 @@ class ReferenceBackend final : public AccelBackend {
     std::unique_ptr<BuiltTlas> build_tlas(Commands& commands, const TlasInput& input,
                                           const BuiltTlas* current) override;
     void refit_tlas(Commands& commands, const TlasInput& input, const BuiltTlas& current) override;
+    void measure_tlas(Commands&, const TlasInput&, const BuiltTlas&) const override {}  // it has no trees
     std::unique_ptr<TraceProgram> create_program(const TraceProgramCode* code, uint features) const override;
     std::vector<Hit> trace_host(std::span<const Ray> rays, TraceDesc desc) override;
 

@@ -2,6 +2,7 @@
 #include "validation/report/case_tables.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <set>
 
@@ -84,23 +85,52 @@ std::string fault_text(const Record& record) {
            "</code>";
 }
 
+constexpr std::array<const char*, 8> columns{"by", "settings", "n", "faults", "classes", "error", "time", "result"};
+
+// A row of a case's table.
+struct TableRow {
+    std::array<std::string, columns.size()> cells;
+    std::string style;  // of the result
+    std::string fault;  // the worst, with its replay; empty: none
+};
+
 // `told`: what the rows above say of their faults, which is not said again.
-void write_row(std::ostream& out, const Key& key, const Group& group, std::set<std::string>& told) {
+TableRow row_of(const Key& key, const Group& group, std::set<std::string>& told) {
     const Record& worst = group.worst();
-    out << "<tr><td>" << escaped(key[1].empty() ? key[0] : key[0] + ' ' + key[1])
-        << (key[2].empty() ? "" : " (" + escaped(key[2]) + ')') << "</td><td>" << group.records.size() << "</td><td>"
-        << count_text(group.n()) << "</td><td>" << (group.faults() ? rate_text(group.faults(), group.n()) : "0")
-        << "</td><td>" << escaped(classes_of(group)) << "</td><td>"
-        << range(group, [](const Record& r) { return r.error ? std::optional(r.error->p99) : std::nullopt; })
-        << escaped(unit_of(group, false)) << "</td><td>"
-        << range(group, [](const Record& r) { return r.time ? std::optional(r.time->median) : std::nullopt; })
-        << escaped(unit_of(group, true)) << (group.is_disturbed() ? " &#8224;" : "") << "</td><td class=\""
-        << style_of(worst) << "\">" << escaped(result_of(worst)) << "</td></tr>\n";
-    if (worst.pass.value_or(true) || (worst.reason.empty() && worst.example.empty())) return;
+    TableRow row{{escaped(key[1].empty() ? key[0] : key[0] + ' ' + key[1]) +
+                      (key[2].empty() ? "" : " (" + escaped(key[2]) + ')'),
+                  text(group.records.size()), count_text(group.n()),
+                  group.faults() ? rate_text(group.faults(), group.n()) : "0", escaped(classes_of(group)),
+                  range(group, [](const Record& r) { return r.error ? std::optional(r.error->p99) : std::nullopt; }) +
+                      escaped(unit_of(group, false)),
+                  range(group, [](const Record& r) { return r.time ? std::optional(r.time->median) : std::nullopt; }) +
+                      escaped(unit_of(group, true)) + (group.is_disturbed() ? " &#8224;" : ""),
+                  escaped(result_of(worst))},
+                 style_of(worst),
+                 ""};
+    if (worst.pass.value_or(true) || (worst.reason.empty() && worst.example.empty())) return row;
     const std::string fault = fault_text(worst);
-    out << "<tr><td colspan=\"8\">" << (told.insert(fault).second ? fault : "as above");
-    if (!worst.replay.empty()) out << " <a href=\"" << escaped(worst.replay) << "\">replay</a>";
-    out << "</td></tr>\n";
+    row.fault = told.insert(fault).second ? fault : "as above";
+    if (!worst.replay.empty()) row.fault += " <a href=\"" + escaped(worst.replay) + "\">replay</a>";
+    return row;
+}
+
+// Without the columns that no row has anything in.
+void write_table(std::ostream& out, const std::vector<TableRow>& rows) {
+    std::vector<std::size_t> used;
+    for (std::size_t i = 0; i < columns.size(); ++i)
+        if (std::ranges::any_of(rows, [i](const TableRow& row) { return !row.cells[i].empty(); })) used.push_back(i);
+    out << "<div class=\"wide\"><table><tr>";
+    for (const std::size_t i : used) out << "<th>" << columns[i] << "</th>";
+    out << "</tr>\n";
+    for (const TableRow& row : rows) {
+        out << "<tr>";
+        for (const std::size_t i : used)
+            out << (i + 1 == columns.size() ? "<td class=\"" + row.style + "\">" : "<td>") << row.cells[i] << "</td>";
+        out << "</tr>\n";
+        if (!row.fault.empty()) out << "<tr><td colspan=\"" << used.size() << "\">" << row.fault << "</td></tr>\n";
+    }
+    out << "</table></div>";
 }
 
 // A control that shows faults, as it must.
@@ -123,13 +153,12 @@ void write_case(std::ostream& out, const suite::SuiteCase& row, const std::vecto
     out << "<details id=\"" << row.id << "\"><summary><span class=\"" << style_of(all.worst()) << "\">" << row.id
         << "</span> " << escaped(row.title) << "</summary>\n<p>Measures " << escaped(row.measures)
         << ". Passes with: " << escaped(row.criterion) << '.'
-        << (controls ? text(" Controls that show faults, as they must: ", controls, '.') : "")
-        << "</p>\n<div class=\"wide\"><table><tr><th>by</th>"
-        << "<th>settings</th><th>n</th><th>faults</th><th>classes</th><th>error</th><th>time</th><th>result</th></"
-           "tr>\n";
+        << (controls ? text(" Controls that show faults, as they must: ", controls, '.') : "") << "</p>\n";
     std::set<std::string> told;
-    for (const Key& key : order) write_row(out, key, groups[key], told);
-    out << "</table></div></details>\n";
+    std::vector<TableRow> rows;
+    for (const Key& key : order) rows.push_back(row_of(key, groups[key], told));
+    if (!rows.empty()) write_table(out, rows);
+    out << "</details>\n";
 }
 
 }  // namespace
