@@ -41,7 +41,7 @@ class TlasBuilder {
     Tlas make(Commands& commands, std::size_t capacity, const AccelHeader& header) const;
     // can_update: record_update() may follow.
     void record_build(Commands& commands, const Tlas& tlas, const TlasInput& input, bool can_update) const;
-    // What sah() tells of it as it was built, and nothing else.
+    // Measures the areas that sah() tells, and changes nothing else.
     void record_measure(Commands& commands, const Tlas& tlas, const TlasInput& input) const;
     // The instances only moved since the last build.
     void record_update(Commands& commands, const Tlas& tlas, const TlasInput& input) const;

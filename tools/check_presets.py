@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Presets that share a folder: what one turns off, the others may have left on in the cache.
+"""Checks presets that share a folder: one may find options on in the cache that another has set.
 
-Usage: check_presets.py; prints each option that a preset leaves as it was while it turns off what the option needs
+Usage: check_presets.py; prints each option that a preset leaves as it was while it sets what the option needs to OFF
 (cmake/options.cmake), and exits with 1: CMake would refuse to configure.
 """
 
@@ -13,7 +13,8 @@ import sys
 
 root = pathlib.Path(__file__).resolve().parent.parent
 needs = re.findall(r"^twinray_option_needs\((\w+) ([\w ]+)\)", (root / "cmake/options.cmake").read_text(), re.M)
-presets = {preset["name"]: preset for preset in json.loads((root / "CMakePresets.json").read_text())["configurePresets"]}
+listed = json.loads((root / "CMakePresets.json").read_text())["configurePresets"]
+presets = {preset["name"]: preset for preset in listed}
 
 
 def variables(name):
@@ -32,5 +33,5 @@ for name in presets:
         for needed in all_needed.split()
         if needed in off and option not in off
     ]
-print("\n".join(found) or f"check_presets: {len(presets)} presets turn off all that needs what they turn off")
+print("\n".join(found) or f"check_presets: {len(presets)} presets set all to OFF that needs what they set to OFF")
 sys.exit(bool(found))

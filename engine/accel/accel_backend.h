@@ -336,7 +336,7 @@ class AccelBackend {
     std::map<std::uint64_t, PushedGeometry> pushed_;  // in push order: ids only grow
     std::size_t instance_count_ = 0;                  // of all of them
     Dirty dirty_ = Dirty::structure;
-    // What the next sync looks at; where it changes the structure, at all instances. A sync costs what they are.
+    // The next sync looks at these alone, or, where the structure changes, at all instances.
     std::vector<std::weak_ptr<HeldGeometry>> edited_;
     std::set<std::uint64_t> edited_instances_;  // handles
     // Built, and perhaps smaller once the GPU tells.

@@ -59,7 +59,7 @@ AccelBackend::Staged AccelBackend::stage(Commands& commands) {
     return staged;
 }
 
-// Those that were edited or can be compacted, each once.
+// Lists geometries that were edited or can be compacted, each once.
 void AccelBackend::list_geometries(Staged& staged) const {
     for (const std::weak_ptr<HeldGeometry>& listed : edited_)
         if (auto held = listed.lock()) staged.geometries.push_back(std::move(held));
