@@ -13,5 +13,5 @@ using std::uint64_t;
 #include "twinray/glsl/cpp_end.h"
 
 static_assert(sizeof(HwGeometry) == 48 && sizeof(HwInstance) == 16 && sizeof(HwTlasHeader) == 32 &&
-              sizeof(HwTrianglesArgs) == 80 && sizeof(HwGatherArgs) == 48);
+              sizeof(HwTrianglesArgs) == 80 && sizeof(HwGatherArgs) == 40 && sizeof(HwAreasArgs) == 32);
 }  // namespace twinray

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "hwtlas_gather_instances.spv.h"
+#include "hwtlas_instance_areas.spv.h"
 #include "hwtlas_instance_codes.spv.h"
 
 namespace twinray {
@@ -18,7 +19,7 @@ static_assert(offsetof(VkAccelerationStructureInstanceKHR, accelerationStructure
               offsetof(InstanceRecord, geometry));
 
 constexpr std::uint64_t record_alignment = 16;  // of the device address of an array of instances
-constexpr std::uint32_t group_size = 256;       // of both kernels
+constexpr std::uint32_t group_size = 256;       // of all kernels
 
 StructureBuild build_of(std::uint64_t driver_records, std::size_t count, bool can_update) {
     StructureBuild build{};
@@ -35,8 +36,12 @@ StructureBuild build_of(std::uint64_t driver_records, std::size_t count, bool ca
 }
 
 HwGatherArgs gather_args(const Tlas& tlas, const TlasInput& input, Uints order) {
-    return {input.records, order, tlas.driver_records.ref<InstanceRecord>(), tlas.instances.ref<HwInstance>(), {},
+    return {input.records, order, tlas.driver_records.ref<InstanceRecord>(), tlas.instances.ref<HwInstance>(),
             input.count,   0};
+}
+
+KernelDesc stage(const char* name, std::span<const std::uint32_t> spirv) {
+    return {.name = name, .spirv = spirv, .group_size = group_size, .compiles_when_used = true};
 }
 
 }  // namespace
@@ -46,14 +51,9 @@ TlasBuilder::TlasBuilder(Context& context, bool reorder)
       reorder_(reorder),
       sort_(context),
       areas_(context),
-      codes_(context, {.name = "hwtlas_instance_codes",
-                       .spirv = hwtlas_instance_codes_spirv,
-                       .group_size = group_size,
-                       .compiles_when_used = true}),
-      gather_(context, {.name = "hwtlas_gather_instances",
-                        .spirv = hwtlas_gather_instances_spirv,
-                        .group_size = group_size,
-                        .compiles_when_used = true}) {}
+      codes_(context, stage("hwtlas_instance_codes", hwtlas_instance_codes_spirv)),
+      gather_(context, stage("hwtlas_gather_instances", hwtlas_gather_instances_spirv)),
+      boxes_(context, stage("hwtlas_instance_areas", hwtlas_instance_areas_spirv)) {}
 
 // Room for either kind of build, so that the first move does not change the structure's address.
 TlasBuilder::Sizes TlasBuilder::sizes(std::size_t capacity) const {
@@ -65,9 +65,9 @@ TlasBuilder::Sizes TlasBuilder::sizes(std::size_t capacity) const {
 
 BuildBytes TlasBuilder::bytes(std::size_t count, std::size_t capacity) const {
     const Sizes sizes = this->sizes(capacity);
-    const std::uint64_t sort = reorder_ && count ? 4 * ((count * sizeof(uint) + 15) / 16 * 16) +
-                                                       RadixSort::counter_bytes(count, context_.state().tuning())
-                                                 : 0;
+    const std::uint64_t sort = reorder_ && count > 1 ? 4 * ((count * sizeof(uint) + 15) / 16 * 16) +
+                                                           RadixSort::counter_bytes(count, context_.state().tuning())
+                                                     : 0;
     const AreaWork areas{count, {}, {}, false};
     return {sizes.structure + (reorder_ ? capacity * sizeof(HwInstance) : 0) + sizeof(HwTlasHeader),
             sizes.scratch + capacity * sizeof(InstanceRecord) + sort + areas.bytes()};
@@ -93,45 +93,43 @@ Tlas TlasBuilder::make(Commands& commands, std::size_t capacity, const AccelHead
 }
 
 Uints TlasBuilder::record_order(Commands& commands, const TlasInput& input) const {
-    if (!reorder_ || input.count == 0) return {};
+    if (!reorder_ || input.count < 2) return {};
     const std::uint64_t bytes = (std::uint64_t{input.count} * sizeof(uint) + 15) / 16 * 16;
     Buffer scratch(context_, {.name = "tlas sort scratch",
                               .bytes = 4 * bytes + RadixSort::counter_bytes(input.count, context_.state().tuning())});
     const auto part = [&](std::uint64_t i) { return scratch.ref<uint>(i * bytes); };
-    codes_.dispatch(commands, {input.records, input.bound, part(0), input.count, 0}, input.count);
+    codes_.dispatch(commands, {input.records, input.bound->on_device(), part(0), input.count, 0}, input.count);
     const RadixSort::Pairs sorted =
         sort_.record_iota(commands, part(0), {part(0), part(1)}, {part(2), part(3)}, part(4), input.count, morton_bits);
     commands.retain(std::move(scratch));
     return sorted.values;
 }
 
-// The boxes, too, where they are measured.
-void TlasBuilder::record_gather(Commands& commands, const HwGatherArgs& args, const TlasInput& input,
-                                bool is_build) const {
-    std::vector<AreaWork> areas;
-    if (input.cost.result.address) areas.push_back({input.count, {input.bound.address}, input.cost, is_build});
+// After the instances are gathered.
+void TlasBuilder::record_areas(Commands& commands, const Tlas& tlas, const TlasInput& input, bool is_build) const {
+    if (!input.cost.result.address) return;
+    std::vector<AreaWork> areas{{input.count, {input.bound->on_device().address}, input.cost, is_build}};
     SurfaceArea::place(commands, areas);
-    HwGatherArgs with_areas = args;
-    if (!areas.empty()) with_areas.areas = areas[0].items;
-    gather_.dispatch(commands, with_areas, input.count);
+    boxes_.dispatch(commands, {input.records, tlas.instances.ref<HwInstance>(), areas[0].items, input.count, 0},
+                    input.count);
     areas_.record(commands, std::move(areas));
 }
 
 void TlasBuilder::record_measure(Commands& commands, const Tlas& tlas, const TlasInput& input) const {
-    HwGatherArgs args = gather_args(tlas, input, {});
-    args.driver_records = {};
-    record_gather(commands, args, input, true);
+    record_areas(commands, tlas, input, true);
 }
 
 void TlasBuilder::record_build(Commands& commands, const Tlas& tlas, const TlasInput& input, bool can_update) const {
-    record_gather(commands, gather_args(tlas, input, record_order(commands, input)), input, true);
+    gather_.dispatch(commands, gather_args(tlas, input, record_order(commands, input)), input.count);
+    record_areas(commands, tlas, input, true);
     const StructureWork work{build_of(tlas.driver_records.address(), input.count, can_update), BuildMode::build,
                              &tlas.structure};
     record_builds(commands, "hwtlas_build_tlas", std::span(&work, 1), tlas.scratch.address());
 }
 
 void TlasBuilder::record_update(Commands& commands, const Tlas& tlas, const TlasInput& input) const {
-    record_gather(commands, gather_args(tlas, input, {}), input, false);
+    gather_.dispatch(commands, gather_args(tlas, input, {}), input.count);
+    record_areas(commands, tlas, input, false);
     const StructureWork work{build_of(tlas.driver_records.address(), input.count, true), BuildMode::update,
                              &tlas.structure};
     record_builds(commands, "hwtlas_update_tlas", std::span(&work, 1), tlas.scratch.address());

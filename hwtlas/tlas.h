@@ -27,7 +27,7 @@ struct Tlas {
 struct TlasInput {
     Ref<InstanceRecord> records;
     uint count = 0;
-    Ref<WorldBound> bound;
+    BoundOfSync* bound = nullptr;  // never null
     CostTarget cost;
 };
 
@@ -52,7 +52,7 @@ class TlasBuilder {
     };
     Sizes sizes(std::size_t capacity) const;
     Uints record_order(Commands& commands, const TlasInput& input) const;
-    void record_gather(Commands& commands, const HwGatherArgs& args, const TlasInput& input, bool is_build) const;
+    void record_areas(Commands& commands, const Tlas& tlas, const TlasInput& input, bool is_build) const;
 
     Context& context_;
     bool reorder_;
@@ -60,6 +60,7 @@ class TlasBuilder {
     SurfaceArea areas_;
     Kernel<HwCodesArgs> codes_;
     Kernel<HwGatherArgs> gather_;
+    Kernel<HwAreasArgs> boxes_;
 };
 
 }  // namespace twinray

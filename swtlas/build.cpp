@@ -16,6 +16,7 @@
 #include "swtlas_leaves_instances.spv.h"
 #include "swtlas_leaves_triangles.spv.h"
 #include "swtlas_link_nodes.spv.h"
+#include "swtlas_lone_instance.spv.h"
 #include "swtlas_lone_leaves.spv.h"
 #include "swtlas_morton.spv.h"
 #include "swtlas_node_areas.spv.h"
@@ -46,7 +47,7 @@ KernelDesc grouped(const Context& context, KernelDesc desc, uint own_size, uint 
     return desc;
 }
 
-// Layout bvh2 does not use such kernels.
+// In layout bvh2 the width is not used.
 KernelDesc of_width(KernelDesc desc, Layout layout) {
     desc.constants.push_back({NODE_WIDTH_CONSTANT, std::max(width_of(layout), 4u)});
     return desc;
@@ -84,6 +85,7 @@ Builder::Builder(Context& context, const AccelOptions& options)
       areas_(context),
       leaves_triangles_(context, leaves_stage(context, "swtlas_leaves_triangles", swtlas_leaves_triangles_spirv)),
       leaves_instances_(context, leaves_stage(context, "swtlas_leaves_instances", swtlas_leaves_instances_spirv)),
+      lone_instance_(context, of_width(stage("swtlas_lone_instance", swtlas_lone_instance_spirv, 32), layout_)),
       morton_(context, build_stage(context, "swtlas_morton", swtlas_morton_spirv)),
       node_areas_(context, grouped(context, stage("swtlas_node_areas", swtlas_node_areas_spirv), AREA_GROUP)),
       duplicate_codes_(context, build_stage(context, "swtlas_duplicate_codes", swtlas_duplicate_codes_spirv)),
@@ -210,7 +212,6 @@ void Builder::record_60_bit_order(Commands& commands, const BuildPlan& plan, con
 
 // From leaves in the order of their codes to a tree as its layout has it.
 void Builder::record_tree(Commands& commands, const BuildPlan& plan, const Batch& batch) const {
-    if (plan.has_lone_leaves) return lone_leaves_.dispatch(commands, batch.args, plan.leaf_count);
     const BuildArgs args = batch.sorted(record_order(commands, plan, batch));
     const std::uint64_t leaves = std::uint64_t{args.chunk_count} * BUILD_GROUP;
     if (quality_ == BuildQuality::ploc)
@@ -229,12 +230,19 @@ void Builder::record_triangles(Commands& commands, const BuildPlan& plan, std::s
                                const Buffer& scratch) const {
     if (plan.leaf_count == 0) return;
     const Batch batch = begin(commands, plan, trees, scratch);
+    if (plan.has_lone_leaves) return lone_leaves_.dispatch(commands, batch.args, plan.leaf_count);
     leaves_triangles_.dispatch_groups(commands, batch.args, batch.args.chunk_count);
     record_tree(commands, plan, batch);
 }
 
+void Builder::record_lone_instance(Commands& commands, const InstanceTree& tree) const {
+    const BuildTree& lone = tree.tree;
+    lone_instance_.dispatch(commands, {tree.records, tree.instances, lone.bvh, lone.records}, 1);
+}
+
 void Builder::record_instances(Commands& commands, const BuildPlan& plan, const InstanceTree& tree) const {
     if (plan.leaf_count == 0) return;
+    if (plan.has_lone_leaves) return record_lone_instance(commands, tree);
     Buffer scratch = build_scratch(commands.context(), plan);
     record_tree(commands, plan, begin_instances(commands, plan, tree, scratch));
     commands.retain(std::move(scratch));

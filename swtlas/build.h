@@ -12,10 +12,10 @@ namespace twinray {
 //     leaves -> morton -> sort by code (-> sort by tree) (-> sort again, by 60-bit codes) -> hierarchy or ploc
 //     -> encode triangles, or -> collapse -> encode records
 //
-// Trees of one leaf each are whole after their leaves and one stage more.
+// A batch of trees of one leaf each takes one stage, and so does a top level of one instance.
 //
-// Each stage is one kernel over all trees of the batch; what it computes has a CPU reference of the same name in
-// validation/cpu_reference/reference.h.
+// Each stage is one kernel over all trees of the batch; what the stages of the diagram compute has a CPU reference of
+// the same name in validation/cpu_reference/reference.h.
 class Builder {
   public:
     // Kernels are compiled by the first build or refit that records them.
@@ -61,6 +61,7 @@ class Builder {
                              const RadixSort::Pairs& by_code, const RadixSort::Pairs& sorted) const;
     void record_tree(Commands& commands, const BuildPlan& plan, const Batch& batch) const;
     void record_collapse(Commands& commands, const BuildPlan& plan, const Batch& batch, const BuildArgs& args) const;
+    void record_lone_instance(Commands& commands, const InstanceTree& tree) const;
     void record_boxes(Commands& commands, const BuildPlan& plan, const Batch& batch) const;
 
     Layout layout_;
@@ -70,6 +71,7 @@ class Builder {
     SurfaceArea areas_;
     Kernel<BuildArgs> leaves_triangles_;
     Kernel<InstanceLeavesArgs> leaves_instances_;
+    Kernel<LoneInstanceArgs> lone_instance_;
     Kernel<BuildArgs> morton_;
     Kernel<NodeAreasArgs> node_areas_;
     Kernel<DuplicateCodesArgs> duplicate_codes_;

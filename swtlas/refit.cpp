@@ -7,6 +7,7 @@ namespace twinray {
 // The boxes of all inner nodes, and the records, from the boxes of the leaves. Nothing is sorted in a refit: in layout
 // bvh2 edges lie where keys would.
 void Builder::record_boxes(Commands& commands, const BuildPlan& plan, const Batch& batch) const {
+    if (plan.has_lone_leaves) return lone_leaves_.dispatch(commands, batch.args, plan.leaf_count);
     const std::uint64_t base = batch.scratch.address();
     const uint chunks = batch.args.chunk_count;
     RefitArgs args{batch.args.trees, batch.args.chunks, batch.args.boxes, {}, {}, {}, chunks, 0};
@@ -64,6 +65,7 @@ void Builder::record_triangle_refit(Commands& commands, const BuildPlan& plan, s
 
 void Builder::record_refit(Commands& commands, const BuildPlan& plan, const InstanceTree& tree) const {
     if (plan.leaf_count == 0) return;
+    if (plan.has_lone_leaves) return record_lone_instance(commands, tree);
     Buffer scratch = build_scratch(commands.context(), plan);
     record_boxes(commands, plan, begin_instances(commands, plan, tree, scratch));
     commands.retain(std::move(scratch));

@@ -139,7 +139,7 @@ void check_records(Layout layout, const SavedGeometry& geometry) {
     }
     std::vector<LeafBox> boxes;
     boxes.reserve(primitives);
-    for (uint i = 0; i < primitives; ++i) boxes.push_back(box_of_primitive(source, i));
+    for (uint i = 0; i < primitives; ++i) boxes.push_back(boxed_primitive(source, i).box);
     const TreeCheck check = check_tree(geometry.bvh, geometry.records, boxes);
     if (!check.violations.empty()) fail("unsound tree: ", check.violations.front());
     if (check.width != 0 && check.width != width_of(layout))

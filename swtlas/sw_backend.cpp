@@ -212,9 +212,9 @@ BuildBytes SwBackend::geometry_bytes(std::span<const GeometrySize> geometries) c
 
 BuildBytes SwBackend::scene_bytes(std::size_t count, std::size_t capacity) const {
     const auto leaves = static_cast<uint>(count);
+    const BuildPlan plan = plan_build(std::span(&leaves, 1), options().layout, context().state().tuning());
     return {layout_scene(static_cast<uint>(capacity), options().layout).bytes,
-            plan_build(std::span(&leaves, 1), options().layout, context().state().tuning()).scratch.bytes +
-                Builder::cost_bytes(leaves, options().layout)};
+            (plan.has_lone_leaves ? 0 : plan.scratch.bytes) + Builder::cost_bytes(leaves, options().layout)};
 }
 
 void SwBackend::refit_tlas(Commands& commands, const TlasInput& input, const BuiltTlas& current) {

@@ -153,7 +153,10 @@ AccelHandle AccelBackend::push_built(Geometry&& geometry, Buffer&& block, std::u
         HeldGeometry{.geometry = std::move(geometry), .block = std::move(block), .built = std::move(built)})};
     for (const InstanceRecord& record : records) {
         pushed.instances.records.push_back(make_instance_record(transform_of(record), options_of(record)));
-        pushed.instances.records.back().geometry = pushed.held->block.address();
+        InstanceRecord& placed = pushed.instances.records.back();
+        placed.geometry = pushed.held->block.address();
+        const Rows in_units = scaled_map(placed.object_to_world, pushed.held->geometry.scale);
+        computes_bound_ |= !is_usable(in_units, inverse_of(in_units));  // its kernel counts such instances
     }
     return add(std::move(pushed));
 }
@@ -209,6 +212,7 @@ void AccelBackend::replace(AccelHandle handle, Geometry&& geometry, SurfaceSlice
     PushedGeometry& pushed = live(handle, "update");
     warn_of_inactive_triangles(geometry);
     HeldGeometry& held = *pushed.held;
+    computes_bound_ |= geometry.scale != held.geometry.scale;  // in other units a transform may be unusable
     if (held.built)
         replaced_.push_back({.geometry = std::move(held.geometry),
                              .block = {},

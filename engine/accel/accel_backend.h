@@ -80,7 +80,7 @@ class AccelBackend {
     Bounds object_bound(AccelHandle handle) const;
     Bounds world_bound() const;
     std::optional<Bounds> world_bound_if_ready() const;
-    Ref<WorldBound> world_bound_on_device() const { return bound_.result(); }
+    Ref<WorldBound> world_bound_on_device() const;
     std::optional<double> sah() const;
     std::optional<double> sah(AccelHandle handle) const;
     std::optional<double> sah_if_ready() const { return sah_of(scene_costs_, Wait::no); }
@@ -159,10 +159,10 @@ class AccelBackend {
     struct TlasInput {
         Ref<InstanceRecord> records;
         uint count = 0;
-        Ref<WorldBound> bound;
-        bool will_move = false;   // refits may follow
-        CostTarget cost = {};     // as in GeometryInput
-        AccelHeader header = {};  // what the top level begins with
+        BoundOfSync* bound = nullptr;  // never null
+        bool will_move = false;        // refits may follow
+        CostTarget cost = {};          // as in GeometryInput
+        AccelHeader header = {};       // what the top level begins with
     };
     static constexpr std::uint64_t geometry_block_bytes = GEOMETRY_SOURCE_OFFSET + sizeof(GeometrySource);
     static constexpr double default_rebuild_ratio = 1.5;
@@ -202,6 +202,8 @@ class AccelBackend {
     // With `code`, or with the accelerator's own code where the scene needs no program.
     virtual std::unique_ptr<TraceProgram> create_program(const TraceProgramCode* code, uint features) const = 0;
     std::uint64_t id() const { return id_; }
+    // Whether the GPU is through with the last sync.
+    bool is_sync_done() const { return context_.is_reached(synced_); }
     // False: the host answers, and neither reads vertices in device memory nor measures costs.
     virtual bool works_on_device() const { return true; }
     // What closest_hits() and any_hits() do.
@@ -225,7 +227,7 @@ class AccelBackend {
         std::shared_ptr<HeldGeometry> held;
         InstanceSlice instances = {};
 
-        bool is_synced() const { return held->built || instances.first; }
+        bool is_synced() const { return held->built || instances.first || instances.placed; }
 
         void add_to(SceneTraits& traits) const;
     };
@@ -244,6 +246,7 @@ class AccelBackend {
         std::vector<InstanceSlice*> slices;                     // those that were edited, or all
         InstanceArray::Staged instances;
         std::unique_ptr<BuiltTlas> scene;
+        bool has_bound = false;
         bool is_scene_built = false;  // not refitted
         bool has_moved = false;
 
@@ -290,7 +293,7 @@ class AccelBackend {
     PushedGeometry& checked_for_vertices(AccelHandle handle, std::size_t count);
     void check_count(AccelHandle handle, const PushedGeometry& pushed, std::size_t count) const;
     void check_index(AccelHandle handle, const PushedGeometry& pushed, std::size_t index, const char* action) const;
-    Staged stage(Commands& commands);
+    Staged stage(Commands& commands, bool wants_bound);
     void list_geometries(Staged& staged) const;
     std::vector<InstanceSlice*> slices_to_stage();
     void stage_vertices(Commands& commands, Staged& staged);
@@ -301,7 +304,8 @@ class AccelBackend {
     static PackedMesh kept_mesh(const HeldGeometry& held, const Staged& staged);
     bool lacks_mesh(const HeldGeometry& held) const;
     void stage_geometries(Commands& commands, Staged& staged);
-    void stage_scene(Commands& commands, Staged& staged);
+    void stage_scene(Commands& commands, Staged& staged, BoundOfSync& bound);
+    void measure_bound() const;
     void commit(Staged&& staged, SyncPoint done);
     enum class Wait : std::uint8_t { no, yes };
     std::optional<double> sah_of(const CostLog& costs, Wait wait) const;
@@ -330,7 +334,9 @@ class AccelBackend {
     mutable std::unique_ptr<SurfaceKernels> surface_kernels_;  // made by the first host that asks for surfaces
     mutable InstanceOwners owners_;
     WorldBoundKernel bound_;
-    mutable CostLog scene_costs_;  // the first question measures a top level of which nothing has moved
+    mutable SyncPoint bound_at_;           // when that of the last sync is there; null: nobody has asked for it
+    mutable bool computes_bound_ = false;  // in each sync: somebody has asked, or transforms may be unusable
+    mutable CostLog scene_costs_;          // the first question measures a top level of which nothing has moved
     double rebuild_ratio_ = default_rebuild_ratio;
     std::uint64_t scratch_budget_ = 64 << 20;
     std::map<std::uint64_t, PushedGeometry> pushed_;  // in push order: ids only grow

@@ -42,6 +42,7 @@ void AccelBackend::update_transforms(AccelHandle handle, Ref<Transform> transfor
     if (!transforms.address || transforms.address % 4)
         fail(name_, ": update_transforms: device address ", transforms.address, " must be a multiple of 4 and not 0");
     pushed.instances.replace_transforms(transforms);
+    computes_bound_ = true;
     edit(handle, Dirty::moves);
 }
 
@@ -107,6 +108,7 @@ InstanceRange AccelBackend::instance_buffer(AccelHandle handle) const {
     const PushedGeometry& pushed = live(handle, "instance_buffer");
     if (dirty_ == Dirty::structure || !pushed.instances.first)
         fail(name_, ": instance_buffer: edits are pending; call sync() first");
+    measure_bound();  // before the caller's kernels write there
     const std::uint64_t offset = *pushed.instances.first * sizeof(InstanceRecord);
     const Buffer& buffer = instances_.buffer();
     return {buffer.handle(), offset, buffer.ref<InstanceRecord>(offset), pushed.instances.records.size()};
@@ -118,6 +120,7 @@ void AccelBackend::mark_transforms_dirty(AccelHandle handle) {
     if (!pushed.instances.first)
         fail(name_, ": mark_transforms_dirty: handle ", handle.id, " is not on the device yet; call sync() first");
     pushed.instances.device_wrote = true;
+    computes_bound_ = true;
     edit(handle, Dirty::moves);
 }
 

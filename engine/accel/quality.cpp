@@ -19,13 +19,17 @@ std::optional<double> AccelBackend::sah() const {
     if (works_on_device() && scene_ && !has_moved_ && !scene_costs_.newest(context_)) {
         context_.wait(synced_);
         Commands commands(context_, name_ + " sah");
+        const auto records = instances_.buffer().ref<InstanceRecord>();
+        BoundOfSync bound(bound_, commands, records, scene_count_, bound_at_.value != 0);
         measure_tlas(commands,
-                     {.records = instances_.buffer().ref<InstanceRecord>(),
+                     {.records = records,
                       .count = static_cast<uint>(scene_count_),
-                      .bound = bound_.result(),
+                      .bound = &bound,
                       .cost = scene_costs_.target()},
                      *scene_);
-        scene_costs_.commit(true, commands.submit());
+        const SyncPoint done = commands.submit();
+        scene_costs_.commit(true, done);
+        if (bound.is_there() && !bound_at_.value) bound_at_ = done;
     }
     return sah_of(scene_costs_, Wait::yes);
 }

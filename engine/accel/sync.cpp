@@ -33,7 +33,7 @@ SyncPoint AccelBackend::sync() {
     context_.state().check_submitted(synced_);
     if (dirty_ == Dirty::no) return synced_;
     auto commands = std::make_unique<Commands>(context_, name_ + " sync");
-    Staged staged = stage(*commands);
+    Staged staged = stage(*commands, computes_bound_);
     commit(std::move(staged), commands->submit());
     last_build_ = std::move(commands);
     return synced_;
@@ -41,10 +41,13 @@ SyncPoint AccelBackend::sync() {
 
 void AccelBackend::sync(Commands& commands) {
     vertices_.warn_of_faults(name_);
-    if (dirty_ != Dirty::no) commit(stage(commands), commands.promise());
+    if (dirty_ == Dirty::no) return;
+    // Commands that come later may ask for the bound before these are submitted.
+    constexpr bool wants_bound = true;
+    commit(stage(commands, wants_bound), commands.promise());
 }
 
-AccelBackend::Staged AccelBackend::stage(Commands& commands) {
+AccelBackend::Staged AccelBackend::stage(Commands& commands, bool wants_bound) {
     if (const std::size_t n = n_instances(); n > max_instances)
         fail(name_, ": sync: ", n, " instances; at most ", max_instances, " fit");
     warn_of_unusable_instances();
@@ -54,8 +57,10 @@ AccelBackend::Staged AccelBackend::stage(Commands& commands) {
     stage_geometries(commands, staged);
     staged.instances = dirty_ == Dirty::structure ? instances_.stage(commands, staged.slices)
                                                   : instances_.stage_edits(commands, staged.slices);
-    bound_.record(commands, staged.instances.records, static_cast<uint>(staged.instances.count));
-    stage_scene(commands, staged);
+    BoundOfSync bound(bound_, commands, staged.instances.records, staged.instances.count);
+    if (wants_bound) bound.on_device();
+    stage_scene(commands, staged, bound);
+    staged.has_bound = bound.is_there();
     return staged;
 }
 
@@ -142,16 +147,16 @@ void AccelBackend::stage_geometries(Commands& commands, Staged& staged) {
     staged.vertices.retain_temporaries(commands);
 }
 
-void AccelBackend::stage_scene(Commands& commands, Staged& staged) {
+void AccelBackend::stage_scene(Commands& commands, Staged& staged, BoundOfSync& bound) {
     staged.has_moved = has_moved_ || (scene_ && dirty_ == Dirty::moves);
     const TlasInput input{staged.instances.records,
                           static_cast<uint>(staged.instances.count),
-                          bound_.result(),
+                          &bound,
                           staged.has_moved,
                           staged.has_moved ? scene_costs_.target() : CostTarget{},
                           {surfaces_ ? surfaces_->table().address : context_.absent(),
                            refinement_ ? refinement_->scene().address : context_.absent()}};
-    if (refinement_) staged.refinement = refinement_->stage(commands, input.records, input.count, input.bound);
+    if (refinement_) staged.refinement = refinement_->stage(commands, input.records, input.count, bound.on_device());
     if (surfaces_ && dirty_ == Dirty::structure) stage_surfaces(commands, staged);
     staged.is_scene_built = must_build({.is_built = scene_ != nullptr,
                                         .was_moved = has_moved_,
@@ -205,11 +210,12 @@ void AccelBackend::commit(Staged&& staged, SyncPoint done) {
     outdated_.clear();
     replaced_.clear();
     dirty_ = Dirty::no;
+    bound_at_ = staged.has_bound ? done : SyncPoint{};
     synced_ = done;
 }
 
 void AccelBackend::warn_of_unusable_instances() {
-    if (!synced_.value || !context_.is_reached(synced_)) return;
+    if (!bound_at_.value || !context_.is_reached(bound_at_)) return;
     const uint count = bound_.read().unusable_count;
     if (count && count != warned_unusable_)
         context_.state().warn(text(name_, ": ", count,
@@ -218,17 +224,34 @@ void AccelBackend::warn_of_unusable_instances() {
     warned_unusable_ = count;
 }
 
+// For the last sync, unless it has done so, and in all to come.
+void AccelBackend::measure_bound() const {
+    computes_bound_ = true;
+    if (bound_at_.value || !synced_.value) return;
+    Commands commands(context_, name_ + " world bound");
+    bound_.record(commands, instances_.buffer().ref<InstanceRecord>(), static_cast<uint>(scene_count_));
+    bound_at_ = commands.submit();
+}
+
 Bounds AccelBackend::world_bound() const {
     if (!synced_.value) check_synced("world_bound");
     context_.wait(synced_);
+    measure_bound();
+    context_.wait(bound_at_);
     return world_bound_if_ready().value_or(Bounds{});
 }
 
 std::optional<Bounds> AccelBackend::world_bound_if_ready() const {
     if (!synced_.value) return Bounds{};
-    if (!context_.is_reached(synced_)) return std::nullopt;
+    measure_bound();
+    if (!context_.is_reached(bound_at_)) return std::nullopt;
     const WorldBound bound = bound_.read();
     return Bounds{bound.lo, bound.hi};
+}
+
+Ref<WorldBound> AccelBackend::world_bound_on_device() const {
+    measure_bound();
+    return bound_.result();
 }
 
 std::vector<PassTiming> AccelBackend::build_timings() const {

@@ -38,4 +38,10 @@ WorldBound WorldBoundKernel::read() const {
     return bound;
 }
 
+Ref<WorldBound> BoundOfSync::on_device() {
+    if (!is_there_) kernel_.record(commands_, records_, count_);
+    is_there_ = true;
+    return kernel_.result();
+}
+
 }  // namespace twinray

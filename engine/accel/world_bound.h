@@ -13,7 +13,7 @@ namespace twinray {
 
 static_assert(sizeof(WorldBound) == 32 && sizeof(WorldBoundBits) == 32);
 
-// Computes the box around an accelerator's instances in each of its syncs.
+// Computes the box around an accelerator's instances.
 class WorldBoundKernel {
   public:
     explicit WorldBoundKernel(Context& context);
@@ -29,6 +29,30 @@ class WorldBoundKernel {
   private:
     Kernel<WorldBoundArgs> kernel_;
     Buffer result_, bits_, readback_;
+};
+
+// The box around the instances of one sync, which is computed when somebody first asks for it.
+class BoundOfSync {
+  public:
+    // Of `count` records, whose geometry blocks hold their boxes by the time the commands run. is_there: earlier
+    // commands have computed it.
+    BoundOfSync(const WorldBoundKernel& kernel, Commands& commands, Ref<InstanceRecord> records, std::size_t count,
+                bool is_there = false)
+        : kernel_(kernel),
+          commands_(commands),
+          records_(records),
+          count_(static_cast<uint>(count)),
+          is_there_(is_there) {}
+
+    Ref<WorldBound> on_device();
+    bool is_there() const { return is_there_; }
+
+  private:
+    const WorldBoundKernel& kernel_;
+    Commands& commands_;
+    Ref<InstanceRecord> records_;
+    uint count_;
+    bool is_there_;
 };
 
 }  // namespace twinray

@@ -136,9 +136,9 @@ class AbstractAccel {
     // A box around all live instances at the last sync: the box of each geometry under its transform, rounded outward.
     // Empty for an empty accelerator. Waits for the last sync. Throws Error while edits wait for the first one.
     Bounds world_bound() const;
-    // The same without waiting: nothing while the last sync is not done, empty before the first.
+    // The same without waiting: nothing while it is computed, which the first call begins; empty before the first sync.
     std::optional<Bounds> world_bound_if_ready() const;
-    // The same on the device, for kernels that run after the last sync.
+    // The same on the device, for kernels that run after Context::last_submission() as it is after this call.
     Ref<WorldBound> world_bound_on_device() const;
 
     // How good the trees still are: the areas of the boxes of all children, leaves too, over the area of the root's

@@ -23,7 +23,7 @@ void join_boxes(vec3 lo, vec3 hi)
     group_lo[thread] = lo;
     group_hi[thread] = hi;
     barrier();
-    for (uint stride = gl_WorkGroupSize.x / 2u; stride > 0u; stride /= 2u)
+    DONT_UNROLL for (uint stride = gl_WorkGroupSize.x / 2u; stride > 0u; stride /= 2u)
     {
         if (thread < stride)
         {

@@ -28,7 +28,7 @@ void main()
     items[thread] = no_area();
     if (index < args.count) items[thread] = AT(args.items, index);
     barrier();
-    for (uint stride = 1u; stride < AREA_GROUP; stride *= 2u)
+    DONT_UNROLL for (uint stride = 1u; stride < AREA_GROUP; stride *= 2u)
     {
         if (thread % (2u * stride) == 0u) items[thread] = join_areas(items[thread], items[thread + stride], unit);
         barrier();

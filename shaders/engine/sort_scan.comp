@@ -21,7 +21,7 @@ void main()
     for (uint i = begin; i < end; ++i) total += AT(args.values, i);
     sums[thread] = total;
     barrier();
-    for (uint distance = 1u; distance < THREADS; distance *= 2u)
+    DONT_UNROLL for (uint distance = 1u; distance < THREADS; distance *= 2u)
     {
         uint before = thread >= distance ? sums[thread - distance] : 0u;
         barrier();

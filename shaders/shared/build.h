@@ -95,6 +95,15 @@ struct InstanceLeavesArgs
     uint reserved;
 };
 
+// A top level of one instance.
+struct LoneInstanceArgs
+{
+    REF(InstanceRecord) records;
+    REF(SwInstance) instances;
+    REF(Bvh) bvh;
+    REF(CompressedRecord) leaves; // absent in layout bvh2
+};
+
 struct DuplicateCodesArgs
 {
     BuildArgs build;
@@ -193,33 +202,48 @@ FUNC vec3 normals_above(vec3 v)
     return vec3(normal_next_to(v.x, false), normal_next_to(v.y, false), normal_next_to(v.z, false));
 }
 
-// Triangles that cannot be hit stay in the tree with an empty box.
-FUNC LeafBox box_of_triangle(BvhTriangle t)
+FUNC LeafBox box_around_vertices(BvhTriangle t)
 {
-    if (!is_active_triangle(t.v0, t.v1, t.v2)) return empty_box();
     LeafBox box;
     box.lo = min_by_comparison(normals_below(t.v0), min_by_comparison(normals_below(t.v1), normals_below(t.v2)));
     box.hi = max_by_comparison(normals_above(t.v0), max_by_comparison(normals_above(t.v1), normals_above(t.v2)));
     return box;
 }
 
-FUNC LeafBox box_of_primitive(BuildTree tree, uint primitive)
+// As traversal wants it, and the box around it.
+struct BoxedPrimitive
 {
-    BvhTriangle fetched = fetch_primitive(tree, primitive);
-    if (!has_boxes(tree)) return box_of_triangle(fetched);
+    BvhTriangle primitive;
     LeafBox box;
-    box.lo = normals_below(fetched.v0);
-    box.hi = normals_above(fetched.v1);
-    return box;
-}
+};
 
-// A triangle as traversal wants it.
-FUNC BvhTriangle without_inactive_vertices(BvhTriangle t)
+// Triangles that cannot be hit stay in the tree with an empty box.
+FUNC BoxedPrimitive boxed_triangle(BvhTriangle t)
 {
-    if (is_active_triangle(t.v0, t.v1, t.v2)) return t;
-    t.v0 = vec3(0.0f);
-    t.v1 = vec3(0.0f);
-    t.v2 = vec3(0.0f);
-    return t;
+    BoxedPrimitive boxed;
+    boxed.primitive = t;
+    boxed.box = empty_box();
+    if (is_active_triangle(t.v0, t.v1, t.v2))
+    {
+        boxed.box = box_around_vertices(t);
+        return boxed;
+    }
+    boxed.primitive.v0 = vec3(0.0f);
+    boxed.primitive.v1 = vec3(0.0f);
+    boxed.primitive.v2 = vec3(0.0f);
+    return boxed;
+}
+FUNC LeafBox box_of_triangle(BvhTriangle t) { return boxed_triangle(t).box; }
+FUNC BvhTriangle without_inactive_vertices(BvhTriangle t) { return boxed_triangle(t).primitive; }
+
+FUNC BoxedPrimitive boxed_primitive(BuildTree tree, uint index)
+{
+    BvhTriangle fetched = fetch_primitive(tree, index);
+    if (!has_boxes(tree)) return boxed_triangle(fetched);
+    BoxedPrimitive boxed;
+    boxed.primitive = fetched;
+    boxed.box.lo = normals_below(fetched.v0);
+    boxed.box.hi = normals_above(fetched.v1);
+    return boxed;
 }
 #endif

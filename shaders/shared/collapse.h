@@ -233,7 +233,6 @@ FUNC CollapseStep begin_collapse(BuildTree tree, Uints leaf_indices, uint index,
 FUNC CompressedRecord encode_leaf(BuildTree tree, uint leaf)
 {
     if (has_instances(tree)) return encode_instance(leaf);
-    BvhTriangle fetched = fetch_primitive(tree, leaf);
-    return encode_primitive(has_boxes(tree) ? fetched : without_inactive_vertices(fetched));
+    return encode_primitive(boxed_primitive(tree, leaf).primitive);
 }
 #endif

@@ -9,9 +9,18 @@ struct HwGatherArgs
 {
     REF(InstanceRecord) records;
     Uints order;                // absent: the order that `instances` has already
-    REF(InstanceRecord) driver_records; // absent: the boxes alone are written
+    REF(InstanceRecord) driver_records;
     REF(HwInstance) instances;  // absent: the records keep their order
-    REF(AreaItem) areas;        // absent, or the boxes in the world, in build order
+    uint count;
+    uint reserved;
+};
+
+// The boxes of instances in the world, in build order.
+struct HwAreasArgs
+{
+    REF(InstanceRecord) records;
+    REF(HwInstance) instances; // absent: the records keep their order
+    REF(AreaItem) areas;
     uint count;
     uint reserved;
 };

@@ -98,8 +98,9 @@ FUNC LeafBox box_of_cut(SwGeometry geometry, Rows to_world)
     return around;
 }
 
-// A box around the geometry under the map, widened by rounding. Empty where the geometry's is.
-FUNC LeafBox box_of_instance(SwGeometry geometry, Rows to_world, Rows to_object)
+// A box around the geometry under the map, widened by rounding; a tight one if `is_tight`. Empty where the geometry's
+// is.
+FUNC LeafBox box_of_instance(SwGeometry geometry, Rows to_world, Rows to_object, bool is_tight)
 {
     LeafBox box;
     box.lo = geometry.bvh.lo;
@@ -111,7 +112,7 @@ FUNC LeafBox box_of_instance(SwGeometry geometry, Rows to_world, Rows to_object)
                          rounding_of_instance(to_world.r2, box, to_object, world.lo.z, world.hi.z));
     // Else products may be infinite, and their sums no numbers.
     bool is_in_range = largest_entry(rounding) < uintBitsToFloat(0x7f800000u);
-    if (is_in_range && !keeps_axes(to_world) && is_inner_child(geometry, geometry.bvh.root))
+    if (is_tight && is_in_range && !keeps_axes(to_world) && is_inner_child(geometry, geometry.bvh.root))
     {
         // Planes of records lie farther out than the box.
         LeafBox cut = box_of_cut(geometry, to_world);
@@ -124,8 +125,8 @@ FUNC LeafBox box_of_instance(SwGeometry geometry, Rows to_world, Rows to_object)
 }
 
 // `record`: in built units. `absent`: the address of a tree where there is none. `box`: in world space, empty where
-// nothing of the instance is hit.
-FUNC SwInstance place_instance(InstanceRecord record, Address absent, INOUT(LeafBox) box)
+// nothing of the instance is hit, and tight if `is_tight`: a top level of one instance gains nothing by that.
+FUNC SwInstance place_instance(InstanceRecord record, Address absent, bool is_tight, INOUT(LeafBox) box)
 {
     Rows to_world = to_world_of(record);
     Rows to_object = inverse_of(to_world);
@@ -149,7 +150,7 @@ FUNC SwInstance place_instance(InstanceRecord record, Address absent, INOUT(Leaf
     instance.root = geometry.bvh.root;
     instance.kind = geometry.kind;
     instance.extent = largest_coordinate(geometry.bvh.lo, geometry.bvh.hi);
-    box = box_of_instance(geometry, to_world, to_object);
+    box = box_of_instance(geometry, to_world, to_object, is_tight);
     return instance;
 }
 #endif

@@ -70,10 +70,12 @@ FUNC float reach_below(vec4 row, vec3 lo, vec3 hi)
 FUNC GeometryBox box_in_world(GeometryBox box, Rows m)
 {
     GeometryBox world;
-    world.lo = vec3(reach_below(m.r0, box.lo, box.hi), reach_below(m.r1, box.lo, box.hi),
-                    reach_below(m.r2, box.lo, box.hi));
-    world.hi = -vec3(reach_below(-m.r0, box.lo, box.hi), reach_below(-m.r1, box.lo, box.hi),
-                     reach_below(-m.r2, box.lo, box.hi));
+    DONT_UNROLL for (uint axis = 0u; axis < 3u; axis = axis + 1u)
+    {
+        vec4 row = axis == 0u ? m.r0 : (axis == 1u ? m.r1 : m.r2);
+        world.lo[axis] = reach_below(row, box.lo, box.hi);
+        world.hi[axis] = -reach_below(-row, box.lo, box.hi);
+    }
     return world;
 }
 

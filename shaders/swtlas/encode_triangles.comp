@@ -14,7 +14,5 @@ void main()
     if (gl_LocalInvocationIndex >= chunk.count) return;
     uint position = chunk.first + gl_LocalInvocationIndex;
     BuildTree tree = AT(args.trees, chunk.tree);
-    BvhTriangle fetched = fetch_primitive(tree, AT(args.order, position) - tree.first);
-    if (!has_boxes(tree)) fetched = without_inactive_vertices(fetched);
-    AT(tree.triangles, position - tree.first) = fetched;
+    AT(tree.triangles, position - tree.first) = boxed_primitive(tree, AT(args.order, position) - tree.first).primitive;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The world box of each instance, what traversal needs of it, and the bounds of the centroids. The only stage that
-// knows instances from triangles: all later ones see boxes.
+// The world box of each instance, what traversal needs of it, and the bounds of the centroids. All later stages see
+// boxes.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"
@@ -18,7 +18,7 @@ void main()
         uint index = chunk.first + i;
         LeafBox box = empty_box();
         InstanceRecord record = in_built_units(AT(args.records, index));
-        AT(args.instances, index) = place_instance(record, absent_near(args.records.address), box);
+        AT(args.instances, index) = place_instance(record, absent_near(args.records.address), true, box);
         store_box(args.boxes, index, box);
         add_center(centers, box);
     }

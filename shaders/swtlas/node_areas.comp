@@ -25,7 +25,7 @@ void main()
     Bvh tree = AT(args.tree, 0);
     float unit = area_unit(tree.lo, tree.hi);
     uint begin = gl_LocalInvocationID.x * SHARE;
-    for (uint i = begin; i < begin + SHARE; ++i)
+    DONT_UNROLL for (uint i = begin; i < begin + SHARE; ++i)
     {
         uint index = group_index() * AREA_GROUP + i;
         sums[i] = index < args.count ? area_of(tree, unit, index) : 0.0f;
@@ -33,7 +33,7 @@ void main()
     for (uint stride = 1u; stride < SHARE; stride *= 2u)
         for (uint i = begin; i < begin + SHARE; i += 2u * stride) sums[i] += sums[i + stride];
     barrier();
-    for (uint stride = SHARE; stride < AREA_GROUP; stride *= 2u)
+    DONT_UNROLL for (uint stride = SHARE; stride < AREA_GROUP; stride *= 2u)
     {
         if (begin % (2u * stride) == 0u) sums[begin] += sums[begin + stride];
         barrier();

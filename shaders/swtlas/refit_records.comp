@@ -16,8 +16,9 @@ REFERENCE(SharedBoxes, coherent, LeafBox items[], 8)
 LeafBox refit_leaf(BuildTree tree, uint slot, uint leaf)
 {
     if (has_instances(tree)) return AT(args.boxes, tree.first + leaf);
-    store_record(tree.records, slot, encode_leaf(tree, leaf));
-    return box_of_primitive(tree, leaf);
+    BoxedPrimitive boxed = boxed_primitive(tree, leaf);
+    store_record(tree.records, slot, encode_primitive(boxed.primitive));
+    return boxed.box;
 }
 
 LeafBox refit_node(BuildTree tree, uint slot, CompressedRecord node, SharedBoxes boxes)

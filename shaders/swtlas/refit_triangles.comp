@@ -15,7 +15,7 @@ void main()
     uint leaf = chunk.first + gl_LocalInvocationIndex;
     BuildTree tree = AT(args.trees, chunk.tree);
     uint position = leaf - tree.first;
-    BvhTriangle triangle = fetch_primitive(tree, AT(tree.triangles, position).primitive_index);
-    store_box(args.boxes, leaf, box_of_triangle(triangle));
-    AT(tree.triangles, position) = without_inactive_vertices(triangle);
+    BoxedPrimitive boxed = boxed_primitive(tree, AT(tree.triangles, position).primitive_index);
+    store_box(args.boxes, leaf, boxed.box);
+    AT(tree.triangles, position) = boxed.primitive;
 }

@@ -123,6 +123,7 @@ void World::check_view_of_last_sync() {
 }
 
 World::State World::state() {
+    const Bounds bound = accel().revision() ? accel().world_bound() : Bounds{};  // there is none before the first sync
     context().wait_for_gpu();
     State state{};
     state.n_instances = accel().n_instances();
@@ -133,7 +134,6 @@ World::State World::state() {
     state.has_tower = accel().is_valid(tower_);
     state.has_guest = accel().is_valid(guest_);
     state.is_clean = faults::outcome_of([&] { accel().view(); }) == faults::Outcome::done;
-    const Bounds bound = accel().revision() ? accel().world_bound() : Bounds{};  // there is none before the first sync
     for (const vec3& corner : {bound.lo, bound.hi})
         state.world_bound.insert(state.world_bound.end(), {corner.x, corner.y, corner.z});
     state.live = faults_.live_objects();

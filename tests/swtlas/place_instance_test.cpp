@@ -17,7 +17,9 @@ constexpr std::array layouts = all_layouts;
 
 LeafBox placed(Layout layout, const Mesh& mesh, const Transform& transform) {
     reference::Scene scene(layout);
-    scene.add_instance(scene.add_geometry(mesh), make_instance_record(transform));
+    const auto geometry = scene.add_geometry(mesh);
+    for (int i = 0; i < 2; ++i)
+        scene.add_instance(geometry, make_instance_record(transform));  // a lone one has a loose box
     scene.build();
     return scene.instance_boxes().front();
 }

@@ -77,10 +77,11 @@ std::vector<LeafBox> leaves_triangles(std::span<const vec3> positions, std::span
 
 std::vector<LeafBox> leaves_instances(std::span<const InstanceRecord> records, std::vector<SwInstance>& instances) {
     std::vector<LeafBox> boxes;
+    const bool is_tight = records.size() > 1;
     instances.clear();
     for (const InstanceRecord& record : records) {
         LeafBox box;
-        instances.push_back(place_instance(record, NULL_ADDRESS, box));
+        instances.push_back(place_instance(record, NULL_ADDRESS, is_tight, box));
         boxes.push_back(box);
     }
     return boxes;

@@ -252,8 +252,7 @@ void ReferenceBackend::record_trace(Commands& commands, const TraceArgs& args) c
     }
     if (count == 0) return;
     const Buffer input = read(args.rays, count);
-    if (!world_bound_if_ready())
-        fail(name(), ": trace: the last sync is not submitted yet; the host answers while it records");
+    if (!is_sync_done()) fail(name(), ": trace: the last sync is not submitted yet; the host answers while it records");
     Buffer hits(context(), {.name = "reference hits", .bytes = count * sizeof(Hit), .memory = Memory::upload});
     const Ray* const rays = reinterpret_cast<const Ray*>(input.mapped());
     Hit* const found = reinterpret_cast<Hit*>(hits.mapped());

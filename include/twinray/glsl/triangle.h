@@ -82,9 +82,14 @@ FUNC bool is_active_triangle(vec3 a, vec3 b, vec3 c) {
     a = a / scale;
     b = b / scale;
     c = c / scale;
-    return !(is_flat(vec2(a.x, a.y), vec2(b.x, b.y), vec2(c.x, c.y)) &&
-             is_flat(vec2(a.y, a.z), vec2(b.y, b.z), vec2(c.y, c.z)) &&
-             is_flat(vec2(a.z, a.x), vec2(b.z, b.x), vec2(c.z, c.x)));
+    bool flat_so_far = true;
+    DONT_UNROLL for (uint axis = 0u; axis < 3u; axis = axis + 1u) {
+        flat_so_far = flat_so_far && is_flat(vec2(a.x, a.y), vec2(b.x, b.y), vec2(c.x, c.y));
+        a = vec3(a.y, a.z, a.x);
+        b = vec3(b.y, b.z, b.x);
+        c = vec3(c.y, c.z, c.x);
+    }
+    return !flat_so_far;
 }
 
 // Of 3 tightly packed floats a vertex.

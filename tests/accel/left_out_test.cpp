@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+// A sync leaves out what nobody needs: it is seen by its passes.
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/accel/world_bound.h"
+#include "engine/core/context.h"
+#include "tests/accel/accel_fixture.h"
+
+namespace twinray {
+namespace {
+
+using test::square;
+
+class LeftOut : public test::AccelTest {
+  protected:
+    // Of the last sync.
+    std::vector<std::string> passes() {
+        accel().wait_for_gpu();
+        std::vector<std::string> names;
+        for (const PassTiming& pass : accel().build_timings()) names.push_back(pass.name);
+        EXPECT_FALSE(names.empty()) << "the device has no timestamps, which tell of passes";
+        return names;
+    }
+    bool has_pass(const std::string& name) {
+        const std::vector<std::string> names = passes();
+        return std::ranges::find(names, name) != names.end();
+    }
+    void move(AccelHandle handle, float x) {
+        accel().update_transform(handle, Transform::translation({x, 0, 0}));
+        accel().sync();
+    }
+};
+TWINRAY_OVER_EVERY_ACCEL(LeftOut);
+
+TEST_P(LeftOut, TheBoundUntilSomebodyAsks) {
+    const AccelHandle handle = accel().push(square(0));
+    accel().sync();
+    EXPECT_FALSE(has_pass("engine_world_bound"));
+    EXPECT_EQ(accel().world_bound().hi, vec3(1, 1, 0)) << "it is computed for the sync that did without";
+    for (const float x : {2.0f, 3.0f}) {
+        move(handle, x);
+        EXPECT_TRUE(has_pass("engine_world_bound")) << "who asked once asks again";
+        EXPECT_EQ(accel().world_bound().hi, vec3(1 + x, 1, 0));
+    }
+}
+
+TEST_P(LeftOut, TheBoundIsThereAfterTheFirstQuestionThatDoesNotWait) {
+    accel().push(square(0));
+    accel().sync();
+    accel().wait_for_gpu();
+    accel().world_bound_if_ready();
+    accel().wait_for_gpu();
+    ASSERT_TRUE(accel().world_bound_if_ready().has_value());
+    EXPECT_EQ(accel().world_bound_if_ready()->hi, vec3(1, 1, 0));
+}
+
+// As it was in the last sync, whatever kernels write after it.
+TEST_P(LeftOut, TheBoundIsThatOfTheLastSync) {
+    const AccelHandle handle = accel().push(square(0));
+    accel().sync();
+    const InstanceRange range = accel().instance_buffer(handle);
+    const Transform up = Transform::translation({0, 0, 7});
+    Commands commands(context(), "move");
+    {
+        const auto pass = commands.pass("move");
+        context().state().vk().vkCmdUpdateBuffer(commands.handle(), range.buffer, range.offset, sizeof up, &up);
+    }
+    commands.submit();
+    EXPECT_EQ(accel().world_bound().hi.z, 0.0f);
+    accel().mark_transforms_dirty(handle);
+    accel().sync();
+    EXPECT_EQ(accel().world_bound().hi.z, 7.0f);
+}
+
+TEST_P(LeftOut, OneInstanceOfTwoAndTwoOfOne) {
+    const Mesh mesh = make_icosphere(2);
+    const auto turned = Transform{{vec4(0.6f, -0.8f, 0, 0), vec4(0.8f, 0.6f, 0, 0), vec4(0, 0, 1, 0)}};
+    const AccelHandle first = accel().push(mesh, turned);
+    for (int round = 0; round < 2; ++round) {
+        EXPECT_EQ(closest(test::down(0.1f, 0.2f)).instance_index, 0u);
+        const AccelHandle second = accel().push(mesh, Transform::translation({0, 0, 3}));
+        EXPECT_NEAR(closest(test::down(0.1f, 0.2f)).t, 6.0f, 0.1f);
+        EXPECT_EQ(accel().handle_of(closest(test::down(0.1f, 0.2f))), second);
+        accel().erase(second);
+        EXPECT_NEAR(closest(test::down(0.1f, 0.2f)).t, 9.0f, 0.1f);
+        EXPECT_EQ(accel().handle_of(closest(test::down(0.1f, 0.2f))), first);
+    }
+}
+
+// As the count of rays of a trace: the bits of 1.0f are more than 3.
+TEST_P(LeftOut, TheBoundUntilAKernelReadsIt) {
+    accel().push(square(5));
+    accel().sync();
+    const Buffer rays = device_copy(std::vector<Ray>(3, test::down(0.5f, 0.25f))),
+                 hits = device_copy(std::vector<Hit>(3));
+    Commands commands(context(), "count from the bound");
+    accel().trace(commands, accel().view(),
+                  {.rays = rays.ref<Ray>(),
+                   .hits = hits.ref<Hit>(),
+                   .count = 3,
+                   .indirect_count = {accel().world_bound_on_device().address + offsetof(WorldBound, hi)}});
+    commands.submit();
+    EXPECT_EQ(download<Hit>(context(), hits, 3)[2].hit, 1u);
+}
+
+TEST_P(LeftOut, AreasUntilSomebodyAsks) {
+    accel().push(make_icosphere(2));
+    accel().push(make_icosphere(3), Transform::translation({1, 0, 0}));
+    accel().sync();
+    EXPECT_FALSE(has_pass("engine_join_areas"));
+    if (!measures_its_trees()) return;
+    const std::optional<double> built = accel().sah();
+    ASSERT_TRUE(built.has_value());
+    EXPECT_GT(*built, 0);
+    EXPECT_EQ(accel().sah(), built) << "measured once";
+}
+
+// Nothing is sorted, and of a tree's stages one is left.
+TEST_P(LeftOut, StagesOfTreesWithOneLeaf) {
+    const AccelHandle handle =
+        accel().push(Mesh{.name = "one", .positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, .triangles = {{0, 1, 2}}});
+    accel().sync();
+    const std::vector<std::string> software = {"geometry sources",    "swtlas geometry input", "swtlas build input",
+                                               "swtlas_lone_leaves",  "instance upload",       "swtlas scene input",
+                                               "swtlas_lone_instance"};
+    if (GetParam() == test::Kind::software) EXPECT_EQ(passes(), software);
+    EXPECT_FALSE(has_pass("sort_histogram"));
+    EXPECT_EQ(closest(test::down(0.25f, 0.25f)).hit, 1u);
+    accel().update_transform(handle, Transform::translation({0, 0, 3}));
+    accel().update_vertices(handle, std::vector<vec3>{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}});
+    accel().sync();
+    if (GetParam() == test::Kind::software) EXPECT_FALSE(has_pass("sort_histogram"));
+    EXPECT_EQ(closest(test::down(0.9f, 0.9f)).t, 7.0f) << "the leaf is as it is now";
+}
+
+}  // namespace
+}  // namespace twinray
