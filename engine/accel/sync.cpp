@@ -219,8 +219,8 @@ void AccelBackend::warn_of_unusable_instances() {
     const uint count = bound_.read().unusable_count;
     if (count && count != warned_unusable_)
         context_.state().warn(text(name_, ": ", count,
-                                   " instances have a transform that is singular or not finite, written on "
-                                   "the device; they are inactive"));
+                                   " instances have a transform that is singular or not finite, since kernels wrote "
+                                   "it or their mesh was replaced; they are inactive"));
     warned_unusable_ = count;
 }
 

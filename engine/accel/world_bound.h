@@ -34,8 +34,8 @@ class WorldBoundKernel {
 // The box around the instances of one sync, which is computed when somebody first asks for it.
 class BoundOfSync {
   public:
-    // Of `count` records, whose geometry blocks hold their boxes by the time the commands run. is_there: earlier
-    // commands have computed it.
+    // The geometry blocks of the `count` records hold their boxes by the time the commands run. is_there: earlier
+    // commands have computed the bound.
     BoundOfSync(const WorldBoundKernel& kernel, Commands& commands, Ref<InstanceRecord> records, std::size_t count,
                 bool is_there = false)
         : kernel_(kernel),

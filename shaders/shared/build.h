@@ -210,7 +210,7 @@ FUNC LeafBox box_around_vertices(BvhTriangle t)
     return box;
 }
 
-// As traversal wants it, and the box around it.
+// A primitive as traversal wants it, and the box around it.
 struct BoxedPrimitive
 {
     BvhTriangle primitive;

@@ -58,7 +58,7 @@ TEST_P(LeftOut, TheBoundIsThereAfterTheFirstQuestionThatDoesNotWait) {
     EXPECT_EQ(accel().world_bound_if_ready()->hi, vec3(1, 1, 0));
 }
 
-// As it was in the last sync, whatever kernels write after it.
+// Kernels write after it, and nothing has changed before the next one.
 TEST_P(LeftOut, TheBoundIsThatOfTheLastSync) {
     const AccelHandle handle = accel().push(square(0));
     accel().sync();
@@ -76,6 +76,19 @@ TEST_P(LeftOut, TheBoundIsThatOfTheLastSync) {
     EXPECT_EQ(accel().world_bound().hi.z, 7.0f);
 }
 
+TEST_P(LeftOut, TheBoundUnlessAMeshOfOtherUnitsMakesATransformUnusable) {
+    const AccelHandle handle = accel().push(square(0), Transform::scaling(vec3(1e20f)));
+    accel().sync();
+    Mesh large = square(0);
+    for (vec3& point : large.positions) point *= 1e36f;
+    accel().update(handle, large);
+    accel().sync();
+    accel().wait_for_gpu();
+    accel().push(square(1));
+    accel().sync();
+    EXPECT_TRUE(was_logged("they are inactive"));
+}
+
 TEST_P(LeftOut, OneInstanceOfTwoAndTwoOfOne) {
     const Mesh mesh = make_icosphere(2);
     const auto turned = Transform{{vec4(0.6f, -0.8f, 0, 0), vec4(0.8f, 0.6f, 0, 0), vec4(0, 0, 1, 0)}};
@@ -91,7 +104,7 @@ TEST_P(LeftOut, OneInstanceOfTwoAndTwoOfOne) {
     }
 }
 
-// As the count of rays of a trace: the bits of 1.0f are more than 3.
+// A trace takes the bits of 1.0f, which are more than 3, for its count of rays.
 TEST_P(LeftOut, TheBoundUntilAKernelReadsIt) {
     accel().push(square(5));
     accel().sync();
