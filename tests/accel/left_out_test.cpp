@@ -134,19 +134,26 @@ TEST_P(LeftOut, AreasUntilSomebodyAsks) {
 
 // Nothing is sorted, and of a tree's stages one is left.
 TEST_P(LeftOut, StagesOfTreesWithOneLeaf) {
-    const AccelHandle handle =
-        accel().push(Mesh{.name = "one", .positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, .triangles = {{0, 1, 2}}});
+    Mesh one;
+    one.name = "one";
+    one.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    one.triangles = {{0, 1, 2}};
+    const AccelHandle handle = accel().push(one);
     accel().sync();
     const std::vector<std::string> software = {"geometry sources",    "swtlas geometry input", "swtlas build input",
                                                "swtlas_lone_leaves",  "instance upload",       "swtlas scene input",
                                                "swtlas_lone_instance"};
-    if (GetParam() == test::Kind::software) EXPECT_EQ(passes(), software);
+    if (GetParam() == test::Kind::software) {
+        EXPECT_EQ(passes(), software);
+    }
     EXPECT_FALSE(has_pass("sort_histogram"));
     EXPECT_EQ(closest(test::down(0.25f, 0.25f)).hit, 1u);
     accel().update_transform(handle, Transform::translation({0, 0, 3}));
     accel().update_vertices(handle, std::vector<vec3>{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}});
     accel().sync();
-    if (GetParam() == test::Kind::software) EXPECT_FALSE(has_pass("sort_histogram"));
+    if (GetParam() == test::Kind::software) {
+        EXPECT_FALSE(has_pass("sort_histogram"));
+    }
     EXPECT_EQ(closest(test::down(0.9f, 0.9f)).t, 7.0f) << "the leaf is as it is now";
 }
 
