@@ -59,6 +59,21 @@ missing_packages() {
     if [[ -n $number ]] && dpkg --compare-versions "$number" lt "$oldest_mesa"; then
         echo "mesa-vulkan-drivers >= $oldest_mesa (installed: $number)"
     fi
+    if [[ -n $number && -n ${version[mesa-drm-shim]-} && ${version[mesa-drm-shim]} != "$number" ]] &&
+        is_served "mesa-drm-shim=$number"; then
+        echo "mesa-drm-shim=$number"
+    fi
+}
+
+is_served() { apt-cache show "$1" >/dev/null 2>&1; } # package=version
+
+# The shim works with a driver of its own version of Mesa alone, which backports may have brought.
+match_shim_to_driver() {
+    local number i
+    number=$(dpkg-query -W -f '${Version}' mesa-vulkan-drivers 2>/dev/null) || return 0
+    for i in "${!packages[@]}"; do
+        if [[ ${packages[i]} == mesa-drm-shim ]] && is_served "mesa-drm-shim=$number"; then packages[i]="mesa-drm-shim=$number"; fi
+    done
 }
 
 # Leaves out what apt does not serve, and names it.
@@ -182,8 +197,11 @@ install_packages() {
         apt_failed "reading the package indexes"
     fi
     if ((!is_bookworm)); then leave_out_what_is_not_served; fi
+    local wanted=("${packages[@]}")
+    match_shim_to_driver
     say "installs ${#packages[@]} packages and what they depend on; log in $log"
     apt_get install -y --no-install-recommends "${packages[@]}" || apt_failed "installing"
+    packages=("${wanted[@]}")
     { grep -h '^Need to get' "$log" || true; } | sed 's/^Need to get/setup: downloaded/'
     local missing
     missing=$(missing_packages)

@@ -137,14 +137,17 @@ int run_again(const Family& family, const std::vector<std::string>& arguments) {
         become_again(arguments);
     }
     const std::optional<int> status = exit_status_of(child);
-    if (!status) fail("family '", family.name, "': a signal ended the process that compiled for it");
+    if (!status)
+        fail("family '", family.name, "': a signal ended the process that compiled for it, as where ", family.shim,
+             " is of another version of Mesa than its driver ", family.driver);
     return *status;
 }
 
 std::string find_device(const Family& family) {
     if (!has_device(family))
         fail("family '", family.name, "' is not here: this Mesa's ", family.shim, " or its driver ", family.driver,
-             " does not know ", family.what, " (", family.variable, '=', family.value, ')');
+             " does not know ", family.what, " (", family.variable, '=', family.value,
+             "), or they are of two versions of Mesa");
     return std::to_string(index_of_device(family));
 }
 
