@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 // `twinray trace`: a file of rays in, a file of hits out.
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <iostream>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include <twinray/scene.h>
@@ -28,13 +30,50 @@ struct TraceOptions {
     std::string query = "closest";
     Level level = Level::watertight;
     Cull cull = Cull::none;
+    uint mask = 0xff;
+    std::vector<std::string> instance_masks;  // NAME=BITS each
     PictureOptions pictures;
     RayPictureDesc rays_shown;
 };
 
+using MasksByName = std::map<std::string, std::uint8_t, std::less<>>;
+
+MasksByName read_masks(std::span<const std::string> words) {
+    MasksByName masks;
+    for (const std::string& word : words) {
+        const std::size_t at = std::min(word.rfind('='), word.size());
+        std::uint8_t bits = 0;
+        const char* const last = word.data() + word.size();
+        const auto [end, error] = std::from_chars(std::min(word.data() + at + 1, last), last, bits);
+        if (at == 0 || error != std::errc() || end != last)
+            throw UsageError(text("--instance-masks has '", word, "', but must be NAME=BITS, BITS from 0 to 255"));
+        masks[word.substr(0, at)] = bits;
+    }
+    return masks;
+}
+
+void set_masks(AbstractAccel& accel, const Scene& scene, const MasksByName& masks) {
+    for (const auto& [name, bits] : masks)
+        if (std::ranges::find(scene.instances, name, &Instance::name) == scene.instances.end())
+            fail("--instance-masks: the scene has no instance '", name, "'");
+    auto instance = scene.instances.begin();
+    for (const AccelHandle handle : accel.handles())
+        for (std::size_t i = 0; i < accel.n_instances(handle); ++i, ++instance) {
+            const auto found = masks.find(instance->name);
+            if (found == masks.end()) continue;
+            InstanceOptions changed = accel.get_instance(handle, i).options;
+            changed.mask = found->second;
+            accel.update_options(handle, i, changed);
+        }
+}
+
+TraceDesc desc_of(const TraceOptions& options) {
+    return {.mask = static_cast<std::uint8_t>(options.mask), .cull = options.cull, .level = options.level};
+}
+
 // The hits of all rays, one after the other; writes how many each has.
 std::vector<Hit> trace_all(AbstractAccel& accel, std::span<const Ray> rays, const TraceOptions& options) {
-    HitsOfRays found = AllHits(accel)(rays);
+    HitsOfRays found = AllHits(accel)(rays, desc_of(options));
     std::vector<std::uint32_t> counts;
     for (std::size_t i = 0; i < rays.size(); ++i)
         counts.push_back(static_cast<std::uint32_t>(found.first[i + 1] - found.first[i]));
@@ -50,7 +89,7 @@ std::vector<Hit> trace_in_batches(AbstractAccel& accel, std::span<const Ray> ray
     Progress progress("trace", rays.size(), options.common.quiet);
     for (std::size_t first = 0; first < rays.size(); first += batch_size) {
         const auto batch = rays.subspan(first, std::min(batch_size, rays.size() - first));
-        const TraceDesc desc{.cull = options.cull, .level = options.level};
+        const TraceDesc desc = desc_of(options);
         const std::vector<Hit> some =
             options.query == "any" ? accel.any_hits(batch, desc) : accel.closest_hits(batch, desc);
         hits.insert(hits.end(), some.begin(), some.end());
@@ -79,6 +118,7 @@ void run(const TraceOptions& options) {
     if (is_all && options.level != Level::watertight)
         throw UsageError("--query all finds hits at --level watertight alone");
     if (is_all && !options.pictures.files.empty()) throw UsageError("--picture shows one hit a ray: not --query all");
+    const MasksByName masks = read_masks(options.instance_masks);
     check_writable(options.hits);
     check_pictures(options.pictures);
     if (is_all) check_writable(options.counts);
@@ -88,6 +128,7 @@ void run(const TraceOptions& options) {
     const AccelChoice choice =
         choose_accel(context->properties(), options.accel, {.level = options.level, .kernel_queries = is_all});
     const std::unique_ptr<AbstractAccel> accel = make_accel(*context, choice, scene, options.level);
+    set_masks(*accel, scene, masks);
     const auto start = std::chrono::steady_clock::now();
     const std::vector<Hit> hits = is_all ? trace_all(*accel, rays, options) : trace_in_batches(*accel, rays, options);
     const double seconds = seconds_since(start);
@@ -137,7 +178,13 @@ Command trace_command() {
                         level_option(options->level),
                         {.name = "--cull",
                          .value = choice(options->cull, sides),
-                         .help = "triangles that are not hit: those seen from the back, or from the front"}}};
+                         .help = "triangles that are not hit: those seen from the back, or from the front"},
+                        {.name = "--mask",
+                         .value = number(options->mask, {0, 255}),
+                         .help = "8 bits: rays see the instances whose mask shares a bit with it"},
+                        {.name = "--instance-masks",
+                         .value = words(options->instance_masks, "NAME=BITS,..."),
+                         .help = "masks of instances by their names in the scene; all others have 255"}}};
     const Names<HitColor> colors = {{"distance", HitColor::distance},
                                     {"instance", HitColor::instance},
                                     {"facing", HitColor::facing},

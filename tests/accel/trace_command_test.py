@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Runs `twinray trace` as a user does. Usage: trace_command_test.py TWINRAY"""
+import base64
 import json
 import pathlib
 import struct
@@ -11,8 +12,8 @@ import tempfile
 twinray, here = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(tempfile.mkdtemp())
 
 
-def run(*arguments, rays="rays", status=0):
-    done = subprocess.run([twinray, "trace", "two.ply", "--rays", rays, "--hits", "hits", "--quiet", *arguments],
+def run(*arguments, scene="two.ply", rays="rays", status=0):
+    done = subprocess.run([twinray, "trace", scene, "--rays", rays, "--hits", "hits", "--quiet", *arguments],
                           capture_output=True, text=True, cwd=here)
     assert done.returncode == status, f"{arguments}: status {done.returncode}\n{done.stdout}{done.stderr}"
     return done.stdout + done.stderr
@@ -42,6 +43,28 @@ for accel in ["sw", "hw"]:
     run("--accel", accel, "--query", "all", "--counts", "counts")
     assert hits() == [(1, 1, 1), (1, 2, 0), (1, 2, 0)], hits()
     assert struct.unpack("<3I", (here / "counts").read_bytes()) == (2, 1, 0)
+# Two instances with names, and rays that see one of them.
+triangle = struct.pack("<9f", 0, 0, 0, 4, 0, 0, 0, 4, 0)
+(here / "named.gltf").write_text(json.dumps({
+    "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}],
+    "nodes": [{"name": "near", "mesh": 0, "translation": [0, 0, 1]}, {"name": "far", "mesh": 0, "translation": [0, 0, 2]}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [4, 4, 0]}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+    "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64," + base64.b64encode(triangle).decode()}]}))
+for accel in ["sw", "hw"] if devices["ray_query"] else ["sw"]:
+    for mask, seen in [("1", 1), ("2", 2), ("6", 2), ("8", None), ("255", 1)]:
+        masked = ["--accel", accel, "--mask", mask, "--instance-masks", "near=1,far=2"]
+        run(*masked, scene="named.gltf")
+        assert hits()[0][1] == (seen or -1), (accel, mask, hits())
+        run(*masked, "--query", "all", "--counts", "counts", scene="named.gltf")
+        assert len(hits()) == {"255": 2, "8": 0}.get(mask, 1) * 2, (accel, mask, hits())
+    run("--accel", accel, "--mask", "4", "--instance-masks", "near=1", scene="named.gltf")
+    assert hits()[0][1] == 2, hits()
+assert "the scene has no instance 'nowhere'" in run("--instance-masks", "nowhere=1", scene="named.gltf", status=1)
+for wrong in ["near", "near=", "near=256", "=1", "near=x"]:
+    assert f"has '{wrong}', but must be NAME=BITS" in run("--instance-masks", wrong, scene="named.gltf", status=2)
+assert "--mask is '256', but must be a whole number at most 255" in run("--mask", "256", status=2)
 assert "--query all needs --counts" in run("--query", "all", status=2)
 assert "--counts is for --query all" in run("--counts", "counts", status=2)
 (here / "rays").write_bytes(b"12345")
