@@ -19,18 +19,23 @@ struct Configuration {
 };
 
 std::vector<Configuration> configurations_on(const DeviceProperties& device) {
+    const auto with = [](AccelOptions options) {
+        options.keeps_meshes = options.can_move = false;
+        return options;
+    };
     std::vector<Configuration> configurations = {
-        {"needed", {.can_move = false}},
-        {"may move", {}},
+        {"needed", with({})},
+        {"may move", {.keeps_meshes = false}},
+        {"meshes on the host", {.can_move = false}},
         {"vertices moved", {.can_move = false}, true},
-        {"build quality high", {.build_quality = BuildQuality::high, .can_move = false}},
-        {"layout compressed8", {.layout = Layout::compressed8, .can_move = false}},
-        {"layout bvh2", {.layout = Layout::bvh2, .can_move = false}},
+        {"build quality high", with({.build_quality = BuildQuality::high})},
+        {"layout compressed8", with({.layout = Layout::compressed8})},
+        {"layout bvh2", with({.layout = Layout::bvh2})},
     };
     if (SwTlas::capability_on(device, Feature::level_refined).support != Support::unsupported)
-        configurations.push_back({"level refined", {.level = Level::refined, .can_move = false}});
+        configurations.push_back({"level refined", with({.level = Level::refined})});
     if (SwTlas::capability_on(device, Feature::level_certified).support != Support::unsupported)
-        configurations.push_back({"level certified", {.level = Level::certified, .can_move = false}});
+        configurations.push_back({"level certified", with({.level = Level::certified})});
     return configurations;
 }
 
@@ -64,11 +69,9 @@ void measure_round(Context& context, const Scene& scene, const Configuration& co
 // In the order of the columns.
 std::vector<std::pair<const char*, double>> shares_of(const MemoryUsage& usage, std::size_t triangles) {
     const auto share = [&](std::uint64_t bytes) { return static_cast<double>(bytes) / static_cast<double>(triangles); };
-    return {{"structures", share(usage.structures())},
-            {"instances", share(usage.instances + usage.blocks)},
-            {"vertices", share(usage.vertices)},
-            {"scratch", share(usage.scratch)},
-            {"total", share(usage.total())}};
+    return {{"structures", share(usage.structures())}, {"instances", share(usage.instances + usage.blocks)},
+            {"vertices", share(usage.vertices)},       {"scratch", share(usage.scratch)},
+            {"total", share(usage.total())},           {"host", share(usage.host)}};
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ AccelBackend::AccelBackend(Context& context, std::string name, const AccelOption
       instances_(context),
       bound_(context),
       scene_costs_(context) {
-    if (options.keeps_surfaces) surfaces_ = std::make_unique<SurfaceTables>(context);
+    if (options.keeps_surfaces || options.keeps_metadata) surfaces_ = std::make_unique<SurfaceTables>(context);
     if (options.level < Level::refined) return;
     if (!context.properties().shader_float64)
         fail(name_, ": ", name_of(feature_of(options.level)), " needs float64, which device '",
@@ -70,7 +70,9 @@ AccelHandle AccelBackend::push(const DeviceMesh& mesh, std::span<const Transform
 
 template <class Mesh>
 SurfaceSlice AccelBackend::surface_of(const Mesh& mesh) {
-    return surfaces_ ? surface_slice(mesh, surfaces_->names()) : SurfaceSlice{};
+    check_arrays(mesh);
+    if (!surfaces_) return {};
+    return surface_slice(options_.keeps_surfaces ? mesh : metadata_of(mesh), surfaces_->names());
 }
 
 Geometry AccelBackend::geometry_of(const DeviceMesh& mesh, const char* action) const {
@@ -235,14 +237,22 @@ AccelBackend::PushedGeometry& AccelBackend::checked_for_vertices(AccelHandle han
     if (geometry.is_in_place())
         fail(name_, ": update_vertices: mesh '", geometry.name,
              "' is in place in memory of the caller's: write there, then mark_vertices_dirty()");
+    if (!pushed.held->vertices.on_device()) check_mesh_is_kept(*pushed.held, "update_vertices");
     if (const std::size_t n = geometry.vertex_count(); count != n)
         fail(name_, ": update_vertices: mesh '", geometry.name, "': ", count, " positions for its ", n,
              " vertices; update() changes their number");
     return pushed;
 }
 
+void AccelBackend::check_mesh_is_kept(const HeldGeometry& held, const char* action) const {
+    if (held.geometry.forgotten)
+        fail(name_, ": ", action, ": mesh '", held.geometry.name,
+             "' is no longer there: the accelerator was made with AccelOptions::keeps_meshes = false");
+}
+
 void AccelBackend::update_vertices(AccelHandle handle, std::span<const vec3> positions) {
     PushedGeometry& pushed = checked_for_vertices(handle, positions.size());
+    check_mesh_is_kept(*pushed.held, "update_vertices");
     Geometry& geometry = pushed.held->geometry;
     const std::size_t inactive = count_non_finite_triangles({geometry.name, positions, geometry.triangles});
     geometry.move_to(positions);
@@ -357,6 +367,7 @@ const Buffer& AccelBackend::geometry_block(AccelHandle handle) const {
 
 Geometry AccelBackend::geometry(AccelHandle handle) const {
     const PushedGeometry& pushed = live(handle, "geometry");
+    check_mesh_is_kept(*pushed.held, "reading it back");
     Geometry geometry = pushed.held->geometry;
     context_.state().check_submitted(synced_);
     vertices_.download(geometry, pushed.held->vertices);

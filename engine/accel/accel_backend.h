@@ -227,7 +227,7 @@ class AccelBackend {
         std::shared_ptr<HeldGeometry> held;
         InstanceSlice instances = {};
 
-        bool is_synced() const { return held->built || instances.first || instances.placed; }
+        bool is_synced() const { return held->built || instances.first; }
 
         void add_to(SceneTraits& traits) const;
     };
@@ -273,6 +273,7 @@ class AccelBackend {
     AccelHandle place(Geometry&& geometry, SurfaceSlice&& surface, std::span<const Transform> transforms,
                       std::span<const InstanceOptions> options);
     AccelHandle add(PushedGeometry&& pushed);
+    void check_mesh_is_kept(const HeldGeometry& held, const char* action) const;
     void replace(AccelHandle handle, Geometry&& geometry, SurfaceSlice&& surface);
     template <class Mesh>
     SurfaceSlice surface_of(const Mesh& mesh);
@@ -299,7 +300,7 @@ class AccelBackend {
     void stage_vertices(Commands& commands, Staged& staged);
     void stage_surfaces(Commands& commands, Staged& staged);
     // On the device, whether their vertices move or not.
-    bool keeps_meshes() const { return refinement_ || surfaces_; }
+    bool keeps_meshes() const { return refinement_ || options_.keeps_surfaces; }
     void stage_sources(Commands& commands, Staged& staged);
     static PackedMesh kept_mesh(const HeldGeometry& held, const Staged& staged);
     bool lacks_mesh(const HeldGeometry& held) const;
@@ -330,7 +331,7 @@ class AccelBackend {
     VertexArrays vertices_;
     InstanceArray instances_;
     std::unique_ptr<Refinement> refinement_;                   // null below Level::refined
-    std::unique_ptr<SurfaceTables> surfaces_;                  // null without AccelOptions::keeps_surfaces
+    std::unique_ptr<SurfaceTables> surfaces_;                  // null where nothing of it is kept
     mutable std::unique_ptr<SurfaceKernels> surface_kernels_;  // made by the first host that asks for surfaces
     mutable InstanceOwners owners_;
     WorldBoundKernel bound_;

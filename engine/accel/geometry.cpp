@@ -58,6 +58,18 @@ void Geometry::move_to(std::span<const vec3> others) {
     std::transform(others.begin(), others.end(), positions.begin(), [&](vec3 p) { return p * factor; });
 }
 
+void Geometry::forget_mesh() {
+    if (device || kind == GEOMETRY_BOXES) return;
+    forgotten = counts();
+    positions = std::vector<vec3>();  // without its memory
+    triangles = std::vector<uvec3>();
+}
+
+std::uint64_t Geometry::host_bytes() const {
+    return positions.capacity() * sizeof(vec3) + triangles.capacity() * sizeof(uvec3) +
+           boxes.capacity() * sizeof(Bounds);
+}
+
 std::vector<vec3> Geometry::given_positions() const {
     std::vector<vec3> given = positions;
     for (vec3& p : given) p *= scale;

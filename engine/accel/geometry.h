@@ -26,6 +26,11 @@ struct Geometry {
     // Instead of `triangles`, and of `positions` until the host gives some: what the caller has in device memory,
     // without its name and attributes.
     std::optional<DeviceMesh> device;
+    // Instead of both, once forget_mesh() was called: how many there were.
+    struct Counts {
+        std::size_t vertices, triangles;
+    };
+    std::optional<Counts> forgotten;
 
     // Throws Error naming the mesh and the limit: an index out of range, more than max_primitives.
     explicit Geometry(const MeshView& mesh) : Geometry(mesh, near_unit(mesh.positions)) {}
@@ -37,6 +42,9 @@ struct Geometry {
 
     // Other positions, as many, in the user's units.
     void move_to(std::span<const vec3> others);
+    // Frees the host's copy of a mesh that is built.
+    void forget_mesh();
+    std::uint64_t host_bytes() const;
     // As the user gave them.
     std::vector<vec3> given_positions() const;
     // The exponent of the largest finite coordinate, which is below 2^(1 + exponent); 0 where all are 0.
@@ -44,8 +52,12 @@ struct Geometry {
     // The power of two just below the largest finite coordinate, so that coordinates in units of it are near 1.
     static float near_unit(std::span<const vec3> positions);
 
-    std::size_t vertex_count() const { return device ? device->vertex_count : positions.size(); }
-    std::size_t triangle_count() const { return device ? device->triangle_count : triangles.size(); }
+    std::size_t vertex_count() const { return counts().vertices; }
+    std::size_t triangle_count() const { return counts().triangles; }
+    Counts counts() const {
+        if (device) return {device->vertex_count, device->triangle_count};
+        return forgotten.value_or(Counts{positions.size(), triangles.size()});
+    }
     std::size_t primitive_count() const { return kind == GEOMETRY_BOXES ? boxes.size() : triangle_count(); }
     // Whether what was built of that one has room for this.
     bool fits_in_place_of(const Geometry& other) const {

@@ -16,7 +16,9 @@ MemoryUsage AccelBackend::memory_usage() const {
         usage.vertices += held->vertices.bytes();
         usage.surfaces += held->surface.data.bytes();
         if (held->built) usage.geometries += held->built->bytes;
+        usage.host += held->geometry.host_bytes() + held->surface.packed.capacity();
     }
+    for (const auto& [id, pushed] : pushed_) usage.host += pushed.instances.records.capacity() * sizeof(InstanceRecord);
     return usage;
 }
 

@@ -20,7 +20,7 @@ class AttributeNames {
   public:
     // None: no mesh had it.
     std::optional<uint> number_of(std::string_view name) const;
-    // Throws Error naming the mesh and a name that is empty or one too many.
+    // Throws Error naming the mesh and a name that is one too many.
     uint number_for(std::string_view mesh, std::string_view name);
 
   private:
@@ -61,8 +61,17 @@ struct SurfaceSlice {
 // Appends at a multiple of 16 bytes, which it returns.
 std::uint64_t append_aligned(std::vector<std::byte>& packed, std::span<const std::byte> bytes);
 
-// Copies what the mesh has, or notes where the device has it. Throws Error naming the mesh and the array whose length,
-// components or address do not fit, or whose name is empty, taken or one too many; `names` is then as it was.
+// Throws Error naming the mesh and the array whose length, components or address do not fit, or whose name is empty or
+// taken. Does so for arrays that the accelerator does not keep, too.
+void check_arrays(const MeshView& mesh);
+void check_arrays(const DeviceMesh& mesh);
+
+// What AccelOptions::keeps_metadata keeps of the mesh.
+MeshView metadata_of(const MeshView& mesh);
+DeviceMesh metadata_of(const DeviceMesh& mesh);
+
+// Copies what the checked mesh has, or notes where the device has it. Throws Error naming the mesh and an attribute
+// whose name is one too many; `names` is then as it was.
 SurfaceSlice surface_slice(const MeshView& mesh, AttributeNames& names);
 SurfaceSlice surface_slice(const DeviceMesh& mesh, AttributeNames& names);
 

@@ -84,7 +84,7 @@ std::vector<HitExact> AccelBackend::exact_hits(std::span<const Ray64> rays, cons
 }
 
 void AccelBackend::check_keeps_surfaces(const char* action) const {
-    if (!surfaces_) fail(name_, ": ", action, ": made without AccelOptions::keeps_surfaces");
+    if (!options_.keeps_surfaces) fail(name_, ": ", action, ": made without AccelOptions::keeps_surfaces");
 }
 
 void AccelBackend::check_hits(std::span<const Ray> rays, std::span<const Hit> hits, const char* action) const {

@@ -173,9 +173,10 @@ void AccelBackend::stage_scene(Commands& commands, Staged& staged, BoundOfSync& 
 
 void AccelBackend::stage_surfaces(Commands& commands, Staged& staged) {
     std::vector<SurfaceTables::Item> items;
-    for (auto& [id, pushed] : pushed_)
-        items.push_back(
-            {id, pushed.held->geometry.triangle_count(), pushed.instances.records.size(), &pushed.held->surface});
+    for (auto& [id, pushed] : pushed_) {
+        const std::size_t faces = options_.keeps_surfaces ? pushed.held->geometry.triangle_count() : 0;
+        items.push_back({id, faces, pushed.instances.records.size(), &pushed.held->surface});
+    }
     staged.surfaces = surfaces_->stage(commands, items, staged.instances.records);
 }
 
@@ -204,6 +205,7 @@ void AccelBackend::commit(Staged&& staged, SyncPoint done) {
     for (const auto& held : staged.geometries) {
         held->is_listed = false;
         if (held->built && has_compaction(*held->built)) uncompacted_.push_back(held);
+        if (held->built && !options_.keeps_meshes && works_on_device()) held->geometry.forget_mesh();
     }
     edited_.clear();
     edited_instances_.clear();

@@ -73,8 +73,7 @@ class AbstractAccel {
     // the geometry in place: views stay valid. A triangle with a corner that is not finite, or without an area, is
     // inactive until it is moved back.
     void update_vertices(AccelHandle handle, std::span<const vec3> positions);
-    // The same from device memory, count times 3 tightly packed floats, read by the next sync. Nobody checks what lies
-    // there.
+    // The same from device memory, 3 * count tightly packed floats, read by the next sync. Nobody checks them.
     void update_vertices(AccelHandle handle, Floats positions, std::size_t count);
     // The caller's kernels have moved vertices of a DeviceMesh in place: the next sync reads it again and refits.
     void mark_vertices_dirty(AccelHandle handle);

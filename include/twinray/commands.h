@@ -182,8 +182,7 @@ class Commands {
     // them does. Own commands of which it was asked are submitted in the order in which it was.
     SyncPoint promise();
 
-    // After the submission: waits for the GPU; one entry per pass in recording order, none where the queue has no
-    // timestamps.
+    // After the submission: waits for the GPU. An entry per pass as recorded; none if the queue has no timestamps.
     std::vector<PassTiming> timings() const;
 
     Context& context() const;        // that they were made on

@@ -190,8 +190,7 @@ double determinant(const Transform& transform);
 // devices take for 0.
 std::string fault_of(const Transform& transform);
 
-// The inverse, computed in float64 and rounded once. Throws Error, naming `object`, when there is a
-// fault_of(transform).
+// The inverse, computed in float64 and rounded once. Throws Error, naming `object`, where it has a fault_of().
 Transform inverse(const Transform& transform, const char* object);
 
 // Axis-aligned box; the default is empty (lo > hi).

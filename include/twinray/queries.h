@@ -250,8 +250,7 @@ struct NearTriangle {
 };
 
 // Finds what of a scene is near to points. A distance is off by at most some 2^-50 of the largest of itself and the
-// sides of the triangle; boxes are bounds of it, so that none is passed over. Points that are not finite are near to
-// nothing.
+// sides of the triangle; boxes are bounds of it, so that none is passed over. No point that is not finite is near.
 class PointQuery {
   public:
     static constexpr double unlimited = std::numeric_limits<double>::infinity();

@@ -29,8 +29,7 @@ struct AccelHandle;
 
 // ---- What a scene holds ---------------------------------------------------------------------------------------------
 
-// RGBA in 8 or 16 bits, row 0 first (glTF's v = 0). sRGB or linear is decided by the use (base colour and emission:
-// sRGB).
+// RGBA in 8 or 16 bits, row 0 first (glTF's v = 0). Its use decides: sRGB for base colour and emission, else linear.
 struct Image {
     std::string name;
     uint width = 0;
@@ -434,8 +433,7 @@ class TextureStore {
     TextureStore(Context& context, std::string name);
     ~TextureStore();
 
-    // Copies the texels until the next sync. Throws Error for an image without texels, or with more or fewer than it
-    // says.
+    // Copies the texels until the next sync. Throws Error for an image with none, or another number than it says.
     TextureRef push(const Texels& texels, const TextureOptions& options = {});
     TextureRef push(const Image& image, const TextureOptions& options = {});
     // Other texels, sampled as before. Where size, channels, format and levels are the same they go into the same

@@ -92,6 +92,11 @@ struct AccelOptions {
     // Meshes stay on the device with all that MeshView has of them, for AbstractAccel::surfaces() and
     // twinray/glsl/surface.glsl.
     bool keeps_surfaces = false;
+    // Of that what handle_of(), index_in_handle(), face_metadata() and geometry_metadata() there read, and no mesh.
+    bool keeps_metadata = false;
+    // The host keeps each mesh, 12 bytes a vertex and a triangle. False: from the sync that builds it on nothing can
+    // read it back, so that update_vertices() from the host, save(), scene_of() and analyses of it throw.
+    bool keeps_meshes = true;
     // False: instances stay where push() puts them, and whatever would move them throws. Where they stand as their
     // meshes were given, rays of software are then not transformed.
     bool can_move = true;
@@ -256,9 +261,10 @@ struct MemoryUsage {
     std::uint64_t vertices = 0;    // copies of the meshes whose vertices move, or that are refined or have surfaces
     std::uint64_t surfaces = 0;    // what else AccelOptions::keeps_surfaces keeps
     std::uint64_t scratch = 0;     // kept from one sync to the next
+    std::uint64_t host = 0;        // of the host's memory: meshes (AccelOptions::keeps_meshes), boxes and records
 
     std::uint64_t structures() const { return geometries + scene; }  // both levels
-    // All of it.
+    // All that is on the device.
     std::uint64_t total() const { return structures() + instances + blocks + vertices + surfaces + scratch; }
 };
 

@@ -110,6 +110,7 @@ TEST_P(Accel, DegenerateTrianglesAreNeverHitAndKeepTheirIndex) {
 
 TEST_P(Accel, NonFiniteVerticesHideNothingElse) {
     Mesh mesh = make_grid(8, 8);
+    mesh.uvs.clear();
     for (const float bad : {NAN, INFINITY}) {
         const uint first = static_cast<uint>(mesh.positions.size());
         mesh.positions.insert(mesh.positions.end(), {vec3(bad, 0, 0), vec3(0, bad, 0), vec3(0, 0, 1)});
@@ -576,6 +577,8 @@ TEST_P(Accel, HandlesShareAGeometry) {
 
 TEST_P(Accel, AHandleHasTheBoxOfItsGeometry) {
     Mesh mesh = make_box(vec3(-1, -2, -3), vec3(4, 5, 6));
+    mesh.normals.clear();
+    mesh.uvs.clear();
     mesh.positions.push_back(vec3(100));  // of no triangle
     const AccelHandle handle = accel().push(mesh, Transform::translation({50, 0, 0})), empty = accel().push(Mesh{});
     EXPECT_NE(error_if_any([&] { accel().object_bound(handle); }).find("edits are pending"), std::string::npos);

@@ -132,6 +132,32 @@ TEST_P(LeftOut, AreasUntilSomebodyAsks) {
     EXPECT_EQ(accel().sah(), built) << "measured once";
 }
 
+// The host's copy of a mesh, and whatever would need it.
+TEST_P(LeftOut, MeshesThatTheHostNeedNotKeep) {
+    const Mesh mesh = make_icosphere(4);
+    const auto bare = make_accel({.keeps_meshes = false, .compiles_in_background = false});
+    const AccelHandle handle = bare->push(mesh);
+    const std::uint64_t before = bare->memory_usage().host;
+    bare->sync();
+    const std::uint64_t copy = mesh.positions.size() * sizeof(vec3) + mesh.triangles.size() * sizeof(uvec3);
+    EXPECT_EQ(before - bare->memory_usage().host, copy);
+    EXPECT_LT(bare->memory_usage().host, 1000u) << "the record of an instance";
+    const Ray ray = test::down(0.25f, 0.25f);
+    const auto hit_of = [&](AbstractAccel& accel) { return accel.closest_hits({&ray, 1}).front(); };
+    accel().push(mesh);
+    EXPECT_EQ(hit_of(*bare), hit_of(accel()));
+    const std::string why = "'icosphere' is no longer there: the accelerator was made with AccelOptions::keeps_meshes";
+    for (const std::string& error : {test::error_if_any([&] { bare->update_vertices(handle, mesh.positions); }),
+                                     test::error_if_any([&] { bare->update_vertices(handle, Floats{16}, 2562); }),
+                                     test::error_if_any([&] { scene_of(*bare); })})
+        EXPECT_NE(error.find(why), std::string::npos) << error;
+    bare->update_transform(handle, Transform::translation({0, 0, 1}));
+    EXPECT_NEAR(hit_of(*bare).t, hit_of(accel()).t - 1, 1e-5);
+    bare->update(handle, make_icosphere(4, 2));
+    EXPECT_LT(hit_of(*bare).t, hit_of(accel()).t - 1.9f);
+    EXPECT_LT(bare->memory_usage().host, 1000u);
+}
+
 // Nothing is sorted, and of a tree's stages one is left.
 TEST_P(LeftOut, StagesOfTreesWithOneLeaf) {
     Mesh one;

@@ -23,7 +23,8 @@ void main()
     if (hit.hit == 0u) return;
     Ray ray = AT(push.rays, i);
     AT(push.surfaces, i) = surface_at(push.accel, ray, hit);
-    vec4 heat = attribute_at(surface_place(push.accel, ray, hit), push.heat, vec4(0.0));
+    vec4 heat = vec4(0.0);
+    if (has_surface(push.accel, hit)) heat = attribute_at(surface_place(push.accel, ray, hit), push.heat, heat);
     AT(push.others, 2u * i) = vec4(heat.x, uintBitsToFloat(face_metadata(push.accel, hit)),
                                    uintBitsToFloat(index_in_handle(push.accel, hit)),
                                    uintBitsToFloat(handle_of(push.accel, hit).x));

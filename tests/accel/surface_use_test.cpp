@@ -86,46 +86,44 @@ TEST_P(SurfaceUse, OfASharedGeometryAreEachHandles) {
     }
 }
 
-TEST_P(SurfaceUse, WrongUseIsNamed) {
+// Whether the accelerator keeps them or not.
+void expect_arrays_that_do_not_fit_to_be_named(AbstractAccel& accel) {
     Mesh mesh = test::square(0);
+    const auto error_of = [&](const MeshView& view) { return test::error_if_any([&] { accel.push(view); }); };
+    mesh.normals = {vec3(0, 0, 1)};
+    EXPECT_EQ(error_of(mesh), "mesh 'quad': 1 entries of 'normals' for 4 vertices");
+    mesh.normals.clear();
     mesh.uvs = {vec2(0), vec2(1)};
-    EXPECT_EQ(test::error_if_any([&] { accel().push(mesh); }), "mesh 'quad': 2 entries of 'uv0' for 4 vertices");
+    EXPECT_EQ(error_of(mesh), "mesh 'quad': 2 entries of 'uv0' for 4 vertices");
     mesh.uvs.clear();
     mesh.materials = {1};
-    EXPECT_EQ(test::error_if_any([&] { accel().push(mesh); }),
-              "mesh 'quad': 1 entries of 'face_metadata' for 2 triangles");
+    EXPECT_EQ(error_of(mesh), "mesh 'quad': 1 entries of 'face_metadata' for 2 triangles");
     mesh.materials.clear();
     const std::vector<float> four(4), eight(8);
-    const auto push_with = [&](const AttributeView& attribute, const AttributeView& second = {}) {
-        const AttributeView both[] = {attribute, second};
+    const auto error_with = [&](std::initializer_list<AttributeView> attributes) {
         MeshView view(mesh);
-        view.attributes = std::span(both, second.name.empty() ? 1 : 2);
-        accel().push(view);
+        view.attributes = attributes;
+        return error_of(view);
     };
-    EXPECT_EQ(test::error_if_any([&] {
-                  push_with({"heat", 3, false, four});
-              }),
+    EXPECT_EQ(error_with({{"heat", 3, false, four}}),
               "mesh 'quad': 4 entries of 'heat' for 12 vertices, times its components");
-    EXPECT_EQ(test::error_if_any([&] {
-                  push_with({"heat", 5, false, four});
-              }),
-              "mesh 'quad': attribute 'heat' has 5 components; 1 to 4 fit");
-    EXPECT_EQ(test::error_if_any([&] {
-                  push_with({"uv0", 1, false, four});
-              }),
-              "mesh 'quad': an attribute's name, 'uv0', is taken");
-    EXPECT_EQ(test::error_if_any([&] {
-                  push_with({"a", 1, false, four}, {"a", 2, false, eight});
-              }),
+    EXPECT_EQ(error_with({{"heat", 5, false, four}}), "mesh 'quad': attribute 'heat' has 5 components; 1 to 4 fit");
+    EXPECT_EQ(error_with({{"uv0", 1, false, four}}), "mesh 'quad': an attribute's name, 'uv0', is taken");
+    EXPECT_EQ(error_with({{"a", 1, false, four}, {"a", 2, false, eight}}),
               "mesh 'quad': an attribute's name, 'a', is taken");
-    EXPECT_EQ(test::error_if_any([&] {
-                  push_with({"", 1, false, four});
-              }),
-              "mesh 'quad': an attribute's name, '', is empty");
-    EXPECT_EQ(accel().n_geometries(), 0u);
+    EXPECT_EQ(error_with({{"", 1, false, four}}), "mesh 'quad': an attribute's name, '', is empty");
+    EXPECT_EQ(accel.n_geometries(), 0u);
+}
+
+TEST_P(SurfaceUse, ArraysThatDoNotFitAreNamed) {
+    expect_arrays_that_do_not_fit_to_be_named(accel());
+    expect_arrays_that_do_not_fit_to_be_named(*make_accel({.compiles_in_background = false}));
     EXPECT_NE(test::error_if_any([&] { accel().attribute_number("heat"); }).find("'heat'"), std::string::npos)
         << "what was refused left nothing";
+}
 
+TEST_P(SurfaceUse, WrongUseIsNamed) {
+    Mesh mesh = test::square(0);
     accel().push(mesh);
     const Ray ray = test::down(0.5f, 0.25f);
     Hit hit = closest(ray);
@@ -163,8 +161,9 @@ TEST_P(SurfaceUse, TakeNoMemoryUnlessAskedFor) {
     std::mt19937 random(1);
     const FullMesh full(make_icosphere(4), random);
     const MeshView bare("bare", full.mesh.positions, full.mesh.triangles);
-    const auto usage = [&](const MeshView& mesh, bool keeps) {
-        const auto made = make_accel({.keeps_surfaces = keeps, .compiles_in_background = false});
+    const auto usage = [&](const MeshView& mesh, bool keeps, bool keeps_metadata = false) {
+        const auto made =
+            make_accel({.keeps_surfaces = keeps, .keeps_metadata = keeps_metadata, .compiles_in_background = false});
         made->push(mesh);
         made->sync();
         return made->memory_usage();
@@ -181,6 +180,10 @@ TEST_P(SurfaceUse, TakeNoMemoryUnlessAskedFor) {
     EXPECT_GE(all.surfaces, arrays);
     EXPECT_LT(all.surfaces, arrays + 512);
     EXPECT_EQ(all.geometries, none.geometries);
+    const MemoryUsage metadata = usage(full.view(), false, true);
+    EXPECT_EQ(metadata.vertices, 0u);
+    EXPECT_GE(metadata.surfaces, faces * 4);
+    EXPECT_LT(metadata.surfaces, faces * 4 + 512);
 }
 
 }  // namespace

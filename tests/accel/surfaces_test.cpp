@@ -230,7 +230,16 @@ TEST_P(Surfaces, AreWhatTheSameFunctionsGiveOnTheHost) {
     }
 }
 
-TEST_P(Surfaces, KernelsOfUsersFindThem) {
+// What a kernel of a user's found.
+struct FoundByKernel {
+    std::vector<Surface> surfaces;
+    std::vector<vec4> others;  // two for each ray
+
+    uint word(std::size_t i, int component) const { return std::bit_cast<uint>(others[i][component]); }
+};
+
+FoundByKernel run_surface_kernel(Context& context, std::uint64_t scene, std::span<const Ray> rays,
+                                 std::span<const Hit> hits, uint heat) {
     struct Args {
         std::uint64_t accel;
         Ref<Ray> rays;
@@ -239,35 +248,65 @@ TEST_P(Surfaces, KernelsOfUsersFindThem) {
         Ref<vec4> others;
         uint count, heat;
     };
+    const Buffer ray_buffer(context, {.name = "rays", .bytes = rays.size_bytes()});
+    const Buffer hit_buffer(context, {.name = "hits", .bytes = hits.size_bytes()});
+    const Buffer surfaces(context, {.name = "surfaces", .bytes = rays.size() * sizeof(Surface)});
+    const Buffer others(context, {.name = "others", .bytes = rays.size() * 2 * sizeof(vec4)});
+    const Kernel<Args> kernel(context, {.name = "surface kernel", .spirv = test_surface_kernel_spirv});
+    Commands commands(context, "surfaces");
+    {
+        const auto pass = commands.pass("rays and hits");
+        commands.upload(ray_buffer, rays);
+        commands.upload(hit_buffer, hits);
+    }
+    kernel.dispatch(commands,
+                    {scene, ray_buffer.ref<Ray>(), hit_buffer.ref<Hit>(), surfaces.ref<Surface>(), others.ref<vec4>(),
+                     static_cast<uint>(rays.size()), heat},
+                    rays.size());
+    commands.submit();
+    return {download<Surface>(context, surfaces, rays.size()), download<vec4>(context, others, 2 * rays.size())};
+}
+
+TEST_P(Surfaces, KernelsOfUsersFindThem) {
     add_some();
     const std::vector<AccelHandle> handles = push_all(accel());
     const std::vector<Ray> rays = random_rays(5'000);
     const std::vector<Hit> hits = accel().closest_hits(rays);
-    const Buffer ray_buffer = device_copy(rays), hit_buffer = device_copy(hits);
-    const Buffer surfaces(context(), {.name = "surfaces", .bytes = rays.size() * sizeof(Surface)});
-    const Buffer others(context(), {.name = "others", .bytes = rays.size() * 2 * sizeof(vec4)});
-    const Kernel<Args> kernel(context(), {.name = "surface kernel", .spirv = test_surface_kernel_spirv});
-    Commands commands(context(), "surfaces");
-    kernel.dispatch(commands,
-                    {accel().view().scene, ray_buffer.ref<Ray>(), hit_buffer.ref<Hit>(), surfaces.ref<Surface>(),
-                     others.ref<vec4>(), static_cast<uint>(rays.size()), accel().attribute_number("heat")},
-                    rays.size());
-    commands.submit();
-    const std::vector<Surface> found = download<Surface>(context(), surfaces, rays.size());
-    const std::vector<vec4> told = download<vec4>(context(), others, 2 * rays.size());
+    const FoundByKernel found =
+        run_surface_kernel(context(), accel().view().scene, rays, hits, accel().attribute_number("heat"));
     const std::vector<Surface> expected = accel().surfaces(rays, hits);
     const std::vector<vec4> heat = accel().attributes("heat", rays, hits);
     for (std::size_t i = 0; i < rays.size(); ++i) {
         if (!hits[i].hit) continue;
-        ASSERT_EQ(differing_word(found[i], expected[i]), -1) << i;
-        ASSERT_EQ(told[2 * i].x, heat[i].x);
-        ASSERT_EQ(std::bit_cast<uint>(told[2 * i].y), expected[i].face_metadata);
-        ASSERT_EQ(std::bit_cast<uint>(told[2 * i].z), accel().index_in_handle(hits[i]));
-        ASSERT_EQ(std::bit_cast<uint>(told[2 * i].w), static_cast<uint>(accel().handle_of(hits[i]).id));
+        ASSERT_EQ(differing_word(found.surfaces[i], expected[i]), -1) << i;
+        ASSERT_EQ(found.others[2 * i].x, heat[i].x);
+        ASSERT_EQ(found.word(2 * i, 1), expected[i].face_metadata);
+        ASSERT_EQ(found.word(2 * i, 2), accel().index_in_handle(hits[i]));
+        ASSERT_EQ(found.word(2 * i, 3), static_cast<uint>(accel().handle_of(hits[i]).id));
         const auto owner_of_hit = std::ranges::find(handles, accel().handle_of(hits[i])) - handles.begin();
-        ASSERT_EQ(std::bit_cast<uint>(told[2 * i + 1].x),
-                  placed_[static_cast<std::size_t>(owner_of_hit)].shape.whole[1]);
+        ASSERT_EQ(found.word(2 * i + 1, 0), placed_[static_cast<std::size_t>(owner_of_hit)].shape.whole[1]);
     }
+}
+
+TEST_P(Surfaces, MetadataIsKeptWithoutMeshes) {
+    add_some();
+    push_all(accel());
+    const auto lean = make_accel({.keeps_metadata = true, .keeps_meshes = false, .compiles_in_background = false});
+    push_all(*lean);
+    const std::vector<Ray> rays = random_rays(1'000);
+    const std::vector<Hit> hits = accel().closest_hits(rays);
+    ASSERT_EQ(lean->closest_hits(rays), hits);
+    EXPECT_EQ(lean->memory_usage().vertices, 0u);
+    const FoundByKernel found = run_surface_kernel(context(), lean->view().scene, rays, hits, 0);
+    const FoundByKernel expected = run_surface_kernel(context(), accel().view().scene, rays, hits, 0);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        if (!hits[i].hit) continue;
+        for (const int component : {1, 2}) ASSERT_EQ(found.word(2 * i, component), expected.word(2 * i, component));
+        ASSERT_EQ(found.word(2 * i, 3), static_cast<uint>(lean->handle_of(hits[i]).id));
+        ASSERT_EQ(found.word(2 * i + 1, 0), expected.word(2 * i + 1, 0));
+        ASSERT_EQ(found.surfaces[i].normal, vec3(0)) << "there is no surface";
+    }
+    EXPECT_NE(test::error_if_any([&] { lean->surfaces(rays, hits); }).find("keeps_surfaces"), std::string::npos);
 }
 
 }  // namespace

@@ -109,6 +109,8 @@ assert kept["needed"]["total_bytes_per_triangle"] <= 1.01 * min(r["total_bytes_p
 assert {name for name, r in kept.items() if r["vertices_bytes_per_triangle"] > 0} == {
     "vertices moved", "level refined", "level certified"}
 assert kept["layout bvh2"]["structures_bytes_per_triangle"] > kept["needed"]["structures_bytes_per_triangle"]
+host = {name: r["host_bytes_per_triangle"] for name, r in kept.items()}
+assert host["needed"] < 1 and host["meshes on the host"] - host["needed"] > 18, host
 _, records = bench("--feature-costs", "--no-build", "--scene", "instances:3x80", "--width", "16", "--layouts", "bvh2", "--ray-kinds",
                    "primary")
 assert [r["step"] for r in records] == ["needed", "+ masks", "+ culling", "+ filters", "+ boxes", "+ other layouts"]

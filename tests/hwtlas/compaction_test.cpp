@@ -104,6 +104,23 @@ TEST_F(Compaction, NeverWaitsForTheBuild) {
     EXPECT_TRUE(accel().compact());
 }
 
+TEST_F(Compaction, IsNotForgottenBySyncsOfOtherMeshes) {
+    test::Caller caller(context());
+    context().wait_before_next_submission(caller.begin().done);
+    push_box(0);
+    accel().sync();
+    push_box(2);
+    accel().sync();  // the GPU has built neither
+    caller.signal();
+    context().wait_for_gpu();
+    const std::uint64_t bytes = accel().memory_usage().structures();
+    EXPECT_TRUE(accel().compact());
+    sync_and_wait();
+    EXPECT_LE(accel().memory_usage().structures(), bytes - 2 * slack);
+    EXPECT_EQ(t_at(0), 9.0f);
+    EXPECT_EQ(t_at(2), 9.0f);
+}
+
 TEST_F(Compaction, LeavesMeshesAloneWhoseVerticesMove) {
     const AccelHandle moving = push_box(0);
     sync_and_wait();

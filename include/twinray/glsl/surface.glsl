@@ -18,7 +18,7 @@
 #include "twinray/glsl/accel_header.h"
 #include "twinray/glsl/surface_at.h"
 
-// What an accelerator with AccelOptions::keeps_surfaces holds of its meshes; of others there is nothing to read.
+// What an accelerator with AccelOptions::keeps_surfaces or keeps_metadata holds; of others there is nothing to read.
 SurfaceTable surfaces_of(Address accel)
 {
     return AT(REF(SurfaceTable)(AT(REF(AccelHeader)(accel), 0).surfaces), 0);
@@ -27,7 +27,8 @@ SurfaceTable surfaces_of(Address accel)
 // The triangle of a hit for which has_surface() is true, and where the ray meets it; normal_at() and others read it.
 SurfacePlace surface_place(Address accel, Ray ray, Hit hit) { return surface_place(surfaces_of(accel), ray, hit); }
 
-// Whether the hit is of a triangle: functions below, and surface_place(), want that. Misses and boxes have no surface.
+// Whether the hit is of a triangle of a mesh that is kept: functions down to surface_color() want that. Misses, boxes
+// and hits of accelerators with AccelOptions::keeps_metadata alone have no surface.
 bool has_surface(Address accel, Hit hit)
 {
     return hit.hit != 0u && surface_geometry(surfaces_of(accel), hit.instance_index).face_count != 0u;

@@ -29,7 +29,7 @@ struct SurfaceGeometry {
     Uints face_metadata;  // one a face, or absent
     Address metadata;     // MeshView::metadata, or absent
     uint first_instance;  // Hit::instance_index of its first instance
-    uint face_count;
+    uint face_count;      // 0 of boxes, and where no mesh is kept
 };
 BUFFER_OF(SurfaceGeometry, 8);
 
