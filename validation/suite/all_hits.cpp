@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "validation/suite/scenes.h"
 #include "validation/suite/shapes.h"
 #include <twinray/geometry.h>
 
@@ -14,11 +15,7 @@ namespace {
 // Triangles over [0, 1]^2 at these heights, from below upwards.
 Mesh layers(std::span<const float> heights) {
     Mesh mesh;
-    for (const float z : heights) {
-        const auto first = static_cast<uint>(mesh.positions.size());
-        mesh.positions.insert(mesh.positions.end(), {vec3(-1, -1, z), vec3(3, -1, z), vec3(-1, 3, z)});
-        mesh.triangles.push_back({first, first + 1, first + 2});
-    }
+    for (const float z : heights) add_triangle(mesh, vec3(-1, -1, z), vec3(3, -1, z), vec3(-1, 3, z));
     return mesh;
 }
 

@@ -8,6 +8,7 @@
 
 #include "validation/suite/estimators.h"
 #include "validation/suite/factor_scenes.h"
+#include "validation/suite/scenes.h"
 #include <twinray/geometry.h>
 
 namespace twinray::suite {
@@ -127,9 +128,7 @@ void hollow(CaseRun& run) {
                        methods_of(by_hits));
     }
     Mesh angle = make_quad(vec3(0), vec3(1, 0, 0), vec3(0, 1, 0));
-    const Mesh other = make_quad(vec3(0), vec3(0, 1, 0), vec3(0, 0, 1));
-    for (const uvec3& triangle : other.triangles) angle.triangles.push_back(triangle + 4u);
-    angle.positions.insert(angle.positions.end(), other.positions.begin(), other.positions.end());
+    append(angle, make_quad(vec3(0), vec3(0, 1, 0), vec3(0, 0, 1)));
     measure_factor(run, {.scene = scene_of({angle}), .value = 0.200043776075403154, .to = 0, .params = {{"angle", 90}}},
                    methods_of(by_hits));
 }

@@ -4,6 +4,15 @@
 #include "validation/reference/aimed_rays.h"
 
 namespace twinray::suite {
+namespace {
+
+// More vertices than these have entries are to come.
+void drop_attributes(Mesh& mesh) {
+    mesh.normals.clear();
+    mesh.uvs.clear();
+}
+
+}  // namespace
 
 vec3 Random::in_box(float extent) {
     const float x = between(-extent, extent), y = between(-extent, extent);
@@ -46,12 +55,14 @@ dvec3 Random::weights(double least) {
 }
 
 void add_triangle(Mesh& mesh, vec3 a, vec3 b, vec3 c) {
+    drop_attributes(mesh);
     const uint first = static_cast<uint>(mesh.positions.size());
     mesh.positions.insert(mesh.positions.end(), {a, b, c});
     mesh.triangles.push_back({first, first + 1, first + 2});
 }
 
 void append(Mesh& mesh, const Mesh& part) {
+    drop_attributes(mesh);
     const uint base = static_cast<uint>(mesh.positions.size());
     for (const uvec3& triangle : part.triangles) mesh.triangles.push_back(triangle + base);
     mesh.positions.insert(mesh.positions.end(), part.positions.begin(), part.positions.end());

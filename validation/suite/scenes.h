@@ -28,6 +28,7 @@ class Random {
     std::mt19937 engine_;
 };
 
+// Both leave the mesh without normals and texture coordinates.
 void add_triangle(Mesh& mesh, vec3 a, vec3 b, vec3 c);
 void append(Mesh& mesh, const Mesh& part);
 Mesh scaled(Mesh mesh, float factor);

@@ -11,10 +11,8 @@ namespace twinray::suite {
 namespace {
 
 // Triangles 0 and 1, and 2 and 3.
-Mesh two_quads(const Mesh& first, const Mesh& second) {
-    Mesh both = first;
-    both.positions.insert(both.positions.end(), second.positions.begin(), second.positions.end());
-    for (const uvec3& corners : second.triangles) both.triangles.push_back(corners + uvec3(4));
+Mesh two_quads(Mesh both, const Mesh& second) {
+    append(both, second);
     return both;
 }
 bool is_second_quad(const Hit& hit) { return hit.hit && hit.primitive_index >= 2; }
