@@ -101,15 +101,20 @@ std::string worst_of(const Finding& finding) {
            rate_text(share(worst.faults, worst.n), rate_interval(worst.faults, worst.n, miss));
 }
 
-// "N01 28 of 8,192, S02 ...": the three with the highest rates.
-std::string text_of_elsewhere(std::vector<RayKind> kinds) {
-    std::ranges::sort(kinds, std::greater(), [](const RayKind& kind) { return share(kind.faults, kind.n); });
-    std::vector<std::string> parts;
+// "N01 28 of 8,192, S02 ...": the three cases with the highest rates among the rays that show faults.
+std::string text_of_elsewhere(std::span<const RayKind> kinds) {
+    std::map<std::string, RayKind> by_case;
     for (const RayKind& kind : kinds) {
-        if (parts.size() == 3) break;
-        parts.push_back(kind.case_id + ' ' + count_text(kind.faults) + " of " + count_text(kind.n));
+        RayKind& whole = by_case[kind.case_id];
+        whole = {kind.case_id, "", whole.faults + kind.faults, whole.n + kind.n};
     }
-    if (kinds.size() > parts.size()) parts.push_back(text(kinds.size() - parts.size(), " more"));
+    std::vector<RayKind> cases;  // of all its settings
+    for (auto& [id, whole] : by_case) cases.push_back(std::move(whole));
+    std::ranges::stable_sort(cases, std::greater(), [](const RayKind& kind) { return share(kind.faults, kind.n); });
+    std::vector<std::string> parts;
+    for (const RayKind& whole : std::span(cases).first(std::min<std::size_t>(cases.size(), 3)))
+        parts.push_back(whole.case_id + ' ' + count_text(whole.faults) + " of " + count_text(whole.n));
+    if (cases.size() > 3) parts.push_back(text(cases.size() - 3, " more cases"));
     return joined(parts);
 }
 
@@ -157,10 +162,7 @@ Finding finding_at(std::span<const Record> records, std::string_view backend, st
     Finding finding{.backend = std::string(backend), .level = std::string(level), .mistake = mistake};
     for (const Record& record : records) {
         if (record.backend != backend || record.level != level || !can_show(mistake, record)) continue;
-        const std::string settings =
-            settings_text(record) +
-            (record.variant.empty() ? "" : (record.params.empty() ? "" : ", ") + record.variant);
-        const RayKind kind{record.case_id, settings, count_of(mistake, record), record.n};
+        const RayKind kind{record.case_id, settings_and_variant(record), count_of(mistake, record), record.n};
         if (suite::is_about(record.case_id, subject))
             finding.kinds.push_back(kind);
         else if (kind.faults)

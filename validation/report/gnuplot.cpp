@@ -19,7 +19,7 @@ namespace twinray::report {
 namespace {
 
 // Each at least 3 to 1 against white and against nearly black.
-constexpr std::array colors = {"#2f81f7", "#d9730d", "#a35bd6", "#2a9d5c", "#808080"};
+constexpr std::array colors = {"#2f81f7", "#d9730d", "#a35bd6", "#2a9d5c", "#808080", "#c94f7c", "#17909c", "#8f8420"};
 const char* color(std::size_t index) { return colors[std::min(index, colors.size() - 1)]; }
 
 // One direction of the plot.
@@ -228,7 +228,8 @@ std::vector<LabelPlace> apart(std::vector<LabelPlace> places) {
 
 std::vector<double> log_tics(double low, double high) {
     std::vector<double> tics;
-    if (high / low > 30) return tics;
+    const double powers_of_ten = std::floor(std::log10(high)) - std::ceil(std::log10(low)) + 1;
+    if (powers_of_ten > 1) return tics;
     const std::vector<double> steps =
         high / low > 6 ? std::vector<double>{1, 2, 5} : std::vector<double>{1, 1.5, 2, 3, 4, 5, 7};
     for (double decade = std::pow(10, std::floor(std::log10(low))); decade <= high; decade *= 10)
@@ -244,7 +245,7 @@ std::string gnuplot_script(const Figure& figure, const std::filesystem::path& sv
     out.precision(9);
     out << "set encoding utf8\nset terminal svg size 720," << height
         << " dynamic noenhanced font \"system-ui,13\"\nset output " << quoted(svg.string()) << "\nunset key\n";
-    if (!labels_points(figure)) out << "set rmargin at screen 0.74\n";
+    if (!labels_points(figure)) out << "set rmargin at screen 0.72\n";
     write_axes(out, figure, axes);
     write_marks(out, figure, axes);
     write_data(out, figure);

@@ -86,9 +86,10 @@ void write_method(std::ostream& out, const PageInput& input) {
     std::map<std::string, std::size_t> sums;
     for (const Record& record : input.records) ++sums[result_of(record)];
     out << "<p class=\"soft\">SwTlas is twinray's own traversal in compute shaders; fast, watertight, refined and "
-           "certified are levels of its triangle test. Every answer was checked by a float64 reference, and by "
-           "rational "
-           "arithmetic where that cannot tell. In brackets are 95 % intervals. "
+           "certified are levels of its triangle test. Of both, level watertight is meant where none is named; fast "
+           "promises nothing. Every answer was checked by a float64 reference, and by rational arithmetic where that "
+           "cannot tell. A rate is the mean of the rates of its cases, each of which counts as one, so that few rays "
+           "of one case make its bound wide. In brackets are 95 % intervals. "
         << "Suite " << escaped(input.suite);
     if (input.seconds > 0) out << ", " << number(input.seconds, 3) << " s";
     out << ". By accelerator and level, measurements: ";
@@ -145,23 +146,29 @@ std::string title_of(const PageInput& input, const std::string& case_id) {
     return case_id;
 }
 
+// The time that an error takes; "-" where that was not measured.
+std::string cost_text(const Record& record, const char* result) {
+    const double ms = number_at(record.results, result);
+    return ms > 0 ? number(ms, 2) : "-";
+}
+
 // A row for each estimator: the time that an error of 1 % and of 0.1 % takes.
 void write_costs(std::ostream& out, const PageInput& input) {
     bool has_head = false;
     for (const Record& record : input.records) {
-        const double percent = number_at(record.results, "ms_at_1_percent");
-        if (percent <= 0) continue;
+        if (number_at(record.results, "ms_at_1_percent") <= 0) continue;
         if (!std::exchange(has_head, true))
-            out << "<h3 id=\"costs\">What an error of 1 % and of 0.1 % costs</h3>\n<p class=\"soft\">By the law of "
-                   "error "
-                   "over time that fits the measured amounts of work.</p>\n<div class=\"wide\"><table><tr><th>case</th>"
-                   "<th>by</th><th>error over rays, slope</th><th>ms at 1 %</th><th>ms at 0.1 %</th></tr>\n";
-        out << "<tr><td>" << escaped(title_of(input, record.case_id)) << ' ' << escaped(record.variant) << "</td><td>"
-            << escaped(record.backend) << "</td><td>" << number(number_at(record.results, "slope"), 2) << "</td><td>"
-            << number(percent, 2) << "</td><td>" << number(number_at(record.results, "ms_at_0.1_percent"), 2)
+            out << "<details id=\"costs\"><summary>What an error of 1 % and of 0.1 % costs</summary>\n"
+                   "<p class=\"soft\">By the law of error over time that fits the measured amounts of work, up to a "
+                   "hundred times those.</p>\n<div class=\"wide\"><table><tr><th>case</th><th>of</th><th>by</th>"
+                   "<th>error over rays, slope</th><th>ms at 1 %</th><th>ms at 0.1 %</th></tr>\n";
+        out << "<tr><td>" << escaped(title_of(input, record.case_id)) << "</td><td>"
+            << escaped(settings_and_variant(record)) << "</td><td>" << escaped(record.backend) << "</td><td>"
+            << number(number_at(record.results, "slope"), 2) << "</td><td>" << cost_text(record, "ms_at_1_percent")
+            << "</td><td>" << cost_text(record, "ms_at_0.1_percent")
             << (record.time && record.time->is_disturbed() ? " &#8224;" : "") << "</td></tr>\n";
     }
-    if (has_head) out << "</table></div>\n";
+    if (has_head) out << "</table></div></details>\n";
 }
 
 std::string error_text(const Record& record) {

@@ -172,7 +172,7 @@ std::string headline_of(const Verdict& verdict, const std::string& wrongs, std::
     else
         headline += "This driver " + wrongs + '.';
     return headline + text(has_all ? " All " : " Only ", has_all ? "" : text(verdict.cases_run, " of "), verdict.cases,
-                           " cases ran.");
+                           " stiff cases ran.");
 }
 
 }  // namespace

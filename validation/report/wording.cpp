@@ -78,6 +78,11 @@ std::string answerer(std::string_view backend) {
     return std::string(backend);
 }
 
+std::string settings_and_variant(const Record& record) {
+    const std::string settings = settings_text(record);
+    return settings + (settings.empty() || record.variant.empty() ? "" : ", ") + record.variant;
+}
+
 std::string settings_text(const Record& record) {
     std::string result;
     for (const auto& [name, value] : record.params) result += (result.empty() ? "" : ", ") + name + ' ' + value.text();

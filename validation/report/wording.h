@@ -28,6 +28,7 @@ std::string answerer(std::string_view backend);
 double number_at(const Values& values, const std::string& name);
 // Settings of a record: "aim vertex, cells 64".
 std::string settings_text(const Record& record);
+std::string settings_and_variant(const Record& record);
 
 // Whether users get the kernel: not compiled otherwise as a negative control.
 bool is_users_kernel(const Record& record);

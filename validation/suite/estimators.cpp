@@ -157,12 +157,15 @@ void measure_sampled(CaseRun& run, Estimators& estimators, const Configuration& 
                       });
 }
 
-// Adds the time that an error takes by the law of error over time, if that falls.
+// Adds the time that an error takes by the law of error over time, if that falls, and up to a hundred times as much as
+// was measured.
 void add_costs(Record& record, std::span<const double> ms, std::span<const double> errors) {
     const std::optional<PowerLaw> law = fit_power_law(ms, errors);
     if (!law || law->slope >= 0) return;
     for (const auto& [name, error] : {std::pair{"ms_at_1_percent", 1e-2}, std::pair{"ms_at_0.1_percent", 1e-3}})
-        record.results.emplace(name, std::pow(error / law->scale, 1 / law->slope));
+        if (const double time = std::pow(error / law->scale, 1 / law->slope);
+            time <= 100 * *std::ranges::max_element(ms))
+            record.results.emplace(name, time);
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ TEST(Figure, SlopesAreOfThePointsOfALine) {
     const Figure figure = estimates_figure(
         std::vector{estimate("hits", 1024, 0.04), estimate("hits", 4096, 0.02), estimate("hits", 16384, 0.01)});
     ASSERT_EQ(figure.series.size(), 1u);
-    EXPECT_EQ(figure.series[0].label, "view factor, hits, slope -0.5");
+    EXPECT_EQ(figure.series[0].label, "factor, hits (-0.5)");
 }
 
 TEST(Figure, TheFrontIsWhatNothingBeatsInBoth) {
@@ -76,6 +76,7 @@ TEST(Gnuplot, ShortAxesHaveNumbers) {
     EXPECT_EQ(log_tics(0.3, 4), (std::vector{0.5, 1.0, 2.0}));
     EXPECT_EQ(log_tics(0.009, 0.06).size(), 3u);
     EXPECT_EQ(log_tics(1.6, 4.9), (std::vector{2.0, 3.0, 4.0}));
+    EXPECT_EQ(log_tics(0.25, 9), (std::vector{0.5, 1.0, 2.0, 5.0}));
     EXPECT_TRUE(log_tics(1, 1000).empty()) << "powers of ten will do";
 }
 
