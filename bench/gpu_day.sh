@@ -18,6 +18,7 @@ set -uo pipefail
 
 here=$(realpath "$(dirname "${BASH_SOURCE[0]}")")
 build=$here/../build/release python=python3 mesh='' programs='' folder=$here/history
+scenes=(sphere:10000 sphere:1310720 instances:1000x500) qualities=fast,high,ploc
 width=4096 rays=16777216 random=10000000 aimed=1000000 subdivisions=8 budget=90 peers=(--rounds 5)
 while (($#)); do
     case $1 in
@@ -27,7 +28,10 @@ while (($#)); do
     -c) programs=$2 && shift ;;
     -o) folder=$2 && shift ;;
     --cuda) peers+=(--cuda) ;;
-    --small) width=512 rays=100000 random=100000 aimed=10000 subdivisions=6 budget=20 ;;
+    --small)
+        scenes=(sphere:10000 instances:100x500) qualities=fast
+        width=256 rays=100000 random=100000 aimed=10000 subdivisions=6 budget=20
+        ;;
     *) sed -n '3,17s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2 && exit 2 ;;
     esac
     shift
@@ -71,14 +75,14 @@ else
     left_out contract "no $tests"
 fi
 if [[ -n $mesh ]]; then
-    part verify 60 'agree|rays' "$twinray" verify "$mesh" --random "$random" --aimed "$aimed" --quiet
+    part verify 60 'fault' "$twinray" verify "$mesh" --random "$random" --aimed "$aimed" --quiet
 else
     left_out verify 'no mesh is given (-m)'
 fi
-part report $((budget * 3)) 'stiff cases|cases' "$twinray" report -o "$logs/report" --budget "$budget" \
+part report $((budget * 3)) 'cases ran' "$twinray" report -o "$logs/page" --budget "$budget" \
     --json "$logs/report.jsonl" --quiet
-part 'builds and rays' 150 'appended' "$here/record_history.sh" -t "$twinray" -o "$logs/history" -- --width "$width" \
-    --no-embree --rounds 5 --build-qualities fast,high,ploc --max-seconds 2
+part 'builds and rays' 150 'appended' "$here/record_history.sh" -t "$twinray" -o "$logs/history" "${scenes[@]}" -- \
+    --width "$width" --no-embree --rounds 5 --build-qualities "$qualities" --max-seconds 2
 if "$python" -c 'import twinray, trimesh' 2>"$logs/python"; then
     part peers 240 'wrong_per_million' "$python" "$here/peers/python_rays.py" --rays "$rays" \
         --subdivisions "$subdivisions" ${mesh:+--mesh "$mesh"} ${programs:+--programs "$programs"} \
