@@ -13,7 +13,7 @@
 #     -o FOLDER     bench/history
 #     --cuda        peers use the GPU
 #     --small       a rehearsal: a hundredth of the rays
-# What is missing is named and left out.
+# It names and leaves out each part that is not there.
 set -uo pipefail
 
 here=$(realpath "$(dirname "${BASH_SOURCE[0]}")")
@@ -101,7 +101,8 @@ printf '%s\n' "${rows[@]}"
 if [[ -s $folder/$device-peers.json ]]; then
     "$python" - "$folder/$device-peers.json" <<'PYTHON'
 import json, sys
-print(f"\n{'scene':24} {'package':12} {'build s':>8} {'camera':>9} {'random':>9} {'occlusion':>9}  wrong of 10^6; Mrays/s")
+print("\nMrays/s, and how many of a million aimed rays are answered wrongly")
+print(f"{'scene':24} {'package':12} {'build s':>8} {'camera':>9} {'random':>9} {'occlusion':>9}  wrong of 10^6")
 for r in json.load(open(sys.argv[1])):
     rates = " ".join(f"{r[kind]['mrays_per_s']:9.2f}" for kind in ("camera", "random", "occlusion"))
     wrong = r.get("wrong_per_million", "-")

@@ -69,10 +69,11 @@ is_served() { apt-cache show "$1" >/dev/null 2>&1; } # package=version
 
 # The shim works with a driver of its own version of Mesa alone, which backports may have brought.
 match_shim_to_driver() {
-    local number i
+    local number fitting i
     number=$(dpkg-query -W -f '${Version}' mesa-vulkan-drivers 2>/dev/null) || return 0
+    fitting=mesa-drm-shim=$number
     for i in "${!packages[@]}"; do
-        if [[ ${packages[i]} == mesa-drm-shim ]] && is_served "mesa-drm-shim=$number"; then packages[i]="mesa-drm-shim=$number"; fi
+        if [[ ${packages[i]} == mesa-drm-shim ]] && is_served "$fitting"; then packages[i]=$fitting; fi
     done
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What programs of peers read and write for python_rays.py: files in the working directory, and a line of seconds.
+// Programs of peers read files in the working directory for python_rays.py, and write one and a line of seconds.
 #pragma once
 
 #include <algorithm>

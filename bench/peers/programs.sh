@@ -15,7 +15,9 @@ here=$(realpath "$(dirname "${BASH_SOURCE[0]}")")
 
 # Says what a program is, beside it.
 about() { # program, checkout, what else
-    echo "${2##*/} $(git -C "$2" rev-parse --short HEAD 2>/dev/null || echo 'of no known revision'), $3" >"$folder/$1.about"
+    local revision
+    revision=$(git -C "$2" rev-parse --short HEAD 2>/dev/null || echo 'of no known revision')
+    echo "${2##*/} $revision, $3" >"$folder/$1.about"
 }
 
 make_cubql() { # checkout

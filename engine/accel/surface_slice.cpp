@@ -22,7 +22,7 @@ void check_length(const MeshView& mesh, std::string_view name, std::size_t lengt
         fail("mesh '", mesh.name, "': ", length, " entries of '", name, "' for ", count, " ", of_what);
 }
 
-// Of an AttributeView or DeviceAttribute.
+// `Attribute` is AttributeView or DeviceAttribute.
 template <class Attribute>
 void check_named(std::string_view mesh, std::span<const Attribute> all, const Attribute& attribute) {
     if (attribute.name.empty()) fail("mesh '", mesh, "': an attribute's name, '', is empty");

@@ -66,7 +66,7 @@ std::uint64_t append_aligned(std::vector<std::byte>& packed, std::span<const std
 void check_arrays(const MeshView& mesh);
 void check_arrays(const DeviceMesh& mesh);
 
-// What AccelOptions::keeps_metadata keeps of the mesh.
+// The mesh without the arrays that AccelOptions::keeps_metadata does not keep.
 MeshView metadata_of(const MeshView& mesh);
 DeviceMesh metadata_of(const DeviceMesh& mesh);
 

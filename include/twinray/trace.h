@@ -92,7 +92,7 @@ struct AccelOptions {
     // Meshes stay on the device with all that MeshView has of them, for AbstractAccel::surfaces() and
     // twinray/glsl/surface.glsl.
     bool keeps_surfaces = false;
-    // Of that what handle_of(), index_in_handle(), face_metadata() and geometry_metadata() there read, and no mesh.
+    // Only what handle_of(), index_in_handle(), face_metadata() and geometry_metadata() there read stays: no mesh.
     bool keeps_metadata = false;
     // The host keeps each mesh, 12 bytes a vertex and a triangle. False: from the sync that builds it on nothing can
     // read it back, so that update_vertices() from the host, save(), scene_of() and analyses of it throw.

@@ -47,11 +47,14 @@ for accel in ["sw", "hw"]:
 triangle = struct.pack("<9f", 0, 0, 0, 4, 0, 0, 0, 4, 0)
 (here / "named.gltf").write_text(json.dumps({
     "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}],
-    "nodes": [{"name": "near", "mesh": 0, "translation": [0, 0, 1]}, {"name": "far", "mesh": 0, "translation": [0, 0, 2]}],
+    "nodes": [{"name": "near", "mesh": 0, "translation": [0, 0, 1]},
+              {"name": "far", "mesh": 0, "translation": [0, 0, 2]}],
     "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
-    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [4, 4, 0]}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+                   "min": [0, 0, 0], "max": [4, 4, 0]}],
     "bufferViews": [{"buffer": 0, "byteLength": 36}],
-    "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64," + base64.b64encode(triangle).decode()}]}))
+    "buffers": [{"byteLength": 36,
+                 "uri": "data:application/octet-stream;base64," + base64.b64encode(triangle).decode()}]}))
 for accel in ["sw", "hw"] if devices["ray_query"] else ["sw"]:
     for mask, seen in [("1", 1), ("2", 2), ("6", 2), ("8", None), ("255", 1)]:
         masked = ["--accel", accel, "--mask", mask, "--instance-masks", "near=1,far=2"]

@@ -18,7 +18,7 @@
 #include "twinray/glsl/accel_header.h"
 #include "twinray/glsl/surface_at.h"
 
-// What an accelerator with AccelOptions::keeps_surfaces or keeps_metadata holds; of others there is nothing to read.
+// The table of an accelerator with AccelOptions::keeps_surfaces or keeps_metadata; others have nothing to read.
 SurfaceTable surfaces_of(Address accel)
 {
     return AT(REF(SurfaceTable)(AT(REF(AccelHeader)(accel), 0).surfaces), 0);
