@@ -19,13 +19,13 @@ namespace {
 
 std::size_t bytes_kept(const BuiltTree& tree) {
     return tree.nodes.size() * sizeof(BvhNode) + tree.triangles.size() * sizeof(BvhTriangle) +
-           tree.records.size() * sizeof(CompressedRecord);
+           tree.records.size() * sizeof(CompressedRecord) + tree.vertices.size() * sizeof(vec3);
 }
 
 std::size_t bytes_used(const BuiltTree& tree) {
     const auto used = static_cast<std::size_t>(
         std::ranges::count_if(tree.records, [](const CompressedRecord& record) { return !is_none(record); }));
-    return tree.records.empty() ? bytes_kept(tree) : used * sizeof(CompressedRecord);
+    return bytes_kept(tree) - (tree.records.size() - used) * sizeof(CompressedRecord);
 }
 
 // As rays meet its boxes.
@@ -74,12 +74,13 @@ Followed follow(const reference::Scene& scene, std::span<const Ray> rays, Query 
         const TraversalSteps steps = reference::Scene::take_steps();
         all.nodes += steps.nodes;
         all.boxes += steps.boxes;
+        all.leaves += steps.leaves;
         all.primitives += steps.primitives;
     });
     const auto a_ray = [&](std::uint64_t count) {
         return static_cast<double>(count) / static_cast<double>(std::max<std::size_t>(rays.size(), 1));
     };
-    return {{a_ray(all.nodes), a_ray(all.boxes), a_ray(all.primitives)}, hits};
+    return {{a_ray(all.nodes), a_ray(all.boxes), a_ray(all.leaves), a_ray(all.primitives)}, hits};
 }
 
 }  // namespace
@@ -112,14 +113,15 @@ void print_trees(std::ostream& out, std::span<const TreeFigures> trees) {
     std::vector<std::string> heading = {"tree", "bytes/triangle", "used", "SAH", "overlap"};
     if (!trees.empty())
         for (const auto& [kind, steps] : trees.front().steps)
-            for (const char* what : {"nodes", "boxes", "triangles"}) heading.push_back(text(name_of(kind), ' ', what));
+            for (const char* what : {"nodes", "boxes", "leaves", "triangles"})
+                heading.push_back(text(name_of(kind), ' ', what));
     std::vector<std::vector<std::string>> rows = {heading};
     for (const TreeFigures& tree : trees) {
         std::vector<std::string> row = {text(name_of(tree.layout), ' ', name_of(tree.quality)),
                                         fixed_text(tree.bytes, 1), fixed_text(tree.used_bytes, 1),
                                         number_text(tree.sah, 3), number_text(tree.overlap, 3)};
         for (const auto& [kind, steps] : tree.steps)
-            for (const double count : {steps.nodes, steps.boxes, steps.primitives})
+            for (const double count : {steps.nodes, steps.boxes, steps.leaves, steps.primitives})
                 row.push_back(number_text(count, 3));
         rows.push_back(std::move(row));
     }
@@ -139,8 +141,10 @@ std::vector<nlohmann::json> records_of(const nlohmann::json& base, std::span<con
                        {"sah", tree.sah},
                        {"end_point_overlap", tree.overlap}});
         for (const auto& [kind, steps] : tree.steps)
-            record["steps_per_ray"][std::string(name_of(kind))] = {
-                {"nodes", steps.nodes}, {"boxes", steps.boxes}, {"triangles", steps.primitives}};
+            record["steps_per_ray"][std::string(name_of(kind))] = {{"nodes", steps.nodes},
+                                                                   {"boxes", steps.boxes},
+                                                                   {"leaves", steps.leaves},
+                                                                   {"triangles", steps.primitives}};
         records.push_back(std::move(record));
     }
     return records;

@@ -16,7 +16,8 @@ namespace twinray::bench {
 struct RaySteps {
     double nodes = 0;       // fetched
     double boxes = 0;       // tested
-    double primitives = 0;  // tested
+    double leaves = 0;      // fetched
+    double primitives = 0;  // tested in full
 };
 
 // The tree of a scene whose instances are joined to one mesh.

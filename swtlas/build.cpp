@@ -119,7 +119,8 @@ Builder::Batch Builder::begin(Commands& commands, const BuildPlan& plan, std::sp
     if (has_records(plan.layout))
         for (BuildTree& tree : with_nodes) tree.nodes.address = base + at.nodes + tree.first * sizeof(BvhNode);
     for (BuildTree& tree : with_nodes)
-        commands.context().fill_absent(tree.positions, tree.indices, tree.nodes, tree.triangles, tree.records);
+        commands.context().fill_absent(tree.positions, tree.indices, tree.leaves, tree.nodes, tree.triangles,
+                                       tree.records);
     {
         const auto pass = commands.pass("swtlas build input");
         const Commands::Region regions[] = {{at.trees, std::as_bytes(std::span(with_nodes))},

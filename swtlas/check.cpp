@@ -25,13 +25,14 @@ class TreeWalk {
 
     // False, and `bvh` is checked, where there is nothing to walk.
     bool begin(const Bvh& bvh) {
-        if (bvh.leaf_count != leaf_boxes_.size())
-            violated(text("the tree has ", bvh.leaf_count, " leaves, not ", leaf_boxes_.size()));
-        if (leaf_boxes_.empty() && bvh.root != NOTHING) violated("an empty tree has a root");
+        if (leaf_boxes_.empty() && (bvh.root != NOTHING || bvh.leaf_count != 0))
+            violated("an empty tree has a root or leaves");
         return !leaf_boxes_.empty();
     }
 
     TreeCheck finish(const Bvh& bvh, const LeafBox& all) {
+        if (bvh.leaf_count != leaf_count_)
+            violated(text("the tree has ", leaf_count_, " leaves, not ", bvh.leaf_count));
         if (bvh.lo != all.lo || bvh.hi != all.hi) violated("the root's box is not the union of the leaves");
         for (std::size_t i = 0; i < seen_leaves_.size(); ++i)
             if (!seen_leaves_[i]) violated(text("leaf ", i, " is not reached"));
@@ -47,11 +48,15 @@ class TreeWalk {
         return empty_box();
     }
 
-    LeafBox visit_leaf(uint leaf) {
-        if (leaf >= leaf_boxes_.size()) return violated(text("leaf ", leaf, " of ", leaf_boxes_.size()));
-        if (seen_leaves_[leaf]) violated(text("leaf ", leaf, " is reached twice"));
-        seen_leaves_[leaf] = true;
-        return leaf_boxes_[leaf];
+    LeafBox visit_leaf(uint primitive) {
+        ++leaf_count_;
+        return visit_primitive(primitive);
+    }
+    LeafBox visit_primitive(uint primitive) {
+        if (primitive >= leaf_boxes_.size()) return violated(text("leaf ", primitive, " of ", leaf_boxes_.size()));
+        if (seen_leaves_[primitive]) violated(text("leaf ", primitive, " is reached twice"));
+        seen_leaves_[primitive] = true;
+        return leaf_boxes_[primitive];
     }
 
     // Whether the item is there, and is reached for the first time.
@@ -67,6 +72,7 @@ class TreeWalk {
     TreeCheck result_;
     std::vector<bool> seen_, seen_leaves_;
     double area_ = 0;
+    std::size_t leaf_count_ = 0;  // visited
 };
 
 class BinaryWalk : public TreeWalk<BvhNode> {
@@ -129,7 +135,10 @@ class CompressedWalk : public TreeWalk<CompressedRecord> {
         if (!enter(index, "record")) return empty_box();
         const CompressedRecord& record = items_[index];
         below_ = {1, 0};
-        if (is_leaf(record)) return visit_leaf(index_in(record));
+        if (is_leaf(record)) {
+            const LeafBox box = visit_leaf(index_in(record));
+            return is_pair(record) ? around_both(box, visit_primitive(second_index_in(record))) : box;
+        }
         if (depth >= DEEPEST_RECORDS) return violated(text("depth exceeds ", DEEPEST_RECORDS));
         result_.depth = std::max(result_.depth, depth + 1);
         return visit_node(index, depth);

@@ -116,18 +116,21 @@ CollapseLists collapse_lists(uint leaf_count) {
     return lists;
 }
 
-GeometryLayout layout_geometry(uint triangle_count, Layout layout) {
+GeometryLayout layout_geometry(uint leaf_count, std::size_t vertex_count, Layout layout) {
     GeometryLayout parts;
+    parts.leaf_count = leaf_count;
+    parts.vertex_count = vertex_count;
     if (has_records(layout)) {
-        parts.record_count = record_count(triangle_count, width_of(layout));
+        parts.record_count = record_count(leaf_count, width_of(layout));
     } else {
-        parts.node_count = inner_count(triangle_count);
-        parts.triangle_count = triangle_count;
+        parts.node_count = inner_count(leaf_count);
+        parts.triangle_count = leaf_count;
     }
     Arena arena;
     parts.nodes = arena.take<BvhNode>(parts.node_count);
     parts.triangles = arena.take<BvhTriangle>(parts.triangle_count);
     parts.records = arena.take<CompressedRecord>(parts.record_count);
+    parts.vertices = arena.take<vec3>(parts.vertex_count);
     parts.bytes = arena.bytes;
     return parts;
 }

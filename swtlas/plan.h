@@ -59,10 +59,12 @@ uint inner_count(uint leaf_count);
 
 // Where the parts of a built geometry lie in its buffer, and how many there are; its SwGeometry is the geometry block.
 struct GeometryLayout {
-    uint node_count = 0, triangle_count = 0, record_count = 0;
-    std::uint64_t nodes = 0, triangles = 0, records = 0, bytes = 0;
+    uint leaf_count = 0, node_count = 0, triangle_count = 0, record_count = 0;
+    std::size_t vertex_count = 0;
+    std::uint64_t nodes = 0, triangles = 0, records = 0, vertices = 0, bytes = 0;
 };
-GeometryLayout layout_geometry(uint triangle_count, Layout layout);
+// `vertex_count`: what leaves of two triangles need that nothing else has on the device; 0 of other leaves.
+GeometryLayout layout_geometry(uint leaf_count, std::size_t vertex_count, Layout layout);
 
 // Where the parts of a scene lie in its buffer; its SwTlasHeader is at 0.
 struct SceneLayout {

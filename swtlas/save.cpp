@@ -27,16 +27,18 @@ void SwBackend::save(const std::filesystem::path& file) const {
 
 AccelHandle SwBackend::push_saved(Commands& commands, SavedGeometry&& saved) {
     Buffer block(context(), {.name = "geometry block", .bytes = geometry_block_bytes});
-    auto built = std::make_unique<SwBuiltGeometry>(context(), saved.mesh, options().layout);
-    saved.bvh.nodes = built->nodes();
-    SwGeometry written{saved.bvh, built->triangles(), built->records(), saved.mesh.kind, 0};
-    context().fill_absent(written.bvh.nodes, written.triangles, written.records);
+    auto built = std::make_unique<SwBuiltGeometry>(context(), saved.mesh, false, options().layout);
+    SwGeometry written = block_of(*built, built->vertices(), saved.mesh.kind);
+    saved.bvh.nodes = written.bvh.nodes;
+    written.bvh = saved.bvh;
     {
         const auto pass = commands.pass("swtlas load");
         commands.write(block, written);
+        const auto vertices = std::span(saved.mesh.positions).first(built->layout.vertex_count);
         const Commands::Region regions[] = {{built->layout.nodes, std::as_bytes(std::span(saved.nodes))},
                                             {built->layout.triangles, std::as_bytes(std::span(saved.leaves))},
-                                            {built->layout.records, std::as_bytes(std::span(saved.records))}};
+                                            {built->layout.records, std::as_bytes(std::span(saved.records))},
+                                            {built->layout.vertices, std::as_bytes(vertices)}};
         commands.upload_regions(built->buffer, regions);
     }
     return push_built(std::move(saved.mesh), std::move(block), std::move(built), saved.instances);

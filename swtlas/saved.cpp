@@ -10,6 +10,7 @@
 #include "engine/core/error.h"
 #include "engine/scene/bytes.h"
 #include "swtlas/check.h"
+#include "swtlas/triangle_pairs.h"
 
 namespace twinray {
 namespace {
@@ -123,19 +124,31 @@ BuildTree source_of(const Geometry& mesh) {
     return source;
 }
 
+// What the record of a leaf was made from, see make_leaf().
+uint checked_leaf(const CompressedRecord& record, const Geometry& mesh) {
+    const std::size_t primitives = mesh.primitive_count();
+    const uint first = index_in(record);
+    if (first >= primitives) fail("primitive ", first, " of ", primitives);
+    if (!is_pair(record)) return first;
+    const uint second = second_index_in(record);
+    if (mesh.kind != GEOMETRY_TRIANGLES || second <= first || second - first > MOST_PAIR_OFFSET || second >= primitives)
+        fail("no leaf can have primitives ", first, " and ", second, " of ", primitives);
+    return leaf_of(record);
+}
+
 void check_records(Layout layout, const SavedGeometry& geometry) {
     const auto primitives = static_cast<uint>(geometry.mesh.primitive_count());
-    if (const std::size_t count = record_count(primitives, width_of(layout)); geometry.records.size() != count)
-        fail("a tree of ", geometry.records.size(), " records for ", primitives, " primitives, not ", count);
+    if (const std::size_t count = record_count(geometry.bvh.leaf_count, width_of(layout));
+        geometry.records.size() != count)
+        fail("a tree of ", geometry.records.size(), " records for ", geometry.bvh.leaf_count, " leaves, not ", count);
     if (primitives == 0) return;
     const BuildTree source = source_of(geometry.mesh);
     for (const CompressedRecord& record : geometry.records) {
         if (!is_leaf(record)) continue;
-        const uint primitive = index_in(record);
-        if (primitive >= primitives) fail("primitive ", primitive, " of ", primitives);
-        if (const CompressedRecord right = encode_leaf(source, primitive);
+        const uint leaf = checked_leaf(record, geometry.mesh);
+        if (const CompressedRecord right = encode_boxed_leaf(source, leaf, boxed_leaf(source, leaf));
             std::memcmp(&record, &right, sizeof right) != 0)
-            fail("the record of primitive ", primitive, " does not have its vertices");
+            fail("the record of primitive ", first_in_leaf(leaf), " does not have its vertices");
     }
     std::vector<LeafBox> boxes;
     boxes.reserve(primitives);
@@ -144,6 +157,15 @@ void check_records(Layout layout, const SavedGeometry& geometry) {
     if (!check.violations.empty()) fail("unsound tree: ", check.violations.front());
     if (check.width != 0 && check.width != width_of(layout))
         fail("nodes of ", check.width, " children in layout ", name_of(layout));
+}
+
+// Geometry::leaves of a tree that is sound.
+std::vector<uint> leaves_in(std::span<const CompressedRecord> records) {
+    if (!has_pairs(records)) return {};
+    std::vector<uint> leaves;
+    for (const CompressedRecord& record : records)
+        if (is_leaf(record)) leaves.push_back(leaf_of(record));
+    return leaves;
 }
 
 void check_structure(Layout layout, const SavedGeometry& geometry) {
@@ -182,10 +204,12 @@ SavedGeometry read_geometry(Reader& reader, Layout layout, const SavedEntry& ent
     std::vector<InstanceRecord> instances = reader.take<InstanceRecord>(entry.instances, "instances");
     if (const uint found = crc32_of(all.first(all.size() - reader.rest().size())); found != entry.checksum)
         fail("damaged: the checksum is ", found, ", not ", entry.checksum);
-    const Bvh bvh{entry.lo, entry.hi, {}, entry.root, static_cast<uint>(mesh.primitive_count())};
+    const auto leaf_count = has_records(layout) ? std::ranges::count_if(records, is_leaf) : std::ssize(leaves);
+    const Bvh bvh{entry.lo, entry.hi, {}, entry.root, static_cast<uint>(leaf_count)};
     SavedGeometry geometry{std::move(mesh),     bvh, std::move(nodes), std::move(leaves), std::move(records),
                            std::move(instances)};
     check_structure(layout, geometry);
+    if (has_records(layout)) geometry.mesh.leaves = leaves_in(geometry.records);
     return geometry;
 }
 

@@ -19,7 +19,7 @@
 
 namespace twinray {
 
-constexpr uint saved_version = 8;
+constexpr uint saved_version = 9;
 
 struct SavedHeader {
     char magic[8];

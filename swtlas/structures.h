@@ -29,9 +29,10 @@ inline uint stack_size() { return STACK_SIZE; }
 inline uint load_entry(uint slot) { return stack_slots()[slot]; }
 inline void store_entry(uint slot, uint entry) { stack_slots()[slot] = entry; }
 
-// What the traversals of a thread have done so far: nodes fetched, boxes and primitives tested. Kernels do not count.
+// What the traversals of a thread have done so far: nodes fetched, boxes tested, leaves fetched, and primitives of them
+// tested in full. Kernels do not count.
 struct TraversalSteps {
-    std::uint64_t nodes = 0, boxes = 0, primitives = 0;
+    std::uint64_t nodes = 0, boxes = 0, leaves = 0, primitives = 0;
 };
 inline TraversalSteps& traversal_steps() {
     thread_local TraversalSteps steps;
@@ -50,6 +51,6 @@ inline TraversalSteps& traversal_steps() {
 #include "twinray/glsl/cpp_end.h"
 
 static_assert(sizeof(BvhNode) == 64 && sizeof(BvhChild) == 32 && sizeof(BvhTriangle) == 40 &&
-              sizeof(SwInstance) == 96 && sizeof(CompressedRecord) == 40);
-static_assert(sizeof(Bvh) == 40 && sizeof(SwGeometry) == 64 && sizeof(SwTlasHeader) == 80);
+              sizeof(SwInstance) == 104 && sizeof(CompressedRecord) == 40);
+static_assert(sizeof(Bvh) == 40 && sizeof(SwGeometry) == 72 && sizeof(SwTlasHeader) == 80);
 }  // namespace twinray

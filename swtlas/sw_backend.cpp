@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 #include "engine/accel/batches.h"
 #include "engine/core/error.h"
 #include "swtlas/built.h"
+#include "swtlas/triangle_pairs.h"
 #include "swtlas_trace.spv.h"
 #include "swtlas_trace_int64.spv.h"
 #include "swtlas_trace_refined.spv.h"
@@ -30,15 +32,22 @@ std::span<const std::uint32_t> own_module(const KernelTuning& tuning) {
 
 }  // namespace
 
+// A mesh on the device.
+struct SwBackend::Source {
+    PackedMesh mesh;
+    Uints leaves;  // null: each primitive is one, or the tree is there
+};
+
 struct SwBackend::Batch {
     std::span<const GeometryInput> inputs;
-    std::vector<uint> counts = {};
+    std::vector<uint> counts = {};  // of leaves
     BuildPlan plan = {};
 
-    // Of input i, over a mesh on the device.
-    BuildTree tree(std::size_t i, const SwBuiltGeometry& target, const PackedMesh& mesh) const {
-        return {plan.first[i],  counts[i],          mesh.positions,  mesh.indices, {inputs[i].block->address()},
-                target.nodes(), target.triangles(), target.records()};
+    // Of input i.
+    BuildTree tree(std::size_t i, const SwBuiltGeometry& target, const Source& source) const {
+        return {plan.first[i],       counts[i],          source.mesh.positions,
+                source.mesh.indices, source.leaves,      {inputs[i].block->address()},
+                target.nodes(),      target.triangles(), target.records()};
     }
 };
 
@@ -60,14 +69,41 @@ struct SwBackend::SwBuiltTlas : BuiltTlas {
     Ref<CompressedRecord> records() const { return {layout.record_count ? address + layout.records : 0}; }
 };
 
+// What builds take.
+struct SwBackend::Needs {
+    Layout layout;
+    const KernelTuning& tuning;
+    std::uint64_t structures = 0;
+    std::vector<std::uint64_t> shares = {};  // of scratch
+
+    void add(uint leaf_count, std::size_t vertex_count, std::uint64_t sources);
+};
+
 SwBackend::SwBackend(Context& context, const AccelOptions& options)
     : AccelBackend(context, "SwTlas", options), builder_(context, options) {}
 
+std::vector<uint> SwBackend::leaves_of(const Geometry& geometry) const {
+    if (!has_records(options().layout)) return {};
+    return pair_triangles(geometry.positions, geometry.triangles);
+}
+
+// Null where the mesh is in host memory alone.
+const PackedMesh& SwBackend::device_mesh(const GeometryInput& input) {
+    return input.mesh.indices.address ? input.mesh : input.kept;
+}
+
+uint SwBackend::leaf_count_of(const GeometryInput& input) {
+    if (input.current) return static_cast<const SwBuiltGeometry&>(*input.current).layout.leaf_count;
+    return SwBuiltGeometry::leaf_count_of(*input.geometry);
+}
+
 // Bytes of what must be uploaded to build from it.
 std::uint64_t SwBackend::source_bytes(const GeometryInput& input) {
-    if (input.mesh.indices.address) return 0;
-    return std::span(input.geometry->positions).size_bytes() + std::span(input.geometry->triangles).size_bytes() +
-           std::span(input.geometry->boxes).size_bytes();
+    const Geometry& geometry = *input.geometry;
+    const std::uint64_t leaves = std::span(geometry.leaves).size_bytes();
+    if (device_mesh(input).indices.address) return leaves;
+    return std::span(geometry.positions).size_bytes() + std::span(geometry.triangles).size_bytes() +
+           std::span(geometry.boxes).size_bytes() + leaves;
 }
 
 // Calls `record` for one batch after the other, all in the same scratch: that of the build, then the sources.
@@ -75,16 +111,14 @@ void SwBackend::record_batches(Commands& commands, std::span<const GeometryInput
                                const std::function<void(const Batch&, const Buffer& scratch)>& record) {
     std::vector<std::uint64_t> shares;
     for (const GeometryInput& input : inputs)
-        shares.push_back(scratch_share(static_cast<uint>(input.geometry->primitive_count()), options().layout,
-                                       context().state().tuning()) +
+        shares.push_back(scratch_share(leaf_count_of(input), options().layout, context().state().tuning()) +
                          source_bytes(input));
     const Batches batches = cut_into_batches(shares, scratch_budget());
     Buffer scratch(context(),
                    {.name = "swtlas geometry scratch", .bytes = batches.scratch_bytes, .alignment = cache_line_bytes});
     for (const Batches::Run& run : batches.runs) {
         Batch batch{inputs.subspan(run.first, run.count)};
-        for (const GeometryInput& input : batch.inputs)
-            batch.counts.push_back(static_cast<uint>(input.geometry->primitive_count()));
+        for (const GeometryInput& input : batch.inputs) batch.counts.push_back(leaf_count_of(input));
         batch.plan = plan_build(batch.counts, options().layout, context().state().tuning());
         record(batch, scratch);
     }
@@ -99,8 +133,9 @@ std::vector<Builder::Measured> SwBackend::measured(const Batch& batch, std::span
     return wanted;
 }
 
-// Where the meshes lie on the device; those that are not there yet are uploaded.
-std::vector<PackedMesh> SwBackend::record_meshes(Commands& commands, const Batch& batch, const Buffer& scratch) {
+// Where the meshes lie on the device; those that are not there yet are uploaded, and so are their leaves.
+std::vector<SwBackend::Source> SwBackend::record_sources(Commands& commands, const Batch& batch, bool wants_leaves,
+                                                         const Buffer& scratch) {
     std::vector<Commands::Region> regions;
     std::uint64_t next = batch.plan.scratch.bytes;
     const auto stage = [&](std::span<const std::byte> data) {
@@ -108,40 +143,70 @@ std::vector<PackedMesh> SwBackend::record_meshes(Commands& commands, const Batch
         next += data.size();
         return scratch.address() + regions.back().offset;
     };
-    std::vector<PackedMesh> meshes;
+    std::vector<Source> sources;
     for (const GeometryInput& input : batch.inputs) {
-        meshes.push_back(input.mesh);
-        if (input.mesh.indices.address) continue;
         const Geometry& geometry = *input.geometry;
+        sources.push_back({device_mesh(input), {}});
+        auto& [mesh, leaves] = sources.back();
+        if (!geometry.leaves.empty() && wants_leaves) leaves.address = stage(std::as_bytes(std::span(geometry.leaves)));
+        if (mesh.indices.address) continue;
         if (geometry.kind == GEOMETRY_BOXES) {
-            meshes.back().positions.address = stage(std::as_bytes(std::span(geometry.boxes)));
+            mesh.positions.address = stage(std::as_bytes(std::span(geometry.boxes)));
             continue;
         }
-        meshes.back().positions.address = stage(std::as_bytes(std::span(geometry.positions)));
-        meshes.back().indices.address = stage(std::as_bytes(std::span(geometry.triangles)));
+        mesh.positions.address = stage(std::as_bytes(std::span(geometry.positions)));
+        mesh.indices.address = stage(std::as_bytes(std::span(geometry.triangles)));
     }
     commands.upload_regions(scratch, regions);
-    return meshes;
+    return sources;
+}
+
+// As traversal sees it, still empty; `vertices`: null where its leaves name none.
+SwGeometry SwBackend::block_of(const SwBuiltGeometry& built, Floats vertices, uint kind) const {
+    SwGeometry block{empty_bvh(built.nodes().address), built.triangles(), built.records(), vertices, kind, 0};
+    context().fill_absent(block.bvh.nodes, block.triangles, block.records, block.vertices);
+    return block;
+}
+
+// Gives trees the vertices that their leaves name, where nothing else has them on the device.
+void SwBackend::record_vertices(Commands& commands, const Batch& batch, std::span<const Source> sources,
+                                const Buffer& scratch, std::span<const SwBuiltGeometry* const> targets) {
+    const auto needs_them = [&](std::size_t i) {
+        return targets[i]->layout.vertex_count != 0 && device_mesh(batch.inputs[i]).indices.address == 0;
+    };
+    const auto all = std::views::iota(std::size_t{0}, targets.size());
+    if (std::ranges::none_of(all, needs_them)) return;
+    const auto pass = commands.pass("swtlas vertices");
+    for (const std::size_t i : all | std::views::filter(needs_them)) {
+        const GeometryLayout& layout = targets[i]->layout;
+        commands.copy(scratch, sources[i].mesh.positions.address - scratch.address(), targets[i]->buffer,
+                      layout.vertices, layout.vertex_count * sizeof(vec3));
+    }
 }
 
 void SwBackend::record_build(Commands& commands, const Batch& batch, const Buffer& scratch, Built& built) {
     std::vector<BuildTree> trees;
+    std::vector<Source> sources;
+    std::vector<const SwBuiltGeometry*> targets;
     {
         const auto pass = commands.pass("swtlas geometry input");
-        const std::vector<PackedMesh> meshes = record_meshes(commands, batch, scratch);
+        sources = record_sources(commands, batch, true, scratch);
         for (std::size_t i = 0; i < batch.inputs.size(); ++i) {
             const GeometryInput& input = batch.inputs[i];
             std::unique_ptr<SwBuiltGeometry> made;
-            if (!input.current) made = std::make_unique<SwBuiltGeometry>(context(), *input.geometry, options().layout);
+            const PackedMesh& mesh = device_mesh(input);
+            if (!input.current)
+                made = std::make_unique<SwBuiltGeometry>(context(), *input.geometry, mesh.indices.address != 0,
+                                                         options().layout);
             const auto& target = made ? *made : static_cast<const SwBuiltGeometry&>(*input.current);
-            SwGeometry block{empty_bvh(target.nodes().address), target.triangles(), target.records(),
-                             input.geometry->kind, 0};
-            context().fill_absent(block.bvh.nodes, block.triangles, block.records);
-            commands.write(*input.block, block);
-            trees.push_back(batch.tree(i, target, meshes[i]));
+            commands.write(*input.block, block_of(target, mesh.positions.address ? mesh.positions : target.vertices(),
+                                                  input.geometry->kind));
+            trees.push_back(batch.tree(i, target, sources[i]));
+            targets.push_back(&target);
             built.push_back(std::move(made));
         }
     }
+    record_vertices(commands, batch, sources, scratch, targets);
     builder_.record_triangles(commands, batch.plan, trees, scratch);
     builder_.record_costs(commands, measured(batch, trees), true);
 }
@@ -153,18 +218,27 @@ SwBackend::Built SwBackend::build_geometries(Commands& commands, std::span<const
     return built;
 }
 
+void SwBackend::record_refit(Commands& commands, const Batch& batch, const Buffer& scratch) {
+    std::vector<BuildTree> trees;
+    {
+        const auto pass = commands.pass("swtlas geometry input");
+        const std::vector<Source> sources = record_sources(commands, batch, batch.plan.has_lone_leaves, scratch);
+        for (std::size_t i = 0; i < batch.inputs.size(); ++i) {
+            const GeometryInput& input = batch.inputs[i];
+            trees.push_back(batch.tree(i, static_cast<const SwBuiltGeometry&>(*input.current), sources[i]));
+            commands.write(*input.block, input.mesh.positions, offsetof(SwGeometry, vertices));
+        }
+    }
+    std::vector<Builder::Measured> as_built = measured(batch, trees);
+    std::erase_if(as_built, [](const Builder::Measured& tree) { return !tree.target.is_first; });
+    builder_.record_costs(commands, as_built, true);
+    builder_.record_triangle_refit(commands, batch.plan, trees, scratch);
+    builder_.record_costs(commands, measured(batch, trees), false);
+}
+
 SwBackend::Built SwBackend::refit_geometries(Commands& commands, std::span<const GeometryInput> inputs) {
-    record_batches(commands, inputs, [&](const Batch& batch, const Buffer& scratch) {
-        std::vector<BuildTree> trees;
-        for (std::size_t i = 0; i < batch.inputs.size(); ++i)
-            trees.push_back(
-                batch.tree(i, static_cast<const SwBuiltGeometry&>(*batch.inputs[i].current), batch.inputs[i].mesh));
-        std::vector<Builder::Measured> as_built = measured(batch, trees);
-        std::erase_if(as_built, [](const Builder::Measured& tree) { return !tree.target.is_first; });
-        builder_.record_costs(commands, as_built, true);
-        builder_.record_triangle_refit(commands, batch.plan, trees, scratch);
-        builder_.record_costs(commands, measured(batch, trees), false);
-    });
+    record_batches(commands, inputs,
+                   [&](const Batch& batch, const Buffer& scratch) { record_refit(commands, batch, scratch); });
     return Built(inputs.size());
 }
 
@@ -197,17 +271,28 @@ std::unique_ptr<AccelBackend::BuiltTlas> SwBackend::build_tlas(Commands& command
     return made;
 }
 
+// `sources`: bytes that are uploaded.
+void SwBackend::Needs::add(uint leaf_count, std::size_t vertex_count, std::uint64_t sources) {
+    structures += layout_geometry(leaf_count, vertex_count, layout).bytes;
+    shares.push_back(scratch_share(leaf_count, layout, tuning) + sources);
+}
+
 BuildBytes SwBackend::geometry_bytes(std::span<const GeometrySize> geometries) const {
-    BuildBytes bytes;
-    std::vector<std::uint64_t> shares;
-    for (const GeometrySize& size : geometries) {
-        const auto count = static_cast<uint>(size.triangles);
-        bytes.structures += layout_geometry(count, options().layout).bytes;
-        shares.push_back(scratch_share(count, options().layout, context().state().tuning()) +
-                         (size.in_device_memory ? 0 : size.vertices * sizeof(vec3) + size.triangles * sizeof(uvec3)));
-    }
-    bytes.scratch = cut_into_batches(shares, scratch_budget()).scratch_bytes;
-    return bytes;
+    Needs needs{options().layout, context().state().tuning()};
+    for (const GeometrySize& size : geometries)
+        needs.add(static_cast<uint>(size.triangles), 0,
+                  size.in_device_memory ? 0 : size.vertices * sizeof(vec3) + size.triangles * sizeof(uvec3));
+    return {needs.structures, cut_into_batches(needs.shares, scratch_budget()).scratch_bytes};
+}
+
+BuildBytes SwBackend::bytes_of(std::span<const Geometry* const> geometries) const {
+    Needs needs{options().layout, context().state().tuning()};
+    for (const Geometry* geometry : geometries)
+        needs.add(SwBuiltGeometry::leaf_count_of(*geometry),
+                  SwBuiltGeometry::vertex_count_of(*geometry, keeps_meshes()),
+                  keeps_meshes() ? std::span(geometry->leaves).size_bytes()
+                                 : source_bytes({geometry, nullptr, {}, {}, nullptr, {}}));
+    return {needs.structures, cut_into_batches(needs.shares, scratch_budget()).scratch_bytes};
 }
 
 BuildBytes SwBackend::scene_bytes(std::size_t count, std::size_t capacity) const {
@@ -247,9 +332,16 @@ BuiltTree SwBackend::download_geometry(AccelHandle handle) const {
     const auto& built = static_cast<const SwBuiltGeometry&>(built_geometry(handle));
     const Bvh bvh = download<SwGeometry>(context(), geometry_block(handle), 1).front().bvh;
     const GeometryLayout& layout = built.layout;
+    std::vector<CompressedRecord> records =
+        with_clear_gaps(download<CompressedRecord>(context(), built.buffer, layout.record_count, layout.records));
+    std::vector<vec3> vertices;
+    if (layout.vertex_count)
+        vertices = download<vec3>(context(), built.buffer, layout.vertex_count, layout.vertices);
+    else if (has_pairs(records))
+        vertices = geometry(handle).positions;
     return {bvh, download<BvhNode>(context(), built.buffer, layout.node_count, layout.nodes),
-            download<BvhTriangle>(context(), built.buffer, layout.triangle_count, layout.triangles),
-            with_clear_gaps(download<CompressedRecord>(context(), built.buffer, layout.record_count, layout.records))};
+            download<BvhTriangle>(context(), built.buffer, layout.triangle_count, layout.triangles), std::move(records),
+            std::move(vertices)};
 }
 
 BuiltTree SwBackend::download_scene() const {
@@ -260,7 +352,8 @@ BuiltTree SwBackend::download_scene() const {
             download<BvhNode>(context(), built.buffer, of_them.node_count, built.layout.nodes),
             {},
             with_clear_gaps(
-                download<CompressedRecord>(context(), built.buffer, of_them.record_count, built.layout.records))};
+                download<CompressedRecord>(context(), built.buffer, of_them.record_count, built.layout.records)),
+            {}};
 }
 
 }  // namespace twinray

@@ -33,24 +33,35 @@ class SwBackend final : public AccelBackend {
   private:
     struct SwBuiltGeometry;
     struct SwBuiltTlas;
+    struct Source;
     struct Batch;
+    struct Needs;
     using Built = std::vector<std::unique_ptr<BuiltGeometry>>;
     Built build_geometries(Commands& commands, std::span<const GeometryInput> inputs) override;
     Built refit_geometries(Commands& commands, std::span<const GeometryInput> inputs) override;
     BuildBytes geometry_bytes(std::span<const GeometrySize> geometries) const override;
+    BuildBytes bytes_of(std::span<const Geometry* const> geometries) const override;
     BuildBytes scene_bytes(std::size_t count, std::size_t capacity) const override;
+    static const PackedMesh& device_mesh(const GeometryInput& input);
+    static uint leaf_count_of(const GeometryInput& input);
     static std::uint64_t source_bytes(const GeometryInput& input);
     static std::vector<Builder::Measured> measured(const Batch& batch, std::span<const BuildTree> trees);
     void record_batches(Commands& commands, std::span<const GeometryInput> inputs,
                         const std::function<void(const Batch&, const Buffer& scratch)>& record);
     void record_build(Commands& commands, const Batch& batch, const Buffer& scratch, Built& built);
-    static std::vector<PackedMesh> record_meshes(Commands& commands, const Batch& batch, const Buffer& scratch);
+    void record_refit(Commands& commands, const Batch& batch, const Buffer& scratch);
+    SwGeometry block_of(const SwBuiltGeometry& built, Floats vertices, uint kind) const;
+    static std::vector<Source> record_sources(Commands& commands, const Batch& batch, bool wants_leaves,
+                                              const Buffer& scratch);
+    static void record_vertices(Commands& commands, const Batch& batch, std::span<const Source> sources,
+                                const Buffer& scratch, std::span<const SwBuiltGeometry* const> targets);
     std::unique_ptr<BuiltTlas> build_tlas(Commands& commands, const TlasInput& input,
                                           const BuiltTlas* current) override;
     void refit_tlas(Commands& commands, const TlasInput& input, const BuiltTlas& current) override;
     void measure_tlas(Commands& commands, const TlasInput& input, const BuiltTlas& current) const override;
     void record_costs(Commands& commands, const TlasInput& input, const SwBuiltTlas& scene, bool is_build) const;
     float unit_of(std::span<const vec3> positions) const override { return software_unit(positions); }
+    std::vector<uint> leaves_of(const Geometry& geometry) const override;
     std::unique_ptr<TraceProgram> create_program(const TraceProgramCode* code, uint features) const override;
 
     Builder builder_;

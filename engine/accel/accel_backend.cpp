@@ -50,7 +50,7 @@ AccelHandle AccelBackend::push(const MeshView& mesh, const Transform& transform,
 }
 AccelHandle AccelBackend::push(const MeshView& mesh, std::span<const Transform> transforms,
                                std::span<const InstanceOptions> options) {
-    return place(Geometry(mesh, unit_of(mesh.positions)), surface_of(mesh), transforms, options);
+    return place(geometry_of(mesh), surface_of(mesh), transforms, options);
 }
 AccelHandle AccelBackend::push(const BoxesView& boxes, const Transform& transform, const InstanceOptions& options) {
     return push(boxes, std::span(&transform, 1), std::span(&options, 1));
@@ -73,6 +73,12 @@ SurfaceSlice AccelBackend::surface_of(const Mesh& mesh) {
     check_arrays(mesh);
     if (!surfaces_) return {};
     return surface_slice(options_.keeps_surfaces ? mesh : metadata_of(mesh), surfaces_->names());
+}
+
+Geometry AccelBackend::geometry_of(const MeshView& mesh) const {
+    Geometry geometry(mesh, unit_of(mesh.positions));
+    geometry.leaves = leaves_of(geometry);
+    return geometry;
 }
 
 Geometry AccelBackend::geometry_of(const DeviceMesh& mesh, const char* action) const {
@@ -179,7 +185,7 @@ bool AccelBackend::erase(AccelHandle handle) {
 
 void AccelBackend::update(AccelHandle handle, const MeshView& mesh) {
     live(handle, "update");
-    Geometry geometry(mesh, unit_of(mesh.positions));
+    Geometry geometry = geometry_of(mesh);
     replace(handle, std::move(geometry), surface_of(mesh));
 }
 void AccelBackend::update(AccelHandle handle, const BoxesView& boxes) {

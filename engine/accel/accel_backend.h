@@ -136,6 +136,7 @@ class AccelBackend {
         const Geometry* geometry;
         const Buffer* block;
         PackedMesh mesh;               // where it is not null, this is built from, not the host's copy
+        PackedMesh kept;               // what the device has of it as long as it has the geometry, or null
         const BuiltGeometry* current;  // of an earlier sync and the same triangles, or null
         CostTarget cost;               // wants the cost measured that sah() tells, unless null
     };
@@ -178,6 +179,7 @@ class AccelBackend {
                                                   const BuiltTlas* current) = 0;
     // What building them from the host's memory takes.
     virtual BuildBytes geometry_bytes(std::span<const GeometrySize> geometries) const = 0;
+    virtual BuildBytes bytes_of(std::span<const Geometry* const> geometries) const;
     // What building a top level for `count` instances takes, with room for `capacity`.
     virtual BuildBytes scene_bytes(std::size_t count, std::size_t capacity) const = 0;
     // Measures `current` as it was built last.
@@ -199,6 +201,8 @@ class AccelBackend {
 
     // What meshes with these positions are built in units of: a power of two.
     virtual float unit_of(std::span<const vec3> positions) const { return Geometry::near_unit(positions); }
+    // Geometry::leaves of a mesh in host memory.
+    virtual std::vector<uint> leaves_of(const Geometry&) const { return {}; }
     // With `code`, or with the accelerator's own code where the scene needs no program.
     virtual std::unique_ptr<TraceProgram> create_program(const TraceProgramCode* code, uint features) const = 0;
     std::uint64_t id() const { return id_; }
@@ -206,6 +210,7 @@ class AccelBackend {
     bool is_sync_done() const { return context_.is_reached(synced_); }
     // False: the host answers, and neither reads vertices in device memory nor measures costs.
     virtual bool works_on_device() const { return true; }
+    bool keeps_meshes() const { return refinement_ || options_.keeps_surfaces; }
     // What closest_hits() and any_hits() do.
     virtual std::vector<Hit> trace_host(std::span<const Ray> rays, TraceDesc desc);
 
@@ -277,6 +282,7 @@ class AccelBackend {
     void replace(AccelHandle handle, Geometry&& geometry, SurfaceSlice&& surface);
     template <class Mesh>
     SurfaceSlice surface_of(const Mesh& mesh);
+    Geometry geometry_of(const MeshView& mesh) const;
     Geometry geometry_of(const DeviceMesh& mesh, const char* action) const;
     void check_option_count(const std::string& mesh, std::size_t transforms, std::size_t options) const;
     std::vector<InstanceRecord> newest_records(const InstanceSlice& slice) const;
@@ -300,7 +306,6 @@ class AccelBackend {
     void stage_vertices(Commands& commands, Staged& staged);
     void stage_surfaces(Commands& commands, Staged& staged);
     // On the device, whether their vertices move or not.
-    bool keeps_meshes() const { return refinement_ || options_.keeps_surfaces; }
     void stage_sources(Commands& commands, Staged& staged);
     static PackedMesh kept_mesh(const HeldGeometry& held, const Staged& staged);
     bool lacks_mesh(const HeldGeometry& held) const;

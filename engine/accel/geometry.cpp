@@ -58,16 +58,17 @@ void Geometry::move_to(std::span<const vec3> others) {
     std::transform(others.begin(), others.end(), positions.begin(), [&](vec3 p) { return p * factor; });
 }
 
-void Geometry::forget_mesh() {
+void Geometry::forget_mesh(bool is_on_device) {
     if (device || kind == GEOMETRY_BOXES) return;
     forgotten = counts();
     positions = std::vector<vec3>();  // without its memory
     triangles = std::vector<uvec3>();
+    if (!is_on_device) leaves = std::vector<uint>();
 }
 
 std::uint64_t Geometry::host_bytes() const {
     return positions.capacity() * sizeof(vec3) + triangles.capacity() * sizeof(uvec3) +
-           boxes.capacity() * sizeof(Bounds);
+           boxes.capacity() * sizeof(Bounds) + leaves.capacity() * sizeof(uint);
 }
 
 std::vector<vec3> Geometry::given_positions() const {

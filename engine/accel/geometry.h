@@ -23,6 +23,8 @@ struct Geometry {
     std::vector<uvec3> triangles;
     std::size_t non_finite_triangles = 0;  // inactive: never hit, still counted
     std::vector<Bounds> boxes;             // of GEOMETRY_BOXES
+    // What the accelerator's builder makes leaves of, where that is not each primitive. A build needs it.
+    std::vector<uint> leaves;
     // Instead of `triangles`, and of `positions` until the host gives some: what the caller has in device memory,
     // without its name and attributes.
     std::optional<DeviceMesh> device;
@@ -42,8 +44,8 @@ struct Geometry {
 
     // Other positions, as many, in the user's units.
     void move_to(std::span<const vec3> others);
-    // Frees the host's copy of a mesh that is built.
-    void forget_mesh();
+    // Frees the host's copy of a mesh that is built; `leaves`, too, unless the device has a copy to build from again.
+    void forget_mesh(bool is_on_device);
     std::uint64_t host_bytes() const;
     // As the user gave them.
     std::vector<vec3> given_positions() const;

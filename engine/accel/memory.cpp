@@ -22,13 +22,18 @@ MemoryUsage AccelBackend::memory_usage() const {
     return usage;
 }
 
-BuildBytes AccelBackend::memory_requirements() const {
+BuildBytes AccelBackend::bytes_of(std::span<const Geometry* const> geometries) const {
     std::vector<GeometrySize> sizes;
+    for (const Geometry* geometry : geometries)
+        sizes.push_back({geometry->vertex_count(), geometry->primitive_count(), geometry->device.has_value()});
+    return geometry_bytes(sizes);
+}
+
+BuildBytes AccelBackend::memory_requirements() const {
+    std::vector<const Geometry*> unbuilt;
     for (const HeldGeometry* held : held_geometries())
-        if (!held->built)
-            sizes.push_back(
-                {held->geometry.vertex_count(), held->geometry.primitive_count(), held->geometry.device.has_value()});
-    BuildBytes bytes = geometry_bytes(sizes);
+        if (!held->built) unbuilt.push_back(&held->geometry);
+    BuildBytes bytes = bytes_of(unbuilt);
     if (dirty_ == Dirty::no) return bytes;
     const std::size_t count = n_instances(), room = scene_ ? scene_->capacity : 0;
     const std::size_t capacity = capacity_for(count, room);

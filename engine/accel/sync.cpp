@@ -126,7 +126,8 @@ void AccelBackend::stage_geometries(Commands& commands, Staged& staged) {
     stage_vertices(commands, staged);
     Work builds, refits, compactions;
     for (const auto& held : staged.geometries) {
-        GeometryInput input{&held->geometry, &held->block, {}, held->built.get(), {}};
+        GeometryInput input{
+            &held->geometry, &held->block, {}, staged.vertices.mesh_of(held->vertices), held->built.get(), {}};
         const bool is_refit =
             held->vertices.edited && held->built && !held->vertices.rebuilds && !has_degraded(held->vertices.costs);
         if (held->vertices.edited) {
@@ -205,7 +206,8 @@ void AccelBackend::commit(Staged&& staged, SyncPoint done) {
     for (const auto& held : staged.geometries) {
         held->is_listed = false;
         if (held->built && has_compaction(*held->built)) uncompacted_.push_back(held);
-        if (held->built && !options_.keeps_meshes && works_on_device()) held->geometry.forget_mesh();
+        if (held->built && !options_.keeps_meshes && works_on_device())
+            held->geometry.forget_mesh(held->vertices.on_device());
     }
     edited_.clear();
     edited_instances_.clear();

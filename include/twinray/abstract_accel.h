@@ -211,7 +211,7 @@ class AbstractAccel {
     // What the next sync will take for geometries and a top level that are not built yet: exactly what the structures
     // will be, but for meshes with nothing that could be hit, and all scratch. What the host uploads is staged on top.
     BuildBytes memory_requirements() const;
-    // The same for an accelerator of nothing but such meshes and so many instances, before any is pushed.
+    // The same, at most, of such meshes and so many instances: SwTlas takes less where triangles share edges.
     BuildBytes memory_requirements(std::span<const GeometrySize> geometries, std::size_t instance_count) const;
 
     const AccelOptions& options() const;  // those that it was made with

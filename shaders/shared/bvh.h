@@ -15,6 +15,7 @@
 
 const uint LEAF_BIT = 0x80000000u;
 const uint INSTANCE_BIT = 0x40000000u; // in records of leaves
+const uint PAIR_BIT = 0x20000000u;     // in records of leaves of two triangles
 const uint WIDE_BIT = INSTANCE_BIT;    // in other records
 const uint NOTHING = 0xffffffffu;
 
@@ -99,6 +100,9 @@ BUFFER_OF(BvhTriangle, 8);
 // second half of a node of layout compressed8, of its last four slots
 //            a.x: see ChildSlots, axes << 16 (see octant_order.h); w: WIDE_BIT      b, c: as in a node
 // primitive  a: v0; w: LEAF_BIT | primitive_index      b: v1; w, c: v2
+// two        a.w: LEAF_BIT | PAIR_BIT | index of the first triangle; x: index of the second, with FIRST_ACTIVE and
+// triangles  SECOND_ACTIVE for those that can be hit; y, z: the vertices of the edge that they share
+//            b.x, b.y: the third vertex of the first, of the second; z: see PairCorners
 // instance   a.w: LEAF_BIT | INSTANCE_BIT | index
 // none       a.w: 0
 struct CompressedRecord
@@ -125,6 +129,7 @@ struct SwGeometry
     Bvh bvh;
     REF(BvhTriangle) triangles;    // of layout bvh2, else absent
     REF(CompressedRecord) records; // of all other layouts, else absent
+    Floats vertices; // 3 each, of leaves of two triangles, else absent
     uint kind; // GEOMETRY_*
     uint reserved;
 };
@@ -137,6 +142,7 @@ struct SwInstance
     REF(BvhNode) nodes;
     REF(BvhTriangle) triangles;
     REF(CompressedRecord) records;
+    Floats vertices;
     uint root;
     uint custom_index_mask;
     uint flags; // of the instance: INSTANCE_*

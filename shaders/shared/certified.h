@@ -158,17 +158,4 @@ FUNC bool intersect_in_world(uint primitive_index, uint instance_index, TraceOpt
     return abs(hit.t) <= 3.402823466e+38f; // no t beyond the largest float can be reported
 }
 
-// The same for a triangle in object space that float32 may refuse. `error`: see CertifiedRay.
-FUNC bool intersect_certified(BvhTriangle triangle, RaySpace space, float error, uint instance_index,
-                              TraceOptions options, INOUT(uint) sign_of_t, INOUT(TriangleHit) hit)
-{
-    vec3 a = sheared(triangle.v0, space);
-    vec3 b = sheared(triangle.v1, space);
-    vec3 c = sheared(triangle.v2, space);
-    int side_a = certain_side(b, c, error);
-    int side_b = certain_side(c, a, error);
-    int side_c = certain_side(a, b, error);
-    if (side_a * side_b < 0 || side_b * side_c < 0 || side_c * side_a < 0) return false;
-    return intersect_in_world(triangle.primitive_index, instance_index, options, sign_of_t, hit);
-}
 #endif

@@ -39,8 +39,17 @@ FUNC bool is_wide_node(CompressedRecord record)
     return (record.a.w & (LEAF_BIT | WIDE_BIT)) == WIDE_BIT && children_in(record) != 0u;
 }
 FUNC bool is_instance(CompressedRecord leaf) { return (leaf.a.w & INSTANCE_BIT) != 0u; }
-// of the primitive or instance
-FUNC uint index_in(CompressedRecord leaf) { return leaf.a.w & ~(LEAF_BIT | INSTANCE_BIT); }
+FUNC bool is_pair(CompressedRecord leaf) { return (leaf.a.w & PAIR_BIT) != 0u; }
+// of the primitive, of the first of two triangles, or of the instance
+FUNC uint index_in(CompressedRecord leaf) { return leaf.a.w & ~(LEAF_BIT | INSTANCE_BIT | PAIR_BIT); }
+
+const uint FIRST_ACTIVE = 0x40000000u;
+const uint SECOND_ACTIVE = 0x80000000u;
+FUNC uint second_index_in(CompressedRecord pair) { return pair.a.x & ~(FIRST_ACTIVE | SECOND_ACTIVE); }
+FUNC uint primitive_index_in(CompressedRecord leaf, bool is_second)
+{
+    return is_second ? second_index_in(leaf) : index_in(leaf);
+}
 
 #ifdef TWINRAY_WIDE_LOADS // of modules of their own, see KernelTuning::has_wide_loads
 REFERENCE(RecordWords, , uint64_t items[], 8)
@@ -158,6 +167,7 @@ FUNC float areas_in(REF(CompressedRecord) records, uint index, float unit)
     return sum;
 }
 
+// The primitive of a leaf of one.
 FUNC BvhTriangle primitive_of(CompressedRecord record)
 {
     BvhTriangle t;
@@ -165,6 +175,80 @@ FUNC BvhTriangle primitive_of(CompressedRecord record)
     t.v1 = vec3(uintBitsToFloat(record.b.x), uintBitsToFloat(record.b.y), uintBitsToFloat(record.b.z));
     t.v2 = vec3(uintBitsToFloat(record.b.w), uintBitsToFloat(record.c.x), uintBitsToFloat(record.c.y));
     t.primitive_index = index_in(record);
+    return t;
+}
+
+// Which corner of a triangle is the one that the other one lacks: 2 bits of the first, 2 of the second, and whether the
+// second has their edge in the other direction, counted from that corner on.
+const uint PAIR_FLIPPED = 16u;
+
+// The vertices of a leaf's primitives. Of a box, `first` is its lowest corner and `begin` its highest.
+struct LeafVertices
+{
+    vec3 begin; // of the edge that two triangles share
+    vec3 end;
+    vec3 first; // the third of the first triangle
+    vec3 second;
+    uint corners;
+    uint there; // bit i: primitive i can be hit
+};
+
+FUNC LeafVertices vertices_of(BvhTriangle t)
+{
+    LeafVertices of_leaf;
+    of_leaf.first = t.v0;
+    of_leaf.begin = t.v1;
+    of_leaf.end = t.v2;
+    of_leaf.second = t.v0;
+    of_leaf.corners = 0u;
+    of_leaf.there = 1u;
+    return of_leaf;
+}
+
+FUNC LeafVertices vertices_of_leaf(CompressedRecord record, Floats vertices)
+{
+    if (!is_pair(record)) return vertices_of(primitive_of(record));
+    LeafVertices of_leaf;
+    of_leaf.begin = load_position(vertices, record.a.y);
+    of_leaf.end = load_position(vertices, record.a.z);
+    of_leaf.first = load_position(vertices, record.b.x);
+    of_leaf.second = load_position(vertices, record.b.y);
+    of_leaf.corners = record.b.z;
+    of_leaf.there = record.a.x >> 30u;
+    return of_leaf;
+}
+
+// The corners of one of the primitives in their order, of four numbers each.
+struct OrderedCorners
+{
+    vec4 a;
+    vec4 b;
+    vec4 c;
+};
+
+FUNC OrderedCorners ordered_corners(uint corners, bool is_second, vec4 third, vec4 begin, vec4 end)
+{
+    uint lone = is_second ? corners >> 2u & 3u : corners & 3u;
+    bool is_flipped = is_second && (corners & PAIR_FLIPPED) != 0u;
+    vec4 next = is_flipped ? end : begin;
+    vec4 last = is_flipped ? begin : end;
+    OrderedCorners ordered;
+    ordered.a = lone == 0u ? third : (lone == 1u ? last : next);
+    ordered.b = lone == 1u ? third : (lone == 2u ? last : next);
+    ordered.c = lone == 2u ? third : (lone == 0u ? last : next);
+    return ordered;
+}
+
+FUNC BvhTriangle primitive_in(LeafVertices vertices, bool is_second, uint primitive_index)
+{
+    OrderedCorners corners =
+        ordered_corners(vertices.corners, is_second, vec4(is_second ? vertices.second : vertices.first, 0.0f),
+                        vec4(vertices.begin, 0.0f), vec4(vertices.end, 0.0f));
+    BvhTriangle t;
+    t.v0 = vec3(corners.a.x, corners.a.y, corners.a.z);
+    t.v1 = vec3(corners.b.x, corners.b.y, corners.b.z);
+    t.v2 = vec3(corners.c.x, corners.c.y, corners.c.z);
+    t.primitive_index = primitive_index;
     return t;
 }
 #endif

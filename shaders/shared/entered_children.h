@@ -13,11 +13,13 @@ struct SwTree
     REF(BvhNode) nodes;
     REF(BvhTriangle) triangles;
     REF(CompressedRecord) records;
+    Floats vertices;
     uint root;
 };
 
 // A node or leaf of a tree: the number of a record, for both, in layout compressed8 with LEAF_BIT where it is known to
-// be a leaf; in layout bvh2 a child and its edge.
+// be a leaf, and with SECOND_BIT the second triangle of a leaf; in layout bvh2 a child and its edge.
+const uint SECOND_BIT = INSTANCE_BIT;
 struct TreePosition
 {
     uint item;
@@ -45,6 +47,7 @@ FUNC SwTree top_tree(SwTlasHeader scene)
     tree.nodes = scene.bvh.nodes;
     tree.triangles = REF(BvhTriangle)(scene.instances.address); // read of no leaf: they are instances
     tree.records = scene.records;
+    tree.vertices = Floats(scene.instances.address);
     tree.root = scene.bvh.root;
     return tree;
 }
@@ -54,6 +57,7 @@ FUNC SwTree tree_of(SwInstance instance)
     tree.nodes = instance.nodes;
     tree.triangles = instance.triangles;
     tree.records = instance.records;
+    tree.vertices = instance.vertices;
     tree.root = instance.root;
     return tree;
 }

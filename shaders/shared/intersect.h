@@ -285,11 +285,10 @@ FUNC float signed_t(float t, uint sign_of_t)
     return sign_of_t == SIGN_POSITIVE ? max(t, LEAST_NORMAL) : t;
 }
 
-// Whether the ray's line meets the triangle (v0, v1, v2), and where. No interval test. False with sign_of_t asked: not
-// known yet, see told_sign().
-FUNC bool intersect_triangle(vec3 v0, vec3 v1, vec3 v2, RaySpace space, INOUT(uint) sign_of_t, INOUT(TriangleHit) hit)
+// Whether the ray's line meets the triangle, and where. No interval test. False with sign_of_t asked: not known yet,
+// see told_sign().
+FUNC bool intersect_seen(INOUT(SeenTriangle) seen, RaySpace space, INOUT(uint) sign_of_t, INOUT(TriangleHit) hit)
 {
-    SeenTriangle seen = seen_triangle(v0, v1, v2, space);
     bool is_met = is_around_ray(seen);
     if (is_met)
     {
@@ -300,6 +299,11 @@ FUNC bool intersect_triangle(vec3 v0, vec3 v1, vec3 v2, RaySpace space, INOUT(ui
         is_met = !asks;
     }
     return is_met;
+}
+FUNC bool intersect_triangle(vec3 v0, vec3 v1, vec3 v2, RaySpace space, INOUT(uint) sign_of_t, INOUT(TriangleHit) hit)
+{
+    SeenTriangle seen = seen_triangle(v0, v1, v2, space);
+    return intersect_seen(seen, space, sign_of_t, hit);
 }
 
 // The same, with the sign of t told at once: for hosts, which have registers enough. False where t is not positive by

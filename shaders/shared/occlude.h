@@ -48,15 +48,13 @@ FUNC HitInterval hit_interval(SeenTriangle seen, float shear_z, float t_min, flo
     return interval;
 }
 
-// Whether intersect_triangle() finds a hit with t_min < t < t_max, the `ends`, 0 <= t_min, and then TriangleHit::along.
+// Whether intersect_seen() finds a hit with t_min < t < t_max, the `ends`, 0 <= t_min, and then TriangleHit::along.
 // False with sign_of_t asked: not known yet. That t costs as much as the rest of the test; here it is computed only
 // where rounding hides its sign or on which side of an end it is.
-FUNC bool triangle_occludes(vec3 v0, vec3 v1, vec3 v2, RaySpace space, vec2 ends, INOUT(uint) sign_of_t,
-                            INOUT(bool) along)
+FUNC bool seen_occludes(INOUT(SeenTriangle) seen, RaySpace space, vec2 ends, INOUT(uint) sign_of_t, INOUT(bool) along)
 {
     float t_min = ends.x;
     float t_max = ends.y;
-    SeenTriangle seen = seen_triangle(v0, v1, v2, space);
     bool is_met = is_around_ray(seen);
     bool is_hidden = is_met && may_begin_in_plane(seen);
     HitInterval interval = hit_interval(seen, space.shear_z, t_min, t_max);
@@ -72,5 +70,11 @@ FUNC bool triangle_occludes(vec3 v0, vec3 v1, vec3 v2, RaySpace space, vec2 ends
         is_within = !asks && t > t_min && t < t_max;
     }
     return is_met && is_within;
+}
+FUNC bool triangle_occludes(vec3 v0, vec3 v1, vec3 v2, RaySpace space, vec2 ends, INOUT(uint) sign_of_t,
+                            INOUT(bool) along)
+{
+    SeenTriangle seen = seen_triangle(v0, v1, v2, space);
+    return seen_occludes(seen, space, ends, sign_of_t, along);
 }
 #endif

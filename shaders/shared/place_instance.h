@@ -137,6 +137,7 @@ FUNC SwInstance place_instance(InstanceRecord record, Address absent, bool is_ti
     instance.nodes = REF(BvhNode)(absent);
     instance.triangles = REF(BvhTriangle)(absent);
     instance.records = REF(CompressedRecord)(absent);
+    instance.vertices = Floats(absent);
     instance.kind = GEOMETRY_TRIANGLES;
     instance.root = NOTHING;
     instance.extent = 0.0f;
@@ -147,6 +148,7 @@ FUNC SwInstance place_instance(InstanceRecord record, Address absent, bool is_ti
     instance.nodes = geometry.bvh.nodes;
     instance.triangles = geometry.triangles;
     instance.records = geometry.records;
+    instance.vertices = geometry.vertices;
     instance.root = geometry.bvh.root;
     instance.kind = geometry.kind;
     instance.extent = largest_coordinate(geometry.bvh.lo, geometry.bvh.hi);

@@ -163,7 +163,7 @@ FUNC Hit traverse(SwTlasHeader scene, Ray ray, TraceOptions options)
         bool descends = false;
         CompressedRecord record;
         CompressedRecord second_half;
-        if (!binary) record = load_record(here.tree.records, here.at.item & ~LEAF_BIT);
+        if (!binary) record = load_record(here.tree.records, here.at.item & (MOST_RECORDS - 1u));
         bool is_wide = is_surely_wide(options) ? (here.at.item & LEAF_BIT) == 0u
                                                : !binary && may_be_wide(options) && is_wide_node(record);
         if (may_be_wide(options) && is_wide) second_half = load_record(here.tree.records, here.at.item + 1u);
@@ -183,21 +183,44 @@ FUNC Hit traverse(SwTlasHeader scene, Ray ray, TraceOptions options)
         }
         else if (!is_place)
         {
-            COUNT_STEPS(primitives, search.sign_of_t == SIGN_UNASKED ? 1u : 0u);
-            BvhTriangle leaf;
-            if (binary) leaf = load_triangle(here.tree.triangles, here.at.item & ~LEAF_BIT);
-            else leaf = primitive_of(record);
+            bool is_at_second = !binary && (here.at.item & SECOND_BIT) != 0u;
+            LeafVertices vertices;
+            uvec2 primitives = uvec2(index_in(record), second_index_in(record));
+            if (binary)
+            {
+                BvhTriangle triangle = load_triangle(here.tree.triangles, here.at.item & ~LEAF_BIT);
+                vertices = vertices_of(triangle);
+                primitives.x = triangle.primitive_index;
+            }
+            else vertices = vertices_of_leaf(record, here.tree.vertices);
             if (options.level != LEVEL_FAST && is_sign_asked(search.sign_of_t))
             {
-                search.sign_of_t = told_sign(leaf.v0, leaf.v1, leaf.v2, here.space.origin, search.sign_of_t);
-                descends = search.sign_of_t != SIGN_UNASKED; // to the same leaf
+                BvhTriangle asked = primitive_in(vertices, is_at_second, 0u);
+                search.sign_of_t = told_sign(asked.v0, asked.v1, asked.v2, here.space.origin, search.sign_of_t);
+                descends = search.sign_of_t != SIGN_UNASKED; // to the same triangle, or the leaf's second
+                if (!descends && (vertices.there & 2u) != 0u && !is_at_second)
+                {
+                    here.at.item = here.at.item | SECOND_BIT;
+                    descends = true;
+                }
             }
             else
             {
-                bool is_found = visit_leaf(leaf, here.inside, here.space, options, search);
-                if (is_found && options.query == QUERY_ANY) break;
-                descends = options.level != LEVEL_FAST && is_sign_asked(search.sign_of_t);
-                if (!descends) search.sign_of_t = SIGN_UNASKED;
+                LeafVisit visit = visit_in_leaf(vertices, is_at_second, has_box(here.inside, options), here.space,
+                                                here.inside.error, options.level);
+                visit.primitive_index = visit.is_second ? primitives.y : primitives.x;
+                COUNT_STEPS(leaves, search.sign_of_t == SIGN_UNASKED && !is_at_second ? 1u : 0u);
+                COUNT_STEPS(primitives, search.sign_of_t == SIGN_UNASKED && !visit.is_missed ? 1u : 0u);
+                if (!visit.is_missed)
+                {
+                    bool is_found = visit_leaf(visit, here.inside, here.space, options, search);
+                    if (is_found && options.query == QUERY_ANY) break;
+                    descends = options.level != LEVEL_FAST && is_sign_asked(search.sign_of_t);
+                    if (!descends) search.sign_of_t = SIGN_UNASKED;
+                }
+                bool goes_on = !descends && visit.is_followed;
+                if (goes_on || (descends && visit.is_second)) here.at.item = here.at.item | SECOND_BIT;
+                descends = descends || goes_on;
             }
         }
         else

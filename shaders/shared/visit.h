@@ -2,6 +2,7 @@
 // What every traversal of a SwTlasHeader does at primitives, and what it has found so far, whatever its layout.
 #ifndef TWINRAY_SHARED_VISIT_H
 #define TWINRAY_SHARED_VISIT_H
+#include "shaders/shared/leaf_visit.h"
 #include "shaders/shared/local_ray.h"
 #include "shaders/shared/occlude.h"
 
@@ -46,11 +47,11 @@ FUNC Candidate candidate_of(InInstance inside, uint primitive_index, bool is_fro
     return candidate;
 }
 
-FUNC bool intersect_box(BvhTriangle box, InInstance inside, RaySpace space, Search search, TraceOptions options,
+FUNC bool intersect_box(LeafVisit leaf, InInstance inside, RaySpace space, Search search, TraceOptions options,
                         INOUT(TriangleHit) hit)
 {
     float enter = 0.0f;
-    if (!enter_box(box.v0, box.v1, space, search.t_min, search.t_best, enter)) return false;
+    if (!enter_box(leaf.primitive.v0, leaf.primitive.v1, space, search.t_min, search.t_best, enter)) return false;
     Ray ray_local;
     ray_local.origin = space.origin;
     ray_local.direction = space.direction;
@@ -60,26 +61,31 @@ FUNC bool intersect_box(BvhTriangle box, InInstance inside, RaySpace space, Sear
     hit.t = 0.0f;
     hit.t_low = 0.0f;
     hit.along = false;
-    bool is_met = intersect_primitive(candidate_of(inside, box.primitive_index, false, options), ray_local, hit.t, uv);
+    bool is_met = intersect_primitive(candidate_of(inside, leaf.primitive_index, false, options), ray_local, hit.t, uv);
     hit.u = uv.x;
     hit.v = uv.y;
     return is_met;
 }
 
+FUNC bool has_box(InInstance inside, TraceOptions options)
+{
+    return (options.features & FEATURE_BOXES) != 0u && inside.has_boxes;
+}
+
 // Whether the ray's line meets the primitive on a side that counts, and where.
-FUNC bool intersect_leaf(BvhTriangle leaf, InInstance inside, RaySpace space, TraceOptions options,
+FUNC bool intersect_leaf(LeafVisit leaf, InInstance inside, RaySpace space, TraceOptions options,
                          INOUT(Search) search, INOUT(TriangleHit) hit)
 {
-    if ((options.features & FEATURE_BOXES) != 0u && inside.has_boxes)
-        return intersect_box(leaf, inside, space, search, options, hit);
+    if (has_box(inside, options)) return intersect_box(leaf, inside, space, search, options, hit);
     bool is_met = false;
 #ifdef TWINRAY_REFINED
     if (options.level == LEVEL_CERTIFIED)
-        is_met = intersect_certified(leaf, space, inside.error, inside.index, options, search.sign_of_t, hit);
+        is_met = intersect_in_world(leaf.primitive_index, inside.index, options, search.sign_of_t, hit);
     else
 #endif
-    if (options.level == LEVEL_FAST) is_met = intersect_triangle_fast(leaf.v0, leaf.v1, leaf.v2, space, hit);
-    else is_met = intersect_triangle(leaf.v0, leaf.v1, leaf.v2, space, search.sign_of_t, hit);
+    if (options.level == LEVEL_FAST)
+        is_met = intersect_triangle_fast(leaf.primitive.v0, leaf.primitive.v1, leaf.primitive.v2, space, hit);
+    else is_met = intersect_seen(leaf.seen, space, search.sign_of_t, hit);
     if ((options.features & FEATURE_CULLING) == 0u) return is_met;
     return is_met && (inside.culled == 0u || inside.culled != (hit.along ? CULL_BACK : CULL_FRONT));
 }
@@ -108,7 +114,7 @@ FUNC Hit hit_of(Search search, SwTlasHeader scene, TraceOptions options)
     Hit hit = miss();
     if (search.primitive_index == NOTHING) return hit;
     InInstance inside = enter_instance(AT(scene.instances, search.instance_index), search.instance_index, options);
-    bool is_box = (options.features & FEATURE_BOXES) != 0u && inside.has_boxes;
+    bool is_box = has_box(inside, options);
     hit.hit = 1u;
     hit.t = search.t_best;
     hit.u = search.u;
@@ -133,7 +139,7 @@ FUNC bool comes_before(TriangleHit hit, uint instance_index, uint primitive_inde
 }
 
 // Whether the primitive is hit before all that were found.
-FUNC bool find_in_leaf(BvhTriangle leaf, InInstance inside, RaySpace space, TraceOptions options, INOUT(Search) search)
+FUNC bool find_in_leaf(LeafVisit leaf, InInstance inside, RaySpace space, TraceOptions options, INOUT(Search) search)
 {
     TriangleHit hit;
     hit.t = 0.0f;
@@ -166,11 +172,11 @@ FUNC bool find_in_leaf(BvhTriangle leaf, InInstance inside, RaySpace space, Trac
     return is_first;
 }
 
-FUNC bool leaf_occludes(BvhTriangle leaf, InInstance inside, RaySpace space, TraceOptions options, INOUT(Search) search)
+FUNC bool leaf_occludes(LeafVisit leaf, InInstance inside, RaySpace space, TraceOptions options, INOUT(Search) search)
 {
     bool along = false;
-    bool occludes = triangle_occludes(leaf.v0, leaf.v1, leaf.v2, space, vec2(search.t_min, search.t_best),
-                                      search.sign_of_t, along);
+    bool occludes =
+        seen_occludes(leaf.seen, space, vec2(search.t_min, search.t_best), search.sign_of_t, along);
     if ((options.features & FEATURE_CULLING) != 0u)
         occludes = occludes && (inside.culled == 0u || inside.culled != (along ? CULL_BACK : CULL_FRONT));
     if (occludes) search.primitive_index = leaf.primitive_index;
@@ -179,7 +185,7 @@ FUNC bool leaf_occludes(BvhTriangle leaf, InInstance inside, RaySpace space, Tra
 }
 
 // The same; of triangles alone, if no more than the answer is wanted, without t, u, v.
-FUNC bool visit_leaf(BvhTriangle leaf, InInstance inside, RaySpace space, TraceOptions options, INOUT(Search) search)
+FUNC bool visit_leaf(LeafVisit leaf, InInstance inside, RaySpace space, TraceOptions options, INOUT(Search) search)
 {
     const uint NEEDS_HIT = FEATURE_HITS | FEATURE_FILTERS | FEATURE_BOXES;
     // Each by itself: so that compilers see constants.

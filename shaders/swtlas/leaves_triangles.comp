@@ -14,7 +14,7 @@ void main()
     LeafBox centers = empty_box();
     for (uint i = gl_LocalInvocationID.x; i < chunk.count; i += gl_WorkGroupSize.x)
     {
-        LeafBox box = boxed_primitive(tree, chunk.first + i - tree.first).box;
+        LeafBox box = boxed_leaf(tree, leaf_at(tree, chunk.first + i - tree.first)).box;
         store_box(args.boxes, chunk.first + i, box);
         add_center(centers, box);
     }

@@ -12,8 +12,9 @@ void main()
     uint index = global_index();
     if (index >= args.leaf_count) return;
     BuildTree tree = AT(args.trees, index);
-    BoxedPrimitive leaf = boxed_primitive(tree, 0u);
-    store_lone_tree(tree.bvh, tree.records, leaf.box);
-    if (is_absent(tree.records)) AT(tree.triangles, 0) = leaf.primitive;
-    else store_record(tree.records, 0u, encode_primitive(leaf.primitive));
+    uint leaf = leaf_at(tree, 0u);
+    BoxedLeaf boxed = boxed_leaf(tree, leaf);
+    store_lone_tree(tree.bvh, tree.records, boxed.box);
+    if (is_absent(tree.records)) AT(tree.triangles, 0) = boxed.last;
+    else store_record(tree.records, 0u, encode_boxed_leaf(tree, leaf, boxed));
 }

@@ -13,11 +13,12 @@ layout(push_constant, scalar) uniform Push { RefitArgs args; };
 // The boxes as seen by all groups, not through caches of one.
 REFERENCE(SharedBoxes, coherent, LeafBox items[], 8)
 
-LeafBox refit_leaf(BuildTree tree, uint slot, uint leaf)
+LeafBox refit_leaf(BuildTree tree, uint slot, CompressedRecord record)
 {
-    if (has_instances(tree)) return AT(args.boxes, tree.first + leaf);
-    BoxedPrimitive boxed = boxed_primitive(tree, leaf);
-    store_record(tree.records, slot, encode_primitive(boxed.primitive));
+    if (has_instances(tree)) return AT(args.boxes, tree.first + index_in(record));
+    uint leaf = leaf_of(record);
+    BoxedLeaf boxed = boxed_leaf(tree, leaf);
+    store_record(tree.records, slot, encode_boxed_leaf(tree, leaf, boxed));
     return boxed.box;
 }
 
@@ -75,7 +76,7 @@ void main()
         CompressedRecord record = load_record(tree.records, slot);
         bool is_refitted = is_leaf(record) || is_ready;
         LeafBox box = empty_box();
-        if (is_leaf(record)) box = refit_leaf(tree, slot, index_in(record));
+        if (is_leaf(record)) box = refit_leaf(tree, slot, record);
         else if (is_ready) box = refit_node(tree, slot, record, boxes);
         ready = NOTHING;
         if (is_refitted) ready = leave(tree, slot, box);

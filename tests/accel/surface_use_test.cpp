@@ -179,7 +179,7 @@ TEST_P(SurfaceUse, TakeNoMemoryUnlessAskedFor) {
     const std::size_t arrays = n * (12 + 16 + 8 + 8 + 16 + 4) + faces * (4 + 12);
     EXPECT_GE(all.surfaces, arrays);
     EXPECT_LT(all.surfaces, arrays + 512);
-    EXPECT_EQ(all.geometries, none.geometries);
+    EXPECT_LE(all.geometries, none.geometries) << "leaves of two triangles need not have vertices of their own";
     const MemoryUsage metadata = usage(full.view(), false, true);
     EXPECT_EQ(metadata.vertices, 0u);
     EXPECT_GE(metadata.surfaces, faces * 4);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tests/support/sw_build.h"
 #include "swtlas/plan.h"
+#include "swtlas/triangle_pairs.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <random>
@@ -45,14 +46,16 @@ double sah_of(const BuiltTree& tree, const std::vector<LeafBox>& boxes) {
 }
 
 void expect_reference(const BuiltTree& tree, const Mesh& mesh, BuildQuality quality) {
-    const std::vector<LeafBox> boxes = reference::leaves_triangles(built(mesh), mesh.triangles);
+    std::vector<uint> leaves;
+    if (has_records(tree)) leaves = pair_triangles(built(mesh), mesh.triangles);
+    const std::vector<LeafBox> boxes = reference::leaves_triangles(built(mesh), mesh.triangles, leaves);
     const reference::Codes codes = reference::morton(boxes, reference::centroids(boxes));
     const std::vector<uint> order = reference::sort(codes);
     reference::Hierarchy expected = reference::hierarchy(boxes, codes, order, !has_records(tree), quality);
     if (!has_records(tree)) expected = reference::linked(std::move(expected));
     if (has_records(tree)) {
         const std::vector<CompressedRecord> records =
-            reference::records_of_triangles(expected, built(mesh), mesh.triangles, width_of(tree));
+            reference::records_of_triangles(expected, built(mesh), mesh.triangles, width_of(tree), leaves);
         EXPECT_TRUE(same_bytes(tree.records, records)) << mesh.name;
         return;
     }

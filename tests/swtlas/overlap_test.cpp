@@ -53,6 +53,7 @@ std::set<uint> collect(const BuiltTree& tree, uint reference, std::vector<Box>& 
         children = {{{node.lo0, node.hi0}, node.child0}, {{node.lo1, node.hi1}, node.child1}};
     } else {
         const CompressedRecord& record = tree.records[reference];
+        if (is_leaf(record) && is_pair(record)) return {index_in(record), second_index_in(record)};
         if (is_leaf(record)) return {index_in(record)};
         const CompressedRecord& second_half = tree.records[is_wide_node(record) ? reference + 1 : reference];
         const ChildSlots slots = child_slots(record, second_half);

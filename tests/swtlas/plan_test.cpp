@@ -130,8 +130,8 @@ TEST_P(BuildPlans, ChunksCoverEachTreeOnce) {
 TEST_P(BuildPlans, PartsOfGeometriesAndScenesBeginAtLinesOfCaches) {
     const Layout layout = std::get<Layout>(GetParam());
     for (const uint count : {0u, 1u, 2u, 7u, 1000u}) {
-        const GeometryLayout geometry = layout_geometry(count, layout);
-        for (const std::uint64_t offset : {geometry.nodes, geometry.triangles, geometry.records})
+        const GeometryLayout geometry = layout_geometry(count, count, layout);
+        for (const std::uint64_t offset : {geometry.nodes, geometry.triangles, geometry.records, geometry.vertices})
             EXPECT_EQ(offset % cache_line_bytes, 0u) << count;
         const SceneLayout scene = layout_scene(count, layout);
         for (const std::uint64_t offset : {scene.nodes, scene.instances, scene.records})

@@ -164,7 +164,7 @@ TEST_P(SavedFile, OtherFormatsAreNamed) {
     const auto edited = [&](const std::function<void(SavedHeader&)>& edit) {
         return refusal(resealed(good, [&](SavedHeader& header, SavedEntry&) { edit(header); }));
     };
-    expect_contains(edited([](SavedHeader& h) { h.version = 9; }), "format version 9; this library reads version 8");
+    expect_contains(edited([](SavedHeader& h) { h.version = 8; }), "format version 8; this library reads version 9");
     expect_contains(edited([](SavedHeader& h) { h.byte_order = 0x04030201; }), "another byte order");
     expect_contains(edited([](SavedHeader& h) { h.node_bytes = 80; }), "its node has 80 bytes; this library's has 64");
     expect_contains(edited([](SavedHeader& h) { h.leaf_bytes = 48; }), "its leaf has 48 bytes; this library's has 40");
@@ -237,7 +237,7 @@ TEST(SavedTrees, RecordsThatCannotBeWalkedSafelyAreRefused) {
     expect_contains(edited([&](SavedGeometry& g) { leaf_of(g, 5).a.w = LEAF_BIT | 20; }), "primitive 20 of 20");
     expect_contains(edited([&](SavedGeometry& g) { leaf_of(g, 5).b.y ^= 1; }),
                     "primitive 5 does not have its vertices");
-    expect_contains(edited([](SavedGeometry& g) { g.records.pop_back(); }), "32 records for 20 primitives, not 33");
+    expect_contains(edited([](SavedGeometry& g) { g.records.pop_back(); }), "32 records for 20 leaves, not 33");
     expect_contains(edited([](SavedGeometry& g) { g.leaves.resize(1); }), "1 leaves and 33 records in layout");
     expect_contains(edited([](SavedGeometry& g) {
                         *std::ranges::find(g.records, 0u, [](const CompressedRecord& r) { return r.a.w; }) =

@@ -60,8 +60,14 @@ struct Leaf {
 std::vector<Leaf> leaves_of(const BuiltTree& tree) {
     std::vector<Leaf> leaves;
     for (uint i = 0; i < tree.triangles.size(); ++i) leaves.push_back({tree.triangles[i], LEAF_BIT | i});
-    for (uint i = 0; i < tree.records.size(); ++i)
-        if (is_leaf(tree.records[i])) leaves.push_back({primitive_of(tree.records[i]), i});
+    const Floats vertices = Floats::to(&tree.vertices.data()->x);
+    for (uint i = 0; i < tree.records.size(); ++i) {
+        const CompressedRecord& record = tree.records[i];
+        if (!is_leaf(record)) continue;
+        const LeafVertices of_leaf = vertices_of_leaf(record, vertices);
+        leaves.push_back({primitive_in(of_leaf, false, index_in(record)), i});
+        if (is_pair(record)) leaves.push_back({primitive_in(of_leaf, true, second_index_in(record)), i});
+    }
     return leaves;
 }
 

@@ -5,19 +5,22 @@
 
 #include "engine/accel/features_of.h"
 #include "swtlas/plan.h"
+#include "swtlas/triangle_pairs.h"
 
 namespace twinray::reference {
 
 std::size_t Scene::add_geometry(const MeshView& mesh) {
     Geometry geometry(mesh, software_unit(mesh.positions));
-    const std::vector<LeafBox> boxes = leaves_triangles(geometry.positions, geometry.triangles);
+    if (has_records(layout_)) geometry.leaves = pair_triangles(geometry.positions, geometry.triangles);
+    const std::vector<LeafBox> boxes = leaves_triangles(geometry.positions, geometry.triangles, geometry.leaves);
     const Codes codes = morton(boxes, centroids(boxes));
     const std::vector<uint> order = sort(codes);
     Hierarchy tree = hierarchy(boxes, codes, order, !has_records(layout_), quality_);
     std::vector<BvhTriangle> triangles;
     std::vector<CompressedRecord> records;
     if (has_records(layout_))
-        records = records_of_triangles(tree, geometry.positions, geometry.triangles, width_of(layout_));
+        records =
+            records_of_triangles(tree, geometry.positions, geometry.triangles, width_of(layout_), geometry.leaves);
     else {
         tree = linked(std::move(tree));
         triangles = encode_triangles(geometry.positions, geometry.triangles, order);
@@ -36,9 +39,10 @@ uint Scene::root_of(const Hierarchy& tree) const {
 std::vector<InstanceRecord> Scene::records_in_built_units() {
     for (BuiltGeometry& built : geometries_) {
         built.block.geometry = {{built.tree.box.lo, built.tree.box.hi, Ref<BvhNode>::to(built.tree.nodes.data()),
-                                 root_of(built.tree), static_cast<uint>(built.mesh.triangles.size())},
+                                 root_of(built.tree), built.leaf_count()},
                                 Ref<BvhTriangle>::to(built.triangles.data()),
                                 Ref<CompressedRecord>::to(built.records.data()),
+                                Floats::to(&built.mesh.positions.data()->x),
                                 GEOMETRY_TRIANGLES,
                                 0};
         built.block.source = {Floats::to(&built.mesh.positions.data()->x), Uints::to(&built.mesh.triangles.data()->x),
@@ -102,7 +106,7 @@ Hit Scene::trace(const Ray& ray, uint query, uint mask, uint level) const {
 
 TraversalSteps Scene::take_steps() { return std::exchange(traversal_steps(), {}); }
 
-SwGeometry Scene::scene_nodes() const { return {header_.bvh, {}, header_.records, GEOMETRY_TRIANGLES, 0}; }
+SwGeometry Scene::scene_nodes() const { return {header_.bvh, {}, header_.records, {}, GEOMETRY_TRIANGLES, 0}; }
 
 Scene::Tree Scene::geometry_tree(std::size_t instance) const {
     const BuiltGeometry& built = geometries_[placed_[instance].first];

@@ -61,6 +61,10 @@ class Scene {
         std::vector<BvhTriangle> triangles;
         std::vector<CompressedRecord> records;
         Block block = {};
+
+        uint leaf_count() const {
+            return static_cast<uint>(mesh.leaves.empty() ? mesh.triangles.size() : mesh.leaves.size());
+        }
     };
     uint root_of(const Hierarchy& tree) const;  // as it is laid out
     std::vector<InstanceRecord> records_in_built_units();

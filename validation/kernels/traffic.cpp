@@ -27,12 +27,16 @@ double node_records(Layout layout) {
     return record_count(many, width_of(layout)) / double{many} - 1;
 }
 
-}  // namespace
+// At best two triangles share a leaf.
+BuildTraffic of_triangle(Layout layout, const BuildTraffic& of_leaf, double mesh_reads) {
+    const double leaves = has_records(layout) ? 0.5 : 1;
+    return {leaves * of_leaf.read + mesh_reads * mesh_triangle, leaves * of_leaf.written};
+}
 
-BuildTraffic build_traffic(Layout layout, BuildQuality quality) {
+BuildTraffic build_traffic_of_leaf(Layout layout, BuildQuality quality) {
     BuildTraffic sum;
-    add(sum, mesh_triangle, box);  // leaves
-    add(sum, box, word);           // Morton codes
+    add(sum, has_records(layout) ? word : 0, box);  // leaves
+    add(sum, box, word);                            // Morton codes
     add_sort(sum);
     add(sum, 2 * word + box, node + word);  // hierarchy: each node by its two halves, each box from below
     add(sum, node, 0);
@@ -40,26 +44,34 @@ BuildTraffic build_traffic(Layout layout, BuildQuality quality) {
     if (quality == BuildQuality::ploc) add(sum, 3 * box + 2 * word, 2 * word);  // clusters, some three rounds
     if (layout == Layout::bvh2) {
         add(sum, node, word);  // edges
-        add(sum, word + mesh_triangle, sizeof(BvhTriangle));
+        add(sum, word, sizeof(BvhTriangle));
         return sum;
     }
     add(sum, node, node_records(layout) * record + word);  // collapse
-    add(sum, 2 * word + mesh_triangle, record);            // records of leaves
+    add(sum, 3 * word, record);                            // records of leaves
     return sum;
 }
 
-BuildTraffic refit_traffic(Layout layout) {
+BuildTraffic refit_traffic_of_leaf(Layout layout) {
     BuildTraffic sum;
     if (layout == Layout::bvh2) {
-        add(sum, sizeof(BvhTriangle) + mesh_triangle, box + sizeof(BvhTriangle));
+        add(sum, sizeof(BvhTriangle), box + sizeof(BvhTriangle));
         add(sum, node, word);              // edges of leaves
         add(sum, box + word, box + word);  // each node's boxes, by its two children
         return sum;
     }
     const double slots = 1 + node_records(layout);
     add(sum, slots * record, slots * 2 * word);  // parents
-    add(sum, slots * (record + box + word) + mesh_triangle, slots * (record + box + word));
+    add(sum, slots * (record + box + word), slots * (record + box + word));
     return sum;
 }
+
+}  // namespace
+
+BuildTraffic build_traffic(Layout layout, BuildQuality quality) {
+    return of_triangle(layout, build_traffic_of_leaf(layout, quality), 2);
+}
+
+BuildTraffic refit_traffic(Layout layout) { return of_triangle(layout, refit_traffic_of_leaf(layout), 1); }
 
 }  // namespace twinray

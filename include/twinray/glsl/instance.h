@@ -32,7 +32,7 @@ struct GeometrySource {
     uint reserved;
 };
 BUFFER_OF(GeometrySource, 8);
-const uint GEOMETRY_SOURCE_OFFSET = 64u;
+const uint GEOMETRY_SOURCE_OFFSET = 72u;
 
 // Flags of an instance, with the values of VkGeometryInstanceFlagBitsKHR. The front of a triangle is the side
 // that (v1 - v0) x (v2 - v0) points to, in object space; TURNED exchanges front and back.

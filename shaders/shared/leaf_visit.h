@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+// Which primitive of a leaf a ray visits, as it sees it. Of two triangles that share an edge, the one across which the
+// ray's line may run; both only where it may run across both, then one after the other.
+#ifndef TWINRAY_SHARED_LEAF_VISIT_H
+#define TWINRAY_SHARED_LEAF_VISIT_H
+#include "shaders/shared/compressed.h"
+#include "shaders/shared/intersect.h"
+#ifdef TWINRAY_REFINED
+#include "shaders/shared/certified.h"
+#endif
+
+struct LeafVisit
+{
+    SeenTriangle seen;     // at levels watertight and refined
+    BvhTriangle primitive; // at level fast, and of boxes
+    uint primitive_index;
+    bool is_second;
+    bool is_missed;   // the ray surely misses all of the leaf
+    bool is_followed; // the leaf's second triangle is to be visited, too
+};
+
+// The vertices of a leaf as a ray sees them, and twice the signed areas between the ray and each edge: one that two
+// triangles share is looked at once.
+struct SeenLeaf
+{
+    vec3 begin;
+    vec3 end;
+    vec3 third[2]; // of the first, of the second
+    float shared_area; // of begin, end
+    float to_third[2];   // of end, third
+    float from_third[2]; // of third, begin
+};
+
+FUNC SeenLeaf seen_leaf(LeafVertices vertices, RaySpace space)
+{
+    SeenLeaf seen;
+    seen.begin = sheared(vertices.begin, space);
+    seen.end = sheared(vertices.end, space);
+    seen.third[0] = sheared(vertices.first, space);
+    seen.third[1] = sheared(vertices.second, space);
+    seen.shared_area = edge_function(seen.begin, seen.end);
+    UNROLL for (uint i = 0u; i < 2u; i = i + 1u)
+    {
+        seen.to_third[i] = edge_function(seen.end, seen.third[i]);
+        seen.from_third[i] = edge_function(seen.third[i], seen.begin);
+    }
+    return seen;
+}
+
+// As seen_triangle() sees it.
+FUNC SeenTriangle triangle_in(SeenLeaf leaf, uint corners, bool is_second)
+{
+    // An area goes with the corner across its edge. Turned around, edges change places and signs.
+    bool is_flipped = is_second && (corners & PAIR_FLIPPED) != 0u;
+    float sign = is_flipped ? -1.0f : 1.0f;
+    float to_third = is_second ? leaf.to_third[1] : leaf.to_third[0];
+    float from_third = is_second ? leaf.from_third[1] : leaf.from_third[0];
+    OrderedCorners ordered = ordered_corners(
+        corners, is_second, vec4(is_second ? leaf.third[1] : leaf.third[0], sign * leaf.shared_area),
+        vec4(leaf.begin, sign * to_third), vec4(leaf.end, sign * from_third));
+    SeenTriangle seen;
+    seen.a = vec3(ordered.a.x, ordered.a.y, ordered.a.z);
+    seen.b = vec3(ordered.b.x, ordered.b.y, ordered.b.z);
+    seen.c = vec3(ordered.c.x, ordered.c.y, ordered.c.z);
+    seen.area_a = ordered.a.w;
+    seen.area_b = ordered.b.w;
+    seen.area_c = ordered.c.w;
+    return seen;
+}
+
+// False only if is_around_ray() is.
+FUNC bool may_be_around_ray(float area_a, float area_b, float area_c)
+{
+    bool is_met = (area_a < 0.0f) == (area_b < 0.0f) && (area_b < 0.0f) == (area_c < 0.0f);
+    return is_met || is_any_zero(area_a, area_b, area_c);
+}
+
+// Which triangles the ray's line may meet, as bits 0 and 1.
+FUNC uint triangles_around_ray(SeenLeaf leaf)
+{
+    bool is_first = may_be_around_ray(leaf.shared_area, leaf.to_third[0], leaf.from_third[0]);
+    bool is_second = may_be_around_ray(leaf.shared_area, leaf.to_third[1], leaf.from_third[1]);
+    return (is_first ? 1u : 0u) | (is_second ? 2u : 0u);
+}
+
+#ifdef TWINRAY_REFINED
+// The same of level certified, whose sheared vertices are off by `error`.
+FUNC bool may_be_certified(SeenLeaf leaf, uint i, float error)
+{
+    int shared_side = certain_side(leaf.begin, leaf.end, error);
+    int to_third = certain_side(leaf.end, leaf.third[i], error);
+    int from_third = certain_side(leaf.third[i], leaf.begin, error);
+    return shared_side * to_third >= 0 && to_third * from_third >= 0 && from_third * shared_side >= 0;
+}
+FUNC uint triangles_to_certify(SeenLeaf leaf, float error)
+{
+    return (may_be_certified(leaf, 0u, error) ? 1u : 0u) | (may_be_certified(leaf, 1u, error) ? 2u : 0u);
+}
+#endif
+
+// The same of level fast, which tests each triangle by itself.
+FUNC bool may_be_hit_fast(LeafVertices vertices, bool is_second, RaySpace space)
+{
+    BvhTriangle t = primitive_in(vertices, is_second, 0u);
+    TriangleHit hit;
+    return intersect_triangle_fast(t.v0, t.v1, t.v2, space, hit);
+}
+FUNC uint triangles_hit_fast(LeafVertices vertices, RaySpace space)
+{
+    if (vertices.there == 1u) return 1u; // tested by the visit
+    return (may_be_hit_fast(vertices, false, space) ? 1u : 0u) | (may_be_hit_fast(vertices, true, space) ? 2u : 0u);
+}
+
+// `comes_second`: the first triangle was visited. `error`: see CertifiedRay.
+FUNC LeafVisit visit_in_leaf(LeafVertices vertices, bool comes_second, bool has_box, RaySpace space, float error,
+                             uint level)
+{
+    SeenLeaf seen;
+    if (level != LEVEL_FAST) seen = seen_leaf(vertices, space);
+    uint visits = 0u;
+    if (has_box) visits = 1u;
+    else if (level == LEVEL_FAST) visits = triangles_hit_fast(vertices, space);
+#ifdef TWINRAY_REFINED
+    else if (level == LEVEL_CERTIFIED) visits = triangles_to_certify(seen, error);
+#endif
+    else visits = triangles_around_ray(seen);
+    visits = visits & vertices.there & (comes_second ? 2u : 3u);
+    LeafVisit visit;
+    visit.is_second = (visits & 1u) == 0u;
+    visit.is_missed = visits == 0u;
+    visit.is_followed = visits == 3u;
+    if (level == LEVEL_FAST || has_box) visit.primitive = primitive_in(vertices, visit.is_second, 0u);
+    if (level != LEVEL_FAST) visit.seen = triangle_in(seen, vertices.corners, visit.is_second);
+    visit.primitive_index = 0u;
+    return visit;
+}
+#endif
