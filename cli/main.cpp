@@ -8,7 +8,6 @@
 #include "cli/command/suggest.h"
 #include "cli/command/values.h"
 #include "cli/commands.h"
-#include "engine/core/cpu_vectors.h"
 #include "twinray_version.h"
 #include <twinray/context.h>
 
@@ -29,7 +28,6 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
             std::cout << help_text(command, terminal_width());
             return done;
         }
-        if (!command.rasterises) widen_cpu_vectors();
         return command.run();
     } catch (const UsageError& error) {
         return refuse(program, error.what(), program + " --help");

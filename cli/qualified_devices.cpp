@@ -60,7 +60,7 @@ std::vector<QualifiedDevice> devices_to_qualify(std::span<const DeviceProperties
 }
 
 std::vector<QualifiedDevice> devices_to_qualify() {
-    return devices_to_qualify(list_devices(), prefers_512_bit_vectors(), swiftshader_here());
+    return devices_to_qualify(list_devices(), twinray::has_512_bit_vectors(), swiftshader_here());
 }
 
 int run_twinray(const std::vector<std::string>& arguments, const std::map<std::string, std::string>& environment) {

@@ -272,7 +272,6 @@ Command view_command() {
                           "how much work each ray is, with boxes of the tree"},
                          {"twinray view scene.glb --show difference --screenshot difference.png",
                           "pixels where the driver's hits and twinray's differ"}},
-            .rasterises = true,
             .fault = "the picture differs from --reference",
             .run = [options] { return run(*options); }};
 }

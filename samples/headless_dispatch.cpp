@@ -44,7 +44,6 @@ std::vector<float> sky_view(AbstractAccel& accel, const Scene& scene, Args args)
 }
 
 int main(int argc, char** argv) try {
-    widen_cpu_vectors();
     if (argc < 2) throw Error("usage: headless_dispatch SCENE [map.pgm]");
     const Scene scene = load_scene(argv[1]);
     const Bounds bounds = bounds_of(scene);

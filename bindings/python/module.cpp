@@ -288,7 +288,6 @@ NB_MODULE(_core, m) {
     bind_device_memory(m);
     m.def("devices", &devices);
     m.def("forget_devices", &forget_devices, nb::call_guard<nb::gil_scoped_release>());
-    m.def("widen_cpu_vectors", &widen_cpu_vectors);
 }
 
 }  // namespace twinray::python

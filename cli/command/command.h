@@ -69,8 +69,7 @@ struct Command {
     std::vector<Section> sections = {};
     std::vector<Alternatives> alternatives = {};
     std::vector<Example> examples = {};
-    bool rasterises = false;  // beside computing: see widen_cpu_vectors()
-    std::string fault = {};   // "SwTlas shows a fault": ends with exit status 1; empty: there is none to find
+    std::string fault = {};  // "SwTlas shows a fault": ends with exit status 1; empty: there is none to find
     std::function<int()> run = {};
 };
 

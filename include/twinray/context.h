@@ -243,12 +243,6 @@ void disable_features(ContextDesc& desc, const std::string& list);
 // "twinray" in the user's folder for caches: $XDG_CACHE_HOME, else .cache in $HOME; empty where neither is set.
 std::filesystem::path user_pipeline_folder();
 
-// For programs that compute alone: where the driver is Mesa's for CPUs, below Mesa 26, and the processor has AVX-512,
-// its vectors become 512 bits wide, with which SwTlas traces 1.0 to 2 times as fast and ray queries 0.8 to 1.3 times;
-// Mesa 25.0's rasteriser crashes with them. Sets LP_NATIVE_VECTOR_WIDTH and MESA_SHADER_CACHE_DIR for this process and
-// those it starts, unless the user has set one of them. To be called before other threads and the first Context.
-void widen_cpu_vectors();
-
 // One device with its memory allocator, one queue and one timeline. Not copyable; used by one thread at a time.
 class Context {
   public:

@@ -23,7 +23,6 @@ struct ShadeArgs {
 };
 
 int main(int argc, char** argv) try {
-    widen_cpu_vectors();
     if (argc < 2 || argv[1][0] == '-') throw Error("usage: iso_surface PICTURE.png [sw|hw]");
     const uint cells = 96, most = 1'500'000, width = 960, height = 640;
     Context context;

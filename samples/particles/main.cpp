@@ -54,7 +54,6 @@ int run(const Options& options) {
 
 int main(int argc, char** argv) {
     using namespace twinray::particles;
-    twinray::widen_cpu_vectors();
     return twinray::samples::run_program("particles", [&] {
         const ParsedOptions parsed = parse_options(argc, argv);
         return parsed.exit_status ? *parsed.exit_status : run(parsed.options);

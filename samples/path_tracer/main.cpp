@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The sample path tracer: one scene, one picture, by either accelerator or by both against each other.
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <string_view>
 
 #include <twinray/context.h>
 #include "samples/path_tracer/frames.h"
@@ -66,9 +64,6 @@ int cross_check(const Options& options, const Ranks& ranks) {
 
 int main(int argc, char** argv) {
     using namespace twinray::path_tracer;
-    // A window rasterises, too.
-    if (std::none_of(argv, argv + argc, [](const char* word) { return std::string_view(word) == "--view"; }))
-        twinray::widen_cpu_vectors();
     return twinray::samples::run_program("path_tracer", [&]() -> int {
         Ranks ranks(argc, argv);
         ParsedOptions parsed = parse_options(argc, argv);

@@ -80,9 +80,9 @@ TEST(LeafVisits, FindWhatTestsOfEachTriangleFind) {
                 if (visit.is_missed) break;
                 const BvhTriangle t = triangle_of(pair, visit.is_second);
                 is_visited[visit.is_second] = true;
-                faults += level == LEVEL_FAST ? visit.primitive.v0 != t.v0 || visit.primitive.v1 != t.v1 ||
-                                                    visit.primitive.v2 != t.v2
-                                              : !is_seen_as(visit.seen, seen_triangle(t.v0, t.v1, t.v2, space));
+                faults += level == LEVEL_FAST
+                              ? visit.primitive.v0 != t.v0 || visit.primitive.v1 != t.v1 || visit.primitive.v2 != t.v2
+                              : !is_seen_as(visit.seen, seen_triangle(t.v0, t.v1, t.v2, space));
             }
             uint both = 0;
             for (uint i = 0; i < 2; ++i) {

@@ -59,7 +59,6 @@ __all__ = [
 __version__ = _core.__version__
 
 _atexit.register(_core.forget_devices)
-_core.widen_cpu_vectors()
 
 
 def devices() -> list[dict[str, _Any]]:

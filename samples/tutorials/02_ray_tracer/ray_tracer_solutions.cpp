@@ -134,7 +134,6 @@ std::vector<vec3> picture_of_all(AbstractAccel& accel, uint width, uint height) 
 
 int main(int argc, char** argv) try {
     const std::filesystem::path folder = argc > 1 ? argv[1] : ".";
-    widen_cpu_vectors();
     Context context;
     SwTlas accel(context, {.keeps_surfaces = true});
     push_balls(accel);

@@ -98,7 +98,6 @@ double busy_lanes(std::span<const uint> lengths, std::size_t lanes) {
 
 int main(int argc, char** argv) try {
     const std::filesystem::path folder = argc > 1 ? argv[1] : ".";
-    widen_cpu_vectors();
     const Room room = make_room(1);
     Context context;
     SwTlas software(context, {.keeps_surfaces = true});

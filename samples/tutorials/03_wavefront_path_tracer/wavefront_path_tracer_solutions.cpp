@@ -115,7 +115,6 @@ void print_speeds(AbstractAccel& accel, const Room& room, const Job& job) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-    widen_cpu_vectors();
     Context context;
     const AccelOptions options{.keeps_surfaces = true};
     const Room room = make_room(1);

@@ -146,7 +146,6 @@ void draw(const std::filesystem::path& file, Context& context, const Scene& scen
 }  // namespace
 
 int main(int argc, char** argv) try {
-    widen_cpu_vectors();
     const std::filesystem::path folder = argc > 1 ? argv[1] : ".";
     // [first]
     Context context;

@@ -69,7 +69,6 @@ std::pair<double, double> reciprocity_of_box(Context& context) {
 }  // namespace
 
 int main() try {
-    widen_cpu_vectors();
     Context context;
     const double corner = floor_to_wall(context), root = std::sqrt(2.0);
     const double known = (2 * std::atan(1.0) - root * std::atan(1 / root) + std::log(3.0 / 4) / 4) / std::numbers::pi;

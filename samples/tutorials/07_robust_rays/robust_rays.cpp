@@ -98,7 +98,6 @@ int main(int argc, char** argv) try {
     if (argc != 2) throw Error("usage: robust_rays FOLDER");
     const std::filesystem::path folder = argv[1];
     std::filesystem::create_directories(folder);
-    widen_cpu_vectors();
     Context context;
     // [main]
     const Mesh body = make_body();

@@ -50,7 +50,6 @@ LeakCounts of_driver(Context& context, const Mesh& body) {
 // [/exercise3]
 
 int main() try {
-    widen_cpu_vectors();
     Context context;
     const Mesh body = make_body();
     std::cout << "1: " << random_rays_out(context, body) << " of 200000 random rays got out at level fast\n";

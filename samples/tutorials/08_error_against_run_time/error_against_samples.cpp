@@ -97,7 +97,6 @@ int main(int argc, char** argv) try {
     if (argc != 2) throw Error("usage: error_against_samples FOLDER");
     const std::filesystem::path folder = argv[1];
     std::filesystem::create_directories(folder);
-    widen_cpu_vectors();
     Context context;
     Estimator estimator(context);
     std::ofstream csv(folder / "error_against_samples.csv");

@@ -132,7 +132,6 @@ int main(int argc, char** argv) try {
     if (argc != 2) throw Error("usage: error_against_time FOLDER");
     const std::filesystem::path folder = argv[1];
     std::filesystem::create_directories(folder);
-    widen_cpu_vectors();
     Context context;
     // [main]
     Scene scene;

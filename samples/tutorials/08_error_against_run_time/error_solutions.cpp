@@ -81,7 +81,6 @@ void exercise_3(Context& context) {
 }  // namespace
 
 int main() try {
-    widen_cpu_vectors();
     Context context;
     exercise_1(context);
     exercise_3(context);

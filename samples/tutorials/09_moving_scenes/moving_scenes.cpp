@@ -50,7 +50,6 @@ int main(int argc, char** argv) try {
     if (argc != 2) throw Error("usage: moving_scenes FOLDER");
     const std::filesystem::path folder = argv[1];
     std::filesystem::create_directories(folder);
-    widen_cpu_vectors();
     const uint width = 320, height = 280, gap = 4, across = 3 * width + 2 * gap;
     std::vector<Rgb> strip(across * height, Rgb{255, 255, 255});
     // [main]
