@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 
 #include "engine/core/parallel.h"
@@ -11,7 +12,7 @@
 namespace twinray {
 namespace {
 
-constexpr uint window_size = MOST_PAIR_OFFSET + 1;
+constexpr uint window_size = MOST_PAIR_OFFSET + 1;  // as many as a word has bits
 constexpr std::size_t windows_worth_threads = 1024;
 constexpr std::uint8_t nobody = window_size;
 
@@ -35,6 +36,7 @@ class Window {
             const uvec3 t = triangles[i];
             const dvec3 a(positions[t.x]), b(positions[t.y]), c(positions[t.z]);
             boxes_[i] = {min(min(a, b), c), max(max(a, b), c)};
+            areas_[i] = boxes_[i].half_area();
             add_edge(i, t.x, t.y);
             add_edge(i, t.y, t.z);
             add_edge(i, t.z, t.x);
@@ -81,24 +83,29 @@ class Window {
 
     void add_neighbours(uint i, uint j) {
         const Box both{min(boxes_[i].lo, boxes_[j].lo), max(boxes_[i].hi, boxes_[j].hi)};
-        const double cost = both.half_area() - boxes_[i].half_area() - boxes_[j].half_area();
+        const double cost = both.half_area() - areas_[i] - areas_[j];
         const bool has_room = neighbours_[i].count < 3 && neighbours_[j].count < 3;
         if (!(cost <= 0) || !has_room) return;  // nor where it is not a number
-        add_neighbour(neighbours_[i], j, cost);
-        add_neighbour(neighbours_[j], i, cost);
+        add_neighbour(i, j, cost);
+        add_neighbour(j, i, cost);
     }
-    static void add_neighbour(Neighbours& of, uint triangle, double cost) {
+    void add_neighbour(uint to, uint triangle, double cost) {
+        Neighbours& of = neighbours_[to];
         of.all[of.count++] = {static_cast<std::uint8_t>(triangle), cost};
-        ++of.left;
+        set_left(to, of.left + 1);
+    }
+
+    void set_left(uint i, uint left) {
+        const std::uint64_t bit = std::uint64_t{1} << i;
+        for (std::uint64_t& triangles : with_left_) triangles &= ~bit;
+        if (left != 0 && partners_[i] == nobody) with_left_[left - 1] |= bit;
+        neighbours_[i].left = left;
     }
 
     uint next_to_choose() const {
-        uint next = nobody;
-        for (uint i = 0; i < size_; ++i)
-            if (partners_[i] == nobody && neighbours_[i].left != 0 &&
-                (next == nobody || neighbours_[i].left < neighbours_[next].left))
-                next = i;
-        return next;
+        for (const std::uint64_t triangles : with_left_)
+            if (triangles != 0) return static_cast<uint>(std::countr_zero(triangles));
+        return nobody;
     }
 
     uint best_of(uint i) const {
@@ -114,15 +121,20 @@ class Window {
         partners_[i] = static_cast<std::uint8_t>(j);
         partners_[j] = static_cast<std::uint8_t>(i);
         for (const uint side : {i, j})
-            for (uint k = 0; k < neighbours_[side].count; ++k) --neighbours_[neighbours_[side].all[k].triangle].left;
+            for (uint k = 0; k < neighbours_[side].count; ++k) {
+                const uint neighbour = neighbours_[side].all[k].triangle;
+                set_left(neighbour, neighbours_[neighbour].left - 1);
+            }
     }
 
     std::span<const uvec3> triangles_;
     uint size_;
     std::array<Box, window_size> boxes_;
+    std::array<double, window_size> areas_;  // of the boxes
     std::array<std::uint8_t, edge_slots> triangle_of_edge_;
     std::array<Neighbours, window_size> neighbours_;
     std::array<std::uint8_t, window_size> partners_;
+    std::array<std::uint64_t, 3> with_left_{};  // those without a partner, a bit each, by how many neighbours are left
 };
 
 // Those of one window, to the beginning of `leaves`. Returns how many.
@@ -145,6 +157,8 @@ std::uint64_t tree_bytes(std::size_t leaves, std::size_t vertices) {
 }  // namespace
 
 std::vector<uint> pair_triangles(std::span<const vec3> positions, std::span<const uvec3> triangles) {
+    const std::uint64_t alone = tree_bytes(triangles.size(), 0);
+    if (tree_bytes((triangles.size() + 1) / 2, positions.size()) >= alone) return {};
     const std::size_t windows = (triangles.size() + window_size - 1) / window_size;
     std::vector<uint> leaves(triangles.size()), counts(windows);
     parallel_for(
@@ -161,7 +175,7 @@ std::vector<uint> pair_triangles(std::span<const vec3> positions, std::span<cons
     std::size_t count = 0;
     for (std::size_t w = 0; w < windows; ++w)
         for (uint i = 0; i < counts[w]; ++i) leaves[count++] = leaves[w * window_size + i];
-    if (tree_bytes(count, positions.size()) >= tree_bytes(triangles.size(), 0)) return {};
+    if (tree_bytes(count, positions.size()) >= alone) return {};
     return {leaves.begin(), leaves.begin() + static_cast<std::ptrdiff_t>(count)};
 }
 
