@@ -124,7 +124,7 @@ BuildTree source_of(const Geometry& mesh) {
     return source;
 }
 
-// What the record of a leaf was made from, see make_leaf().
+// The leaf that a record was made from, see make_leaf().
 uint checked_leaf(const CompressedRecord& record, const Geometry& mesh) {
     const std::size_t primitives = mesh.primitive_count();
     const uint first = index_in(record);

@@ -43,7 +43,7 @@ struct SwBackend::Batch {
     std::vector<uint> counts = {};  // of leaves
     BuildPlan plan = {};
 
-    // Of input i.
+    // The tree of input i.
     BuildTree tree(std::size_t i, const SwBuiltGeometry& target, const Source& source) const {
         return {plan.first[i],       counts[i],          source.mesh.positions,
                 source.mesh.indices, source.leaves,      {inputs[i].block->address()},
@@ -69,7 +69,7 @@ struct SwBackend::SwBuiltTlas : BuiltTlas {
     Ref<CompressedRecord> records() const { return {layout.record_count ? address + layout.records : 0}; }
 };
 
-// What builds take.
+// The memory that builds take.
 struct SwBackend::Needs {
     Layout layout;
     const KernelTuning& tuning;
@@ -133,7 +133,7 @@ std::vector<Builder::Measured> SwBackend::measured(const Batch& batch, std::span
     return wanted;
 }
 
-// Where the meshes lie on the device; those that are not there yet are uploaded, and so are their leaves.
+// Finds the meshes on the device; uploads those that are not there yet, and their leaves.
 std::vector<SwBackend::Source> SwBackend::record_sources(Commands& commands, const Batch& batch, bool wants_leaves,
                                                          const Buffer& scratch) {
     std::vector<Commands::Region> regions;
@@ -161,7 +161,7 @@ std::vector<SwBackend::Source> SwBackend::record_sources(Commands& commands, con
     return sources;
 }
 
-// As traversal sees it, still empty; `vertices`: null where its leaves name none.
+// The block of a tree that is still empty; `vertices`: null where its leaves name none.
 SwGeometry SwBackend::block_of(const SwBuiltGeometry& built, Floats vertices, uint kind) const {
     SwGeometry block{empty_bvh(built.nodes().address), built.triangles(), built.records(), vertices, kind, 0};
     context().fill_absent(block.bvh.nodes, block.triangles, block.records, block.vertices);
@@ -218,17 +218,22 @@ SwBackend::Built SwBackend::build_geometries(Commands& commands, std::span<const
     return built;
 }
 
+// The meshes are on the device. Leaves of two triangles name its vertices from now on.
+std::vector<SwBackend::Source> SwBackend::record_refit_sources(Commands& commands, const Batch& batch,
+                                                               const Buffer& scratch) {
+    const auto has_pairs = [](const GeometryInput& input) { return !input.geometry->leaves.empty(); };
+    if (std::ranges::none_of(batch.inputs, has_pairs)) return record_sources(commands, batch, false, scratch);
+    const auto pass = commands.pass("swtlas geometry input");
+    for (const GeometryInput& input : batch.inputs | std::views::filter(has_pairs))
+        commands.write(*input.block, input.mesh.positions, offsetof(SwGeometry, vertices));
+    return record_sources(commands, batch, batch.plan.has_lone_leaves, scratch);
+}
+
 void SwBackend::record_refit(Commands& commands, const Batch& batch, const Buffer& scratch) {
     std::vector<BuildTree> trees;
-    {
-        const auto pass = commands.pass("swtlas geometry input");
-        const std::vector<Source> sources = record_sources(commands, batch, batch.plan.has_lone_leaves, scratch);
-        for (std::size_t i = 0; i < batch.inputs.size(); ++i) {
-            const GeometryInput& input = batch.inputs[i];
-            trees.push_back(batch.tree(i, static_cast<const SwBuiltGeometry&>(*input.current), sources[i]));
-            commands.write(*input.block, input.mesh.positions, offsetof(SwGeometry, vertices));
-        }
-    }
+    const std::vector<Source> sources = record_refit_sources(commands, batch, scratch);
+    for (std::size_t i = 0; i < batch.inputs.size(); ++i)
+        trees.push_back(batch.tree(i, static_cast<const SwBuiltGeometry&>(*batch.inputs[i].current), sources[i]));
     std::vector<Builder::Measured> as_built = measured(batch, trees);
     std::erase_if(as_built, [](const Builder::Measured& tree) { return !tree.target.is_first; });
     builder_.record_costs(commands, as_built, true);

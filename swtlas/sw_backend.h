@@ -50,6 +50,7 @@ class SwBackend final : public AccelBackend {
                         const std::function<void(const Batch&, const Buffer& scratch)>& record);
     void record_build(Commands& commands, const Batch& batch, const Buffer& scratch, Built& built);
     void record_refit(Commands& commands, const Batch& batch, const Buffer& scratch);
+    static std::vector<Source> record_refit_sources(Commands& commands, const Batch& batch, const Buffer& scratch);
     SwGeometry block_of(const SwBuiltGeometry& built, Floats vertices, uint kind) const;
     static std::vector<Source> record_sources(Commands& commands, const Batch& batch, bool wants_leaves,
                                               const Buffer& scratch);

@@ -43,7 +43,7 @@ class Window {
         }
     }
 
-    // By triangle: the other one of its leaf, or nobody. The one with the fewest neighbours left is next to choose: so
+    // The other triangle of each one's leaf, or nobody. The one with the fewest neighbours left is next to choose: so
     // few are left alone.
     const std::array<std::uint8_t, window_size>& partners() {
         for (uint next = next_to_choose(); next != nobody; next = next_to_choose()) join(next, best_of(next));

@@ -23,7 +23,7 @@ struct Geometry {
     std::vector<uvec3> triangles;
     std::size_t non_finite_triangles = 0;  // inactive: never hit, still counted
     std::vector<Bounds> boxes;             // of GEOMETRY_BOXES
-    // What the accelerator's builder makes leaves of, where that is not each primitive. A build needs it.
+    // Leaves as the accelerator's builder wants them; empty: each primitive is one. A build needs it.
     std::vector<uint> leaves;
     // Instead of `triangles`, and of `positions` until the host gives some: what the caller has in device memory,
     // without its name and attributes.

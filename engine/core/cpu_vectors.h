@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is known of Mesa's driver for CPUs, and of the CPU that it runs on.
+// Facts about Mesa's driver for CPUs, and about the CPU that it runs on.
 #pragma once
 
 #include <twinray/context.h>

@@ -165,7 +165,7 @@ FUNC vec3 center_of(LeafBox box)
 FUNC bool has_instances(BuildTree tree) { return is_absent(tree.positions); }
 FUNC bool has_boxes(BuildTree tree) { return is_absent(tree.indices); }
 
-// What a leaf holds: a primitive, or two triangles, the second one `offset` after the first.
+// A leaf holds a primitive, or two triangles, the second one `offset` after the first.
 const uint MOST_PAIR_OFFSET = 63u;
 FUNC uint make_leaf(uint first, uint offset) { return first | offset << 25u; }
 FUNC uint first_in_leaf(uint leaf) { return leaf & 0x1ffffffu; }

@@ -46,10 +46,6 @@ FUNC uint index_in(CompressedRecord leaf) { return leaf.a.w & ~(LEAF_BIT | INSTA
 const uint FIRST_ACTIVE = 0x40000000u;
 const uint SECOND_ACTIVE = 0x80000000u;
 FUNC uint second_index_in(CompressedRecord pair) { return pair.a.x & ~(FIRST_ACTIVE | SECOND_ACTIVE); }
-FUNC uint primitive_index_in(CompressedRecord leaf, bool is_second)
-{
-    return is_second ? second_index_in(leaf) : index_in(leaf);
-}
 
 #ifdef TWINRAY_WIDE_LOADS // of modules of their own, see KernelTuning::has_wide_loads
 REFERENCE(RecordWords, , uint64_t items[], 8)
@@ -178,8 +174,8 @@ FUNC BvhTriangle primitive_of(CompressedRecord record)
     return t;
 }
 
-// Which corner of a triangle is the one that the other one lacks: 2 bits of the first, 2 of the second, and whether the
-// second has their edge in the other direction, counted from that corner on.
+// LeafVertices::corners has the corner of each triangle that the other one lacks, 2 bits of the first and 2 of the
+// second, and says whether the second has their edge in the other direction, counted from that corner on.
 const uint PAIR_FLIPPED = 16u;
 
 // The vertices of a leaf's primitives. Of a box, `first` is its lowest corner and `begin` its highest.
@@ -191,6 +187,7 @@ struct LeafVertices
     vec3 second;
     uint corners;
     uint there; // bit i: primitive i can be hit
+    uvec2 primitives; // their indices
 };
 
 FUNC LeafVertices vertices_of(BvhTriangle t)
@@ -202,6 +199,7 @@ FUNC LeafVertices vertices_of(BvhTriangle t)
     of_leaf.second = t.v0;
     of_leaf.corners = 0u;
     of_leaf.there = 1u;
+    of_leaf.primitives = uvec2(t.primitive_index, t.primitive_index);
     return of_leaf;
 }
 
@@ -215,6 +213,7 @@ FUNC LeafVertices vertices_of_leaf(CompressedRecord record, Floats vertices)
     of_leaf.second = load_position(vertices, record.b.y);
     of_leaf.corners = record.b.z;
     of_leaf.there = record.a.x >> 30u;
+    of_leaf.primitives = uvec2(index_in(record), second_index_in(record));
     return of_leaf;
 }
 
@@ -239,7 +238,7 @@ FUNC OrderedCorners ordered_corners(uint corners, bool is_second, vec4 third, ve
     return ordered;
 }
 
-FUNC BvhTriangle primitive_in(LeafVertices vertices, bool is_second, uint primitive_index)
+FUNC BvhTriangle primitive_in(LeafVertices vertices, bool is_second)
 {
     OrderedCorners corners =
         ordered_corners(vertices.corners, is_second, vec4(is_second ? vertices.second : vertices.first, 0.0f),
@@ -248,7 +247,7 @@ FUNC BvhTriangle primitive_in(LeafVertices vertices, bool is_second, uint primit
     t.v0 = vec3(corners.a.x, corners.a.y, corners.a.z);
     t.v1 = vec3(corners.b.x, corners.b.y, corners.b.z);
     t.v2 = vec3(corners.c.x, corners.c.y, corners.c.z);
-    t.primitive_index = primitive_index;
+    t.primitive_index = is_second ? vertices.primitives.y : vertices.primitives.x;
     return t;
 }
 #endif

@@ -206,7 +206,7 @@ FUNC CompressedRecord encode_boxed_leaf(BuildTree tree, uint leaf, BoxedLeaf box
     return encode_primitive(boxed.last);
 }
 
-// What encode_boxed_leaf made a record from.
+// The leaf that encode_boxed_leaf made a record from.
 FUNC uint leaf_of(CompressedRecord record)
 {
     return make_leaf(index_in(record), is_pair(record) ? second_index_in(record) - index_in(record) : 0u);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Which primitive of a leaf a ray visits, as it sees it. Of two triangles that share an edge, the one across which the
-// ray's line may run; both only where it may run across both, then one after the other.
+// A ray visits one primitive of a leaf, and sees it from its origin. Of two triangles that share an edge it visits the
+// one that its line may cross, and both, one after the other, only where it may cross both.
 #ifndef TWINRAY_SHARED_LEAF_VISIT_H
 #define TWINRAY_SHARED_LEAF_VISIT_H
 #include "shaders/shared/compressed.h"
@@ -47,7 +47,7 @@ FUNC SeenLeaf seen_leaf(LeafVertices vertices, RaySpace space)
     return seen;
 }
 
-// As seen_triangle() sees it.
+// The same bits as of seen_triangle().
 FUNC SeenTriangle triangle_in(SeenLeaf leaf, uint corners, bool is_second)
 {
     // An area goes with the corner across its edge. Turned around, edges change places and signs.
@@ -101,7 +101,7 @@ FUNC uint triangles_to_certify(SeenLeaf leaf, float error)
 // The same of level fast, which tests each triangle by itself.
 FUNC bool may_be_hit_fast(LeafVertices vertices, bool is_second, RaySpace space)
 {
-    BvhTriangle t = primitive_in(vertices, is_second, 0u);
+    BvhTriangle t = primitive_in(vertices, is_second);
     TriangleHit hit;
     return intersect_triangle_fast(t.v0, t.v1, t.v2, space, hit);
 }
@@ -129,9 +129,9 @@ FUNC LeafVisit visit_in_leaf(LeafVertices vertices, bool comes_second, bool has_
     visit.is_second = (visits & 1u) == 0u;
     visit.is_missed = visits == 0u;
     visit.is_followed = visits == 3u;
-    if (level == LEVEL_FAST || has_box) visit.primitive = primitive_in(vertices, visit.is_second, 0u);
+    if (level == LEVEL_FAST || has_box) visit.primitive = primitive_in(vertices, visit.is_second);
     if (level != LEVEL_FAST) visit.seen = triangle_in(seen, vertices.corners, visit.is_second);
-    visit.primitive_index = 0u;
+    visit.primitive_index = visit.is_second ? vertices.primitives.y : vertices.primitives.x;
     return visit;
 }
 #endif

@@ -185,17 +185,11 @@ FUNC Hit traverse(SwTlasHeader scene, Ray ray, TraceOptions options)
         {
             bool is_at_second = !binary && (here.at.item & SECOND_BIT) != 0u;
             LeafVertices vertices;
-            uvec2 primitives = uvec2(index_in(record), second_index_in(record));
-            if (binary)
-            {
-                BvhTriangle triangle = load_triangle(here.tree.triangles, here.at.item & ~LEAF_BIT);
-                vertices = vertices_of(triangle);
-                primitives.x = triangle.primitive_index;
-            }
+            if (binary) vertices = vertices_of(load_triangle(here.tree.triangles, here.at.item & ~LEAF_BIT));
             else vertices = vertices_of_leaf(record, here.tree.vertices);
             if (options.level != LEVEL_FAST && is_sign_asked(search.sign_of_t))
             {
-                BvhTriangle asked = primitive_in(vertices, is_at_second, 0u);
+                BvhTriangle asked = primitive_in(vertices, is_at_second);
                 search.sign_of_t = told_sign(asked.v0, asked.v1, asked.v2, here.space.origin, search.sign_of_t);
                 descends = search.sign_of_t != SIGN_UNASKED; // to the same triangle, or the leaf's second
                 if (!descends && (vertices.there & 2u) != 0u && !is_at_second)
@@ -208,7 +202,6 @@ FUNC Hit traverse(SwTlasHeader scene, Ray ray, TraceOptions options)
             {
                 LeafVisit visit = visit_in_leaf(vertices, is_at_second, has_box(here.inside, options), here.space,
                                                 here.inside.error, options.level);
-                visit.primitive_index = visit.is_second ? primitives.y : primitives.x;
                 COUNT_STEPS(leaves, search.sign_of_t == SIGN_UNASKED && !is_at_second ? 1u : 0u);
                 COUNT_STEPS(primitives, search.sign_of_t == SIGN_UNASKED && !visit.is_missed ? 1u : 0u);
                 if (!visit.is_missed)

@@ -18,7 +18,8 @@ struct Pair {
 
 class Pairs {
   public:
-    // With the vertices of each triangle in any order. Small whole numbers, so that rays meet edges and vertices, too.
+    // Vertices of each triangle come in any order. They are small whole numbers, so that rays meet edges and vertices,
+    // too.
     Pair next() {
         Pair made{};
         for (vec3& position : made.positions) position = point();

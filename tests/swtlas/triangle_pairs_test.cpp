@@ -92,7 +92,7 @@ TEST(TrianglePairs, PositionsThatAreNoNumbersAndCollapsedEdgesAreNoFault) {
     expect_partition(mesh, pair_triangles(mesh.positions, mesh.triangles));
 }
 
-// For every order in which two triangles may have their vertices, and with each of them inactive.
+// Two triangles have their vertices in every order, and each of them is inactive once.
 TEST(TrianglePairs, RecordsGiveBackTheTrianglesAsTheyWere) {
     const std::vector<vec3> positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0.5f}};
     std::array<uint, 3> first = {0, 1, 2};
@@ -108,7 +108,8 @@ TEST(TrianglePairs, RecordsGiveBackTheTrianglesAsTheyWere) {
                 const Floats vertices = Floats::to(&positions.data()->x);
                 for (uint i = 0; i < 2; ++i) {
                     const LeafVertices of_leaf = vertices_of_leaf(record, vertices);
-                    const BvhTriangle t = primitive_in(of_leaf, i == 1, i);
+                    const BvhTriangle t = primitive_in(of_leaf, i == 1);
+                    EXPECT_EQ(t.primitive_index, i);
                     EXPECT_EQ(of_leaf.there, which);
                     EXPECT_EQ(t.v0, positions[triangles[i].x]);
                     EXPECT_EQ(t.v1, positions[triangles[i].y]);

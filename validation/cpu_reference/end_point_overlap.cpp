@@ -65,8 +65,8 @@ std::vector<Leaf> leaves_of(const BuiltTree& tree) {
         const CompressedRecord& record = tree.records[i];
         if (!is_leaf(record)) continue;
         const LeafVertices of_leaf = vertices_of_leaf(record, vertices);
-        leaves.push_back({primitive_in(of_leaf, false, index_in(record)), i});
-        if (is_pair(record)) leaves.push_back({primitive_in(of_leaf, true, second_index_in(record)), i});
+        leaves.push_back({primitive_in(of_leaf, false), i});
+        if (is_pair(record)) leaves.push_back({primitive_in(of_leaf, true), i});
     }
     return leaves;
 }
