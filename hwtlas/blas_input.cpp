@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "engine/accel/morton_order.h"
 #include "engine/core/triangle.h"
-#include "hwtlas/order.h"
 
 namespace twinray {
 namespace {

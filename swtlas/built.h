@@ -7,6 +7,16 @@
 
 namespace twinray {
 
+// The mesh in host memory that a tree is built from.
+struct SwBackend::HostMesh {
+    std::span<const vec3> positions;
+    std::span<const uvec3> triangles;
+
+    explicit HostMesh(const Geometry& geometry)
+        : positions(geometry.welded.is_empty() ? geometry.positions : geometry.welded.positions),
+          triangles(geometry.welded.is_empty() ? geometry.triangles : geometry.welded.triangles) {}
+};
+
 struct SwBackend::SwBuiltGeometry : BuiltGeometry {
     GeometryLayout layout;
     Buffer buffer;
@@ -23,7 +33,8 @@ struct SwBackend::SwBuiltGeometry : BuiltGeometry {
         return static_cast<uint>(geometry.leaves.empty() ? geometry.primitive_count() : geometry.leaves.size());
     }
     static std::size_t vertex_count_of(const Geometry& geometry, bool has_vertices) {
-        return geometry.leaves.empty() || has_vertices ? 0 : geometry.vertex_count();
+        if (geometry.leaves.empty() || has_vertices) return 0;
+        return geometry.welded.is_empty() ? geometry.vertex_count() : geometry.welded.positions.size();
     }
     // Null where there are none.
     Ref<BvhNode> nodes() const { return part<BvhNode>(layout.node_count, layout.nodes); }

@@ -4,6 +4,8 @@
 #include "engine/scene/bytes.h"
 #include "swtlas/built.h"
 #include "swtlas/saved.h"
+#include "swtlas/triangle_pairs.h"
+#include "swtlas/weld.h"
 
 namespace twinray {
 
@@ -16,7 +18,9 @@ void SwBackend::save(const std::filesystem::path& file) const {
         std::vector<InstanceRecord> instances;
         for (const InstanceState& state : get_instances(handle))
             instances.push_back(make_instance_record(state.transform, state.options));
-        geometries.push_back({geometry(handle), tree.bvh, std::move(tree.nodes), std::move(tree.triangles),
+        Geometry mesh = geometry(handle);
+        name_vertices(tree.records, mesh.triangles);
+        geometries.push_back({std::move(mesh), tree.bvh, std::move(tree.nodes), std::move(tree.triangles),
                               std::move(tree.records), std::move(instances)});
     }
     const EncodedSave encoded = encode_save(options().layout, geometries);
@@ -27,6 +31,9 @@ void SwBackend::save(const std::filesystem::path& file) const {
 
 AccelHandle SwBackend::push_saved(Commands& commands, SavedGeometry&& saved) {
     Buffer block(context(), {.name = "geometry block", .bytes = geometry_block_bytes});
+    if (!saved.mesh.leaves.empty()) saved.mesh.welded = weld(saved.mesh.positions, saved.mesh.triangles);
+    const HostMesh mesh(saved.mesh);
+    name_vertices(saved.records, mesh.triangles);
     auto built = std::make_unique<SwBuiltGeometry>(context(), saved.mesh, false, options().layout);
     SwGeometry written = block_of(*built, built->vertices(), saved.mesh.kind);
     saved.bvh.nodes = written.bvh.nodes;
@@ -34,13 +41,14 @@ AccelHandle SwBackend::push_saved(Commands& commands, SavedGeometry&& saved) {
     {
         const auto pass = commands.pass("swtlas load");
         commands.write(block, written);
-        const auto vertices = std::span(saved.mesh.positions).first(built->layout.vertex_count);
-        const Commands::Region regions[] = {{built->layout.nodes, std::as_bytes(std::span(saved.nodes))},
-                                            {built->layout.triangles, std::as_bytes(std::span(saved.leaves))},
-                                            {built->layout.records, std::as_bytes(std::span(saved.records))},
-                                            {built->layout.vertices, std::as_bytes(vertices)}};
+        const Commands::Region regions[] = {
+            {built->layout.nodes, std::as_bytes(std::span(saved.nodes))},
+            {built->layout.triangles, std::as_bytes(std::span(saved.leaves))},
+            {built->layout.records, std::as_bytes(std::span(saved.records))},
+            {built->layout.vertices, std::as_bytes(mesh.positions.first(built->layout.vertex_count))}};
         commands.upload_regions(built->buffer, regions);
     }
+    saved.mesh.welded = {};
     return push_built(std::move(saved.mesh), std::move(block), std::move(built), saved.instances);
 }
 

@@ -124,14 +124,14 @@ BuildTree source_of(const Geometry& mesh) {
     return source;
 }
 
-// The leaf that a record was made from, see make_leaf().
-uint checked_leaf(const CompressedRecord& record, const Geometry& mesh) {
+// The leaf that a record was made from.
+Leaf checked_leaf(const CompressedRecord& record, const Geometry& mesh) {
     const std::size_t primitives = mesh.primitive_count();
     const uint first = index_in(record);
     if (first >= primitives) fail("primitive ", first, " of ", primitives);
-    if (!is_pair(record)) return first;
+    if (!is_pair(record)) return make_leaf(first, first);
     const uint second = second_index_in(record);
-    if (mesh.kind != GEOMETRY_TRIANGLES || second <= first || second - first > MOST_PAIR_OFFSET || second >= primitives)
+    if (mesh.kind != GEOMETRY_TRIANGLES || second <= first || second >= primitives)
         fail("no leaf can have primitives ", first, " and ", second, " of ", primitives);
     return leaf_of(record);
 }
@@ -145,10 +145,10 @@ void check_records(Layout layout, const SavedGeometry& geometry) {
     const BuildTree source = source_of(geometry.mesh);
     for (const CompressedRecord& record : geometry.records) {
         if (!is_leaf(record)) continue;
-        const uint leaf = checked_leaf(record, geometry.mesh);
+        const Leaf leaf = checked_leaf(record, geometry.mesh);
         if (const CompressedRecord right = encode_boxed_leaf(source, leaf, boxed_leaf(source, leaf));
             std::memcmp(&record, &right, sizeof right) != 0)
-            fail("the record of primitive ", first_in_leaf(leaf), " does not have its vertices");
+            fail("the record of primitive ", leaf.first, " does not have its vertices");
     }
     std::vector<LeafBox> boxes;
     boxes.reserve(primitives);
@@ -160,9 +160,9 @@ void check_records(Layout layout, const SavedGeometry& geometry) {
 }
 
 // Geometry::leaves of a tree that is sound.
-std::vector<uint> leaves_in(std::span<const CompressedRecord> records) {
+std::vector<Leaf> leaves_in(std::span<const CompressedRecord> records) {
     if (!has_pairs(records)) return {};
-    std::vector<uint> leaves;
+    std::vector<Leaf> leaves;
     for (const CompressedRecord& record : records)
         if (is_leaf(record)) leaves.push_back(leaf_of(record));
     return leaves;

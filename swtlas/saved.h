@@ -19,7 +19,7 @@
 
 namespace twinray {
 
-constexpr uint saved_version = 9;
+constexpr uint saved_version = 10;
 
 struct SavedHeader {
     char magic[8];

@@ -35,7 +35,7 @@ std::span<const std::uint32_t> own_module(const KernelTuning& tuning) {
 // A mesh on the device.
 struct SwBackend::Source {
     PackedMesh mesh;
-    Uints leaves;  // null: each primitive is one, or the tree is there
+    Ref<Leaf> leaves;  // null: each primitive is one, or the tree is there
 };
 
 struct SwBackend::Batch {
@@ -82,9 +82,8 @@ struct SwBackend::Needs {
 SwBackend::SwBackend(Context& context, const AccelOptions& options)
     : AccelBackend(context, "SwTlas", options), builder_(context, options) {}
 
-std::vector<uint> SwBackend::leaves_of(const Geometry& geometry) const {
-    if (!has_records(options().layout)) return {};
-    return pair_triangles(geometry.positions, geometry.triangles);
+void SwBackend::prepare(Geometry& geometry) const {
+    if (has_records(options().layout)) choose_leaves(geometry, keeps_meshes());
 }
 
 // Null where the mesh is in host memory alone.
@@ -102,8 +101,8 @@ std::uint64_t SwBackend::source_bytes(const GeometryInput& input) {
     const Geometry& geometry = *input.geometry;
     const std::uint64_t leaves = std::span(geometry.leaves).size_bytes();
     if (device_mesh(input).indices.address) return leaves;
-    return std::span(geometry.positions).size_bytes() + std::span(geometry.triangles).size_bytes() +
-           std::span(geometry.boxes).size_bytes() + leaves;
+    const HostMesh mesh(geometry);
+    return mesh.positions.size_bytes() + mesh.triangles.size_bytes() + std::span(geometry.boxes).size_bytes() + leaves;
 }
 
 // Calls `record` for one batch after the other, all in the same scratch: that of the build, then the sources.
@@ -154,8 +153,9 @@ std::vector<SwBackend::Source> SwBackend::record_sources(Commands& commands, con
             mesh.positions.address = stage(std::as_bytes(std::span(geometry.boxes)));
             continue;
         }
-        mesh.positions.address = stage(std::as_bytes(std::span(geometry.positions)));
-        mesh.indices.address = stage(std::as_bytes(std::span(geometry.triangles)));
+        const HostMesh on_host(geometry);
+        mesh.positions.address = stage(std::as_bytes(on_host.positions));
+        mesh.indices.address = stage(std::as_bytes(on_host.triangles));
     }
     commands.upload_regions(scratch, regions);
     return sources;
@@ -335,16 +335,16 @@ std::unique_ptr<TraceProgram> SwBackend::create_program(const TraceProgramCode* 
 
 BuiltTree SwBackend::download_geometry(AccelHandle handle) const {
     const auto& built = static_cast<const SwBuiltGeometry&>(built_geometry(handle));
-    const Bvh bvh = download<SwGeometry>(context(), geometry_block(handle), 1).front().bvh;
+    const SwGeometry block = download<SwGeometry>(context(), geometry_block(handle), 1).front();
     const GeometryLayout& layout = built.layout;
     std::vector<CompressedRecord> records =
         with_clear_gaps(download<CompressedRecord>(context(), built.buffer, layout.record_count, layout.records));
     std::vector<vec3> vertices;
-    if (layout.vertex_count)
+    if (layout.vertex_count && block.vertices.address == built.vertices().address)
         vertices = download<vec3>(context(), built.buffer, layout.vertex_count, layout.vertices);
     else if (has_pairs(records))
         vertices = geometry(handle).positions;
-    return {bvh, download<BvhNode>(context(), built.buffer, layout.node_count, layout.nodes),
+    return {block.bvh, download<BvhNode>(context(), built.buffer, layout.node_count, layout.nodes),
             download<BvhTriangle>(context(), built.buffer, layout.triangle_count, layout.triangles), std::move(records),
             std::move(vertices)};
 }

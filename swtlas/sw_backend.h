@@ -33,6 +33,7 @@ class SwBackend final : public AccelBackend {
   private:
     struct SwBuiltGeometry;
     struct SwBuiltTlas;
+    struct HostMesh;
     struct Source;
     struct Batch;
     struct Needs;
@@ -62,7 +63,7 @@ class SwBackend final : public AccelBackend {
     void measure_tlas(Commands& commands, const TlasInput& input, const BuiltTlas& current) const override;
     void record_costs(Commands& commands, const TlasInput& input, const SwBuiltTlas& scene, bool is_build) const;
     float unit_of(std::span<const vec3> positions) const override { return software_unit(positions); }
-    std::vector<uint> leaves_of(const Geometry& geometry) const override;
+    void prepare(Geometry& geometry) const override;
     std::unique_ptr<TraceProgram> create_program(const TraceProgramCode* code, uint features) const override;
 
     Builder builder_;

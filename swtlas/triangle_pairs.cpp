@@ -5,22 +5,26 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <cstring>
+#include <numeric>
 
+#include "engine/accel/morton_order.h"
 #include "engine/core/parallel.h"
 #include "swtlas/plan.h"
+#include "swtlas/weld.h"
 
 namespace twinray {
 namespace {
 
-constexpr uint window_size = MOST_PAIR_OFFSET + 1;  // as many as a word has bits
+constexpr uint window_size = 64;  // as many as a word has bits
 constexpr std::size_t windows_worth_threads = 1024;
 constexpr std::uint8_t nobody = window_size;
 
 struct Box {
-    dvec3 lo, hi;
+    vec3 lo, hi;
 
-    double half_area() const {
-        const dvec3 size = hi - lo;
+    float half_area() const {
+        const vec3 size = hi - lo;
         return size.x * size.y + size.y * size.z + size.z * size.x;
     }
 };
@@ -29,12 +33,12 @@ struct Box {
 class Window {
   public:
     Window(std::span<const vec3> positions, std::span<const uvec3> triangles)
-        : triangles_(triangles), size_(static_cast<uint>(triangles.size())) {
+        : positions_(positions), triangles_(triangles), size_(static_cast<uint>(triangles.size())) {
         partners_.fill(nobody);
         triangle_of_edge_.fill(nobody);
         for (uint i = 0; i < size_; ++i) {
             const uvec3 t = triangles[i];
-            const dvec3 a(positions[t.x]), b(positions[t.y]), c(positions[t.z]);
+            const vec3 a = positions[t.x], b = positions[t.y], c = positions[t.z];
             boxes_[i] = {min(min(a, b), c), max(max(a, b), c)};
             areas_[i] = boxes_[i].half_area();
             add_edge(i, t.x, t.y);
@@ -53,7 +57,7 @@ class Window {
   private:
     struct Neighbour {
         std::uint8_t triangle;
-        double cost;  // by how much the common box is larger than both boxes
+        float cost;  // by how much the common box is larger than both boxes
     };
     struct Neighbours {
         std::array<Neighbour, 3> all;
@@ -71,9 +75,13 @@ class Window {
         return has(a) && has(b);
     }
 
+    bool lie_together(uint a, uint b) const {
+        return a == b || std::memcmp(&positions_[a], &positions_[b], sizeof(vec3)) == 0;
+    }
+
     // An edge makes neighbours of the first triangle that has it and of each other one.
     void add_edge(uint i, uint a, uint b) {
-        if (a == b) return;
+        if (lie_together(a, b)) return;
         uint slot = slot_of(a, b);
         for (; triangle_of_edge_[slot] != nobody; slot = (slot + 1) % edge_slots)
             if (const uint other = triangle_of_edge_[slot]; other != i && has_edge(other, a, b))
@@ -83,13 +91,13 @@ class Window {
 
     void add_neighbours(uint i, uint j) {
         const Box both{min(boxes_[i].lo, boxes_[j].lo), max(boxes_[i].hi, boxes_[j].hi)};
-        const double cost = both.half_area() - areas_[i] - areas_[j];
+        const float cost = both.half_area() - areas_[i] - areas_[j];
         const bool has_room = neighbours_[i].count < 3 && neighbours_[j].count < 3;
         if (!(cost <= 0) || !has_room) return;  // nor where it is not a number
         add_neighbour(i, j, cost);
         add_neighbour(j, i, cost);
     }
-    void add_neighbour(uint to, uint triangle, double cost) {
+    void add_neighbour(uint to, uint triangle, float cost) {
         Neighbours& of = neighbours_[to];
         of.all[of.count++] = {static_cast<std::uint8_t>(triangle), cost};
         set_left(to, of.left + 1);
@@ -127,27 +135,77 @@ class Window {
             }
     }
 
+    std::span<const vec3> positions_;
     std::span<const uvec3> triangles_;
     uint size_;
     std::array<Box, window_size> boxes_;
-    std::array<double, window_size> areas_;  // of the boxes
+    std::array<float, window_size> areas_;  // of the boxes
     std::array<std::uint8_t, edge_slots> triangle_of_edge_;
     std::array<Neighbours, window_size> neighbours_;
     std::array<std::uint8_t, window_size> partners_;
     std::array<std::uint64_t, 3> with_left_{};  // those without a partner, a bit each, by how many neighbours are left
 };
 
-// Those of one window, to the beginning of `leaves`. Returns how many.
-uint pair_window(std::span<const vec3> positions, std::span<const uvec3> triangles, uint first, uint* leaves) {
-    Window window(positions, triangles);
-    const auto& partners = window.partners();
-    uint count = 0;
-    for (uint i = 0; i < triangles.size(); ++i)
-        if (partners[i] == nobody)
-            leaves[count++] = make_leaf(first + i, 0);
-        else if (partners[i] > i)
-            leaves[count++] = make_leaf(first + i, partners[i] - i);
-    return count;
+// Of each triangle the other one of its leaf, or itself.
+class Partners {
+  public:
+    Partners(std::span<const vec3> positions, std::span<const uvec3> triangles)
+        : positions_(positions), triangles_(triangles), partner_of_(triangles.size()) {
+        std::iota(partner_of_.begin(), partner_of_.end(), 0u);
+    }
+
+    std::vector<uint> alone() const {
+        std::vector<uint> alone;
+        for (uint i = 0; i < partner_of_.size(); ++i)
+            if (partner_of_[i] == i) alone.push_back(i);
+        return alone;
+    }
+
+    // Pairs triangles that are near each other in `order`, all of which are alone.
+    void pair_along(std::span<const uint> order) {
+        const std::size_t windows = (order.size() + window_size - 1) / window_size;
+        parallel_for(
+            windows,
+            [&](std::size_t begin, std::size_t end) {
+                for (std::size_t w = begin; w < end; ++w) {
+                    const std::size_t first = w * window_size;
+                    pair_window(order.subspan(first, std::min<std::size_t>(window_size, order.size() - first)));
+                }
+            },
+            windows < windows_worth_threads ? 1 : 0);
+    }
+
+    std::vector<Leaf> leaves() const {
+        std::vector<Leaf> leaves;
+        leaves.reserve((partner_of_.size() + alone().size()) / 2);
+        for (uint i = 0; i < partner_of_.size(); ++i)
+            if (partner_of_[i] >= i) leaves.push_back(make_leaf(i, partner_of_[i]));
+        return leaves;
+    }
+
+  private:
+    void pair_window(std::span<const uint> members) {
+        std::array<uvec3, window_size> triangles;
+        for (std::size_t i = 0; i < members.size(); ++i) triangles[i] = triangles_[members[i]];
+        Window window(positions_, std::span(triangles).first(members.size()));
+        const auto& partners = window.partners();
+        for (std::size_t i = 0; i < members.size(); ++i)
+            if (partners[i] != nobody) partner_of_[members[i]] = members[partners[i]];
+    }
+
+    std::span<const vec3> positions_;
+    std::span<const uvec3> triangles_;
+    std::vector<uint> partner_of_;
+};
+
+// In the order of a Morton curve.
+std::vector<uint> along_curve(std::vector<uint> which, std::span<const vec3> positions,
+                              std::span<const uvec3> triangles) {
+    std::vector<uvec3> chosen;
+    for (const uint i : which) chosen.push_back(triangles[i]);
+    std::vector<uint> order = morton_order(triangle_centers(positions, chosen));
+    for (uint& i : order) i = which[i];
+    return order;
 }
 
 std::uint64_t tree_bytes(std::size_t leaves, std::size_t vertices) {
@@ -156,27 +214,38 @@ std::uint64_t tree_bytes(std::size_t leaves, std::size_t vertices) {
 
 }  // namespace
 
-std::vector<uint> pair_triangles(std::span<const vec3> positions, std::span<const uvec3> triangles) {
-    const std::uint64_t alone = tree_bytes(triangles.size(), 0);
-    if (tree_bytes((triangles.size() + 1) / 2, positions.size()) >= alone) return {};
-    const std::size_t windows = (triangles.size() + window_size - 1) / window_size;
-    std::vector<uint> leaves(triangles.size()), counts(windows);
-    parallel_for(
-        windows,
-        [&](std::size_t begin, std::size_t end) {
-            for (std::size_t w = begin; w < end; ++w) {
-                const std::size_t first = w * window_size;
-                const std::size_t size = std::min<std::size_t>(window_size, triangles.size() - first);
-                counts[w] = pair_window(positions, triangles.subspan(first, size), static_cast<uint>(first),
-                                        leaves.data() + first);
-            }
-        },
-        windows < windows_worth_threads ? 1 : 0);
-    std::size_t count = 0;
-    for (std::size_t w = 0; w < windows; ++w)
-        for (uint i = 0; i < counts[w]; ++i) leaves[count++] = leaves[w * window_size + i];
-    if (tree_bytes(count, positions.size()) >= alone) return {};
-    return {leaves.begin(), leaves.begin() + static_cast<std::ptrdiff_t>(count)};
+std::vector<Leaf> pair_triangles(std::span<const vec3> positions, std::span<const uvec3> triangles) {
+    Partners partners(positions, triangles);
+    std::vector<uint> alone = partners.alone();
+    partners.pair_along(alone);
+    alone = along_curve(partners.alone(), positions, triangles);
+    partners.pair_along(alone);
+    std::vector<Leaf> leaves = partners.leaves();
+    if (leaves.size() == triangles.size()) leaves.clear();
+    return leaves;
+}
+
+void choose_leaves(Geometry& geometry, bool has_vertices) {
+    geometry.leaves.clear();
+    geometry.welded = {};
+    const std::size_t triangles = geometry.triangles.size();
+    if (geometry.positions.size() >= 3 * triangles) return;  // as of triangles without a vertex in common
+    std::vector<Leaf> leaves = pair_triangles(geometry.positions, geometry.triangles);
+    if (leaves.empty()) return;
+    Welded welded;
+    if (!has_vertices) welded = weld(geometry.positions, geometry.triangles);
+    const std::size_t of_mesh = has_vertices ? 0 : geometry.positions.size();
+    const std::size_t vertices = welded.is_empty() ? of_mesh : welded.positions.size();
+    if (tree_bytes(leaves.size(), vertices) >= tree_bytes(triangles, 0)) return;
+    geometry.leaves = std::move(leaves);
+    geometry.welded = std::move(welded);
+}
+
+void name_vertices(std::span<CompressedRecord> records, std::span<const uvec3> triangles) {
+    BuildTree source{};
+    source.indices = Uints::to(&triangles.data()->x);
+    for (CompressedRecord& record : records)
+        if (is_leaf(record) && is_pair(record)) record = encode_pair(source, leaf_of(record), record.a.x >> 30u);
 }
 
 }  // namespace twinray

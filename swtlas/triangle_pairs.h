@@ -6,16 +6,23 @@
 #include <span>
 #include <vector>
 
-#include "engine/scene/mesh.h"
+#include "engine/accel/geometry.h"
 #include "swtlas/structures.h"
 
 namespace twinray {
 
-// A partition of the triangles into leaves, see make_leaf() of shaders/shared/build.h: two that share an edge, and
-// whose common box is no larger than their own boxes together, or one. Triangles that are near each other in
-// `triangles` find each other. Empty where a tree of such leaves and the positions that they name would take no less
-// memory than a tree of a leaf for each triangle, which holds its vertices.
-std::vector<uint> pair_triangles(std::span<const vec3> positions, std::span<const uvec3> triangles);
+// A partition of the triangles into leaves: two that share an edge, whose ends lie apart, and whose common box is no
+// larger than their own boxes together, or one. The first of a leaf is the one that comes first, and leaves are in the
+// order of their first. Triangles that are near each other in `triangles` find each other, then those in space that
+// are left. Empty where no two share a leaf.
+std::vector<Leaf> pair_triangles(std::span<const vec3> positions, std::span<const uvec3> triangles);
+
+// Gives a mesh in host memory the leaves, and the vertices, of the tree that takes the least memory. `has_vertices`:
+// its own are in device memory anyway, for trees to name.
+void choose_leaves(Geometry& geometry, bool has_vertices);
+
+// Has leaves of two triangles name vertices as `triangles` do.
+void name_vertices(std::span<CompressedRecord> records, std::span<const uvec3> triangles);
 
 // Whether leaves among the records of a tree have two triangles.
 inline bool has_pairs(std::span<const CompressedRecord> records) {

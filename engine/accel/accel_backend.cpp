@@ -77,7 +77,7 @@ SurfaceSlice AccelBackend::surface_of(const Mesh& mesh) {
 
 Geometry AccelBackend::geometry_of(const MeshView& mesh) const {
     Geometry geometry(mesh, unit_of(mesh.positions));
-    geometry.leaves = leaves_of(geometry);
+    prepare(geometry);
     return geometry;
 }
 
@@ -265,6 +265,7 @@ void AccelBackend::update_vertices(AccelHandle handle, std::span<const vec3> pos
     geometry.non_finite_triangles = inactive;
     warn_of_inactive_triangles(geometry);
     if (geometry.triangle_count() == 0) return;
+    if (!pushed.held->built) prepare(geometry);
     pushed.held->vertices.incoming = {};
     pushed.held->vertices.device_wrote = false;
     pushed.held->vertices.edited =

@@ -201,8 +201,8 @@ class AccelBackend {
 
     // What meshes with these positions are built in units of: a power of two.
     virtual float unit_of(std::span<const vec3> positions) const { return Geometry::near_unit(positions); }
-    // Geometry::leaves of a mesh in host memory.
-    virtual std::vector<uint> leaves_of(const Geometry&) const { return {}; }
+    // Chooses Geometry::leaves and welded of a mesh in host memory.
+    virtual void prepare(Geometry&) const {}
     // With `code`, or with the accelerator's own code where the scene needs no program.
     virtual std::unique_ptr<TraceProgram> create_program(const TraceProgramCode* code, uint features) const = 0;
     std::uint64_t id() const { return id_; }

@@ -63,12 +63,13 @@ void Geometry::forget_mesh(bool is_on_device) {
     forgotten = counts();
     positions = std::vector<vec3>();  // without its memory
     triangles = std::vector<uvec3>();
-    if (!is_on_device) leaves = std::vector<uint>();
+    if (!is_on_device) leaves = std::vector<Leaf>();
 }
 
 std::uint64_t Geometry::host_bytes() const {
     return positions.capacity() * sizeof(vec3) + triangles.capacity() * sizeof(uvec3) +
-           boxes.capacity() * sizeof(Bounds) + leaves.capacity() * sizeof(uint);
+           boxes.capacity() * sizeof(Bounds) + leaves.capacity() * sizeof(Leaf) +
+           welded.positions.capacity() * sizeof(vec3) + welded.triangles.capacity() * sizeof(uvec3);
 }
 
 std::vector<vec3> Geometry::given_positions() const {

@@ -14,6 +14,18 @@
 
 namespace twinray {
 
+#include "twinray/glsl/cpp_begin.h"
+#include "shaders/shared/leaf.h"
+#include "twinray/glsl/cpp_end.h"
+
+// A mesh with other vertices, where triangles are the same.
+struct Welded {
+    std::vector<vec3> positions;
+    std::vector<uvec3> triangles;
+
+    bool is_empty() const { return triangles.empty(); }
+};
+
 // A mesh or boxes as an accelerator keeps them: its own copy of what tracing needs.
 struct Geometry {
     std::string name;
@@ -24,7 +36,8 @@ struct Geometry {
     std::size_t non_finite_triangles = 0;  // inactive: never hit, still counted
     std::vector<Bounds> boxes;             // of GEOMETRY_BOXES
     // Leaves as the accelerator's builder wants them; empty: each primitive is one. A build needs it.
-    std::vector<uint> leaves;
+    std::vector<Leaf> leaves;
+    Welded welded;  // until a build: what it takes for the mesh, unless that is empty
     // Instead of `triangles`, and of `positions` until the host gives some: what the caller has in device memory,
     // without its name and attributes.
     std::optional<DeviceMesh> device;

@@ -11,7 +11,7 @@
 namespace twinray {
 #include "twinray/glsl/cpp_begin.h"
 #include "twinray/glsl/accel_header.h"
-#include "shaders/shared/copy_words.h"
+#include "shaders/shared/copies.h"
 #include "shaders/shared/intersect.h"
 #include "twinray/glsl/surface_at.h"
 #include "twinray/glsl/cpp_end.h"

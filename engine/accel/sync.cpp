@@ -206,6 +206,7 @@ void AccelBackend::commit(Staged&& staged, SyncPoint done) {
     for (const auto& held : staged.geometries) {
         held->is_listed = false;
         if (held->built && has_compaction(*held->built)) uncompacted_.push_back(held);
+        if (held->built) held->geometry.welded = {};
         if (held->built && !options_.keeps_meshes && works_on_device())
             held->geometry.forget_mesh(held->vertices.on_device());
     }

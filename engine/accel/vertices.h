@@ -13,7 +13,7 @@
 
 namespace twinray {
 #include "twinray/glsl/cpp_begin.h"
-#include "shaders/shared/copy_floats.h"
+#include "shaders/shared/copies.h"
 #include "twinray/glsl/cpp_end.h"
 
 // What the device has of one geometry's mesh and lacks. Nothing until a vertex is first moved, so that meshes that keep

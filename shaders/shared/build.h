@@ -4,6 +4,7 @@
 #ifndef TWINRAY_SHARED_BUILD_H
 #define TWINRAY_SHARED_BUILD_H
 #include "shaders/shared/bvh.h"
+#include "shaders/shared/leaf.h"
 #include "twinray/glsl/rays.h"
 #include "twinray/glsl/transform.h"
 #include "twinray/glsl/triangle.h"
@@ -28,7 +29,7 @@ struct BuildTree
     uint count;
     Floats positions;              // 3 floats a vertex of triangles, 6 a box; absent: instances
     Uints indices;                 // 3 a triangle; absent: boxes
-    Uints leaves;                  // the triangles of each, see make_leaf; absent: leaf i is primitive i
+    REF(Leaf) leaves;              // absent: leaf i is primitive i
     REF(Bvh) bvh;
     REF(BvhNode) nodes;            // of the scratch where there are records
     REF(BvhTriangle) triangles;    // of layout bvh2
@@ -165,13 +166,11 @@ FUNC vec3 center_of(LeafBox box)
 FUNC bool has_instances(BuildTree tree) { return is_absent(tree.positions); }
 FUNC bool has_boxes(BuildTree tree) { return is_absent(tree.indices); }
 
-// A leaf holds a primitive, or two triangles, the second one `offset` after the first.
-const uint MOST_PAIR_OFFSET = 63u;
-FUNC uint make_leaf(uint first, uint offset) { return first | offset << 25u; }
-FUNC uint first_in_leaf(uint leaf) { return leaf & 0x1ffffffu; }
-FUNC uint second_in_leaf(uint leaf) { return first_in_leaf(leaf) + (leaf >> 25u); }
-FUNC uint count_in_leaf(uint leaf) { return leaf >> 25u == 0u ? 1u : 2u; }
-FUNC uint leaf_at(BuildTree tree, uint index) { return is_absent(tree.leaves) ? index : AT(tree.leaves, index); }
+FUNC Leaf leaf_at(BuildTree tree, uint index)
+{
+    if (is_absent(tree.leaves)) return make_leaf(index, index);
+    return AT(tree.leaves, index);
+}
 
 FUNC BvhTriangle fetch_primitive(BuildTree tree, uint primitive)
 {
@@ -264,14 +263,14 @@ struct BoxedLeaf
     uint which_active;      // bit i: that of number i can be hit
 };
 
-FUNC BoxedLeaf boxed_leaf(BuildTree tree, uint leaf)
+FUNC BoxedLeaf boxed_leaf(BuildTree tree, Leaf leaf)
 {
     BoxedLeaf boxed;
     boxed.box = empty_box();
     boxed.which_active = 0u;
-    DONT_UNROLL for (uint i = 0u; i < count_in_leaf(leaf); i = i + 1u)
+    DONT_UNROLL for (uint i = 0u; i < (has_two(leaf) ? 2u : 1u); i = i + 1u)
     {
-        BoxedPrimitive one = boxed_primitive(tree, i == 0u ? first_in_leaf(leaf) : second_in_leaf(leaf));
+        BoxedPrimitive one = boxed_primitive(tree, i == 0u ? leaf.first : leaf.second);
         boxed.last = one.primitive;
         boxed.box = around_both(boxed.box, one.box);
         boxed.which_active = boxed.which_active | (is_active(one.box) ? 1u << i : 0u);

@@ -233,7 +233,7 @@ FUNC CollapseStep begin_collapse(BuildTree tree, Uints leaf_indices, uint index,
 FUNC CompressedRecord encode_leaf(BuildTree tree, uint leaf)
 {
     if (has_instances(tree)) return encode_instance(leaf);
-    uint of_tree = leaf_at(tree, leaf);
+    Leaf of_tree = leaf_at(tree, leaf);
     return encode_boxed_leaf(tree, of_tree, boxed_leaf(tree, of_tree));
 }
 #endif

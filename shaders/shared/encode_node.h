@@ -183,33 +183,32 @@ FUNC uvec2 lone_corners(uvec3 first, uvec3 second)
     return uvec2(0u, 0u);
 }
 
-FUNC CompressedRecord encode_pair(BuildTree tree, uint leaf, uint which_active)
+FUNC CompressedRecord encode_pair(BuildTree tree, Leaf leaf, uint which_active)
 {
-    uvec3 first = load_indices(tree.indices, first_in_leaf(leaf));
-    uvec3 second = load_indices(tree.indices, second_in_leaf(leaf));
+    uvec3 first = load_indices(tree.indices, leaf.first);
+    uvec3 second = load_indices(tree.indices, leaf.second);
     uvec2 corners = lone_corners(first, second);
     uint begin = corner_of(first, corners.x + 1u);
     uint end = corner_of(first, corners.x + 2u);
     bool is_flipped = corner_of(second, corners.y + 1u) != begin;
     CompressedRecord record;
-    record.a = uvec4(second_in_leaf(leaf) | which_active << 30u, begin, end, LEAF_BIT | PAIR_BIT | first_in_leaf(leaf));
+    record.a = uvec4(leaf.second | which_active << 30u, begin, end, LEAF_BIT | PAIR_BIT | leaf.first);
     record.b = uvec4(corner_of(first, corners.x), corner_of(second, corners.y),
                      corners.x | corners.y << 2u | (is_flipped ? PAIR_FLIPPED : 0u), 0u);
     record.c = uvec2(0u, 0u);
     return record;
 }
 
-// `leaf`: as make_leaf; `boxed`: of it.
-FUNC CompressedRecord encode_boxed_leaf(BuildTree tree, uint leaf, BoxedLeaf boxed)
+FUNC CompressedRecord encode_boxed_leaf(BuildTree tree, Leaf leaf, BoxedLeaf boxed)
 {
-    if (count_in_leaf(leaf) == 2u) return encode_pair(tree, leaf, boxed.which_active);
+    if (has_two(leaf)) return encode_pair(tree, leaf, boxed.which_active);
     return encode_primitive(boxed.last);
 }
 
 // The leaf that encode_boxed_leaf made a record from.
-FUNC uint leaf_of(CompressedRecord record)
+FUNC Leaf leaf_of(CompressedRecord record)
 {
-    return make_leaf(index_in(record), is_pair(record) ? second_index_in(record) - index_in(record) : 0u);
+    return make_leaf(index_in(record), is_pair(record) ? second_index_in(record) : index_in(record));
 }
 
 FUNC CompressedRecord no_record()

@@ -12,7 +12,7 @@ void main()
     uint index = global_index();
     if (index >= args.leaf_count) return;
     BuildTree tree = AT(args.trees, index);
-    uint leaf = leaf_at(tree, 0u);
+    Leaf leaf = leaf_at(tree, 0u);
     BoxedLeaf boxed = boxed_leaf(tree, leaf);
     store_lone_tree(tree.bvh, tree.records, boxed.box);
     if (is_absent(tree.records)) AT(tree.triangles, 0) = boxed.last;

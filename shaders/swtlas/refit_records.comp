@@ -16,7 +16,7 @@ REFERENCE(SharedBoxes, coherent, LeafBox items[], 8)
 LeafBox refit_leaf(BuildTree tree, uint slot, CompressedRecord record)
 {
     if (has_instances(tree)) return AT(args.boxes, tree.first + index_in(record));
-    uint leaf = leaf_of(record);
+    Leaf leaf = leaf_of(record);
     BoxedLeaf boxed = boxed_leaf(tree, leaf);
     store_record(tree.records, slot, encode_boxed_leaf(tree, leaf, boxed));
     return boxed.box;

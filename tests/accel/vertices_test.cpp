@@ -7,6 +7,7 @@
 #include "validation/reference/aimed_rays.h"
 #include "validation/reference/classify.h"
 #include "tests/accel/accel_fixture.h"
+#include "tests/support/seam.h"
 
 namespace twinray {
 namespace {
@@ -119,6 +120,19 @@ TEST_P(Vertices, MovedVerticesAgreeWithTheReference) {
             EXPECT_EQ(accel().world_bound().lo, bounds_of(mesh).lo);
             EXPECT_EQ(accel().world_bound().hi, bounds_of(mesh).hi);
         }
+        accel().erase(handle);
+    }
+}
+
+// Vertices that lie together are one in trees as long as none has moved.
+TEST_P(Vertices, SeamsMayOpen) {
+    for (const bool is_built_before : {false, true}) {
+        Mesh mesh = test::with_seam(make_icosphere(3));
+        const AccelHandle handle = accel().push(mesh);
+        if (is_built_before) accel().sync();
+        for (std::size_t i = mesh.positions.size() / 2; i < mesh.positions.size(); ++i) mesh.positions[i].x += 0.5f;
+        accel().update_vertices(handle, mesh.positions);
+        expect_agreement(mesh);
         accel().erase(handle);
     }
 }

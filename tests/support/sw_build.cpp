@@ -46,23 +46,24 @@ double sah_of(const BuiltTree& tree, const std::vector<LeafBox>& boxes) {
 }
 
 void expect_reference(const BuiltTree& tree, const Mesh& mesh, BuildQuality quality) {
-    std::vector<uint> leaves;
-    if (has_records(tree)) leaves = pair_triangles(built(mesh), mesh.triangles);
-    const std::vector<LeafBox> boxes = reference::leaves_triangles(built(mesh), mesh.triangles, leaves);
+    const std::vector<vec3> positions = built(mesh);
+    Geometry geometry(MeshView(mesh.name, positions, mesh.triangles), 1);
+    if (has_records(tree)) choose_leaves(geometry, false);
+    const std::vector<LeafBox> boxes = reference::leaves_triangles(positions, mesh.triangles, geometry.leaves);
     const reference::Codes codes = reference::morton(boxes, reference::centroids(boxes));
     const std::vector<uint> order = reference::sort(codes);
     reference::Hierarchy expected = reference::hierarchy(boxes, codes, order, !has_records(tree), quality);
     if (!has_records(tree)) expected = reference::linked(std::move(expected));
     if (has_records(tree)) {
-        const std::vector<CompressedRecord> records =
-            reference::records_of_triangles(expected, built(mesh), mesh.triangles, width_of(tree), leaves);
+        std::vector<CompressedRecord> records =
+            reference::records_of_triangles(expected, positions, mesh.triangles, width_of(tree), geometry.leaves);
+        if (!geometry.welded.is_empty()) name_vertices(records, geometry.welded.triangles);
         EXPECT_TRUE(same_bytes(tree.records, records)) << mesh.name;
         return;
     }
     EXPECT_EQ(tree.bvh.root, expected.root) << mesh.name;
     EXPECT_TRUE(same_bytes(tree.nodes, expected.nodes)) << mesh.name;
-    EXPECT_TRUE(same_bytes(tree.triangles, reference::encode_triangles(built(mesh), mesh.triangles, order)))
-        << mesh.name;
+    EXPECT_TRUE(same_bytes(tree.triangles, reference::encode_triangles(positions, mesh.triangles, order))) << mesh.name;
 }
 
 std::vector<LeafBox> instance_boxes(const Mesh& mesh, const std::vector<Transform>& transforms,

@@ -5,6 +5,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <random>
 
+#include "tests/support/seam.h"
 #include "tests/support/sw_build.h"
 
 namespace twinray {
@@ -37,9 +38,9 @@ void expect_leaves_of(std::span<const CompressedRecord> records, std::span<const
     source.indices = Uints::to(&triangles.data()->x);
     for (const CompressedRecord& record : records) {
         if (!is_leaf(record)) continue;
-        const uint leaf = leaf_of(record);
+        const Leaf leaf = leaf_of(record);
         const CompressedRecord right = encode_boxed_leaf(source, leaf, boxed_leaf(source, leaf));
-        EXPECT_EQ(std::memcmp(&record, &right, sizeof right), 0) << "primitive " << first_in_leaf(leaf);
+        EXPECT_EQ(std::memcmp(&record, &right, sizeof right), 0) << "primitive " << leaf.first;
     }
 }
 
@@ -139,6 +140,7 @@ TEST_P(SwRefit, ARefittedGeometryIsSoundAndKeepsItsTopology) {
     for (const uint n : {1u, 2u, 3u, 255u, 256u, 257u, 1000u}) meshes.push_back(make_soup(n, n));
     const std::size_t soups = meshes.size();
     for (const uint level : {0u, 2u, 5u}) meshes.push_back(make_icosphere(level));  // leaves of two triangles
+    meshes.push_back(test::with_seam(make_icosphere(3)));
     for (const Mesh& mesh : meshes) handles.push_back(accel.push(mesh));
     const std::vector<Mesh> pushed = meshes;
     accel.sync();

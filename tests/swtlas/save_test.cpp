@@ -15,6 +15,7 @@
 #include <twinray/tlas.h>
 #include "tests/scene/temp_dir.h"
 #include "tests/support/device.h"
+#include "tests/support/seam.h"
 #include "test_program.trace_program.h"
 
 namespace twinray {
@@ -41,7 +42,8 @@ class SwSave : public test::VulkanTest {
     // Geometries of every kind, one that was erased, options, and transforms that only the device knows.
     std::vector<AccelHandle> fill(SwTlas& accel) {
         std::vector<AccelHandle> handles;
-        handles.push_back(accel.push(make_icosphere(3), Transform::translation({2, 0, 0}), {.custom_index = 7}));
+        handles.push_back(
+            accel.push(test::with_seam(make_icosphere(3)), Transform::translation({2, 0, 0}), {.custom_index = 7}));
         const AccelHandle gone = accel.push(make_soup(10, 4));
         Mesh bad = make_soup(300, 5);
         bad.positions[40].x = NAN;

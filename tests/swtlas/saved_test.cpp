@@ -164,7 +164,7 @@ TEST_P(SavedFile, OtherFormatsAreNamed) {
     const auto edited = [&](const std::function<void(SavedHeader&)>& edit) {
         return refusal(resealed(good, [&](SavedHeader& header, SavedEntry&) { edit(header); }));
     };
-    expect_contains(edited([](SavedHeader& h) { h.version = 8; }), "format version 8; this library reads version 9");
+    expect_contains(edited([](SavedHeader& h) { h.version = 8; }), "format version 8; this library reads version 10");
     expect_contains(edited([](SavedHeader& h) { h.byte_order = 0x04030201; }), "another byte order");
     expect_contains(edited([](SavedHeader& h) { h.node_bytes = 80; }), "its node has 80 bytes; this library's has 64");
     expect_contains(edited([](SavedHeader& h) { h.leaf_bytes = 48; }), "its leaf has 48 bytes; this library's has 40");

@@ -52,13 +52,13 @@ bool is_apart(const LeafBox& a, const LeafBox& b) {
     return false;
 }
 
-struct Leaf {
+struct LeafTriangle {
     BvhTriangle triangle;
     uint reference;  // as nodes name it
 };
 
-std::vector<Leaf> leaves_of(const BuiltTree& tree) {
-    std::vector<Leaf> leaves;
+std::vector<LeafTriangle> leaves_of(const BuiltTree& tree) {
+    std::vector<LeafTriangle> leaves;
     for (uint i = 0; i < tree.triangles.size(); ++i) leaves.push_back({tree.triangles[i], LEAF_BIT | i});
     const Floats vertices = Floats::to(&tree.vertices.data()->x);
     for (uint i = 0; i < tree.records.size(); ++i) {
@@ -78,7 +78,7 @@ struct Visit {
 
 // The area of a triangle within boxes that are not above its leaf. Those that are hold all of it: they are counted with
 // the others, and taken off once it is known how many they are.
-double overlap_of(const SwGeometry& geometry, const Leaf& leaf) {
+double overlap_of(const SwGeometry& geometry, const LeafTriangle& leaf) {
     const LeafBox around = box_of_triangle(leaf.triangle);
     if (!is_active(around) || geometry.bvh.root == leaf.reference) return 0;
     double overlap = 0;
@@ -109,13 +109,13 @@ double end_point_overlap(const BuiltTree& tree) {
     geometry.bvh.nodes = Ref<BvhNode>::to(tree.nodes.data());
     geometry.triangles = Ref<BvhTriangle>::to(tree.triangles.data());
     geometry.records = Ref<CompressedRecord>::to(tree.records.data());
-    const std::vector<Leaf> leaves = leaves_of(tree);
+    const std::vector<LeafTriangle> leaves = leaves_of(tree);
     std::vector<double> overlaps(leaves.size());
     parallel_for(leaves.size(), [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) overlaps[i] = overlap_of(geometry, leaves[i]);
     });
     double area = 0;
-    for (const Leaf& leaf : leaves)
+    for (const LeafTriangle& leaf : leaves)
         if (const LeafBox box = box_of_triangle(leaf.triangle); is_active(box)) area += area_within(leaf.triangle, box);
     return area > 0 ? std::accumulate(overlaps.begin(), overlaps.end(), 0.0) / area : 0;
 }

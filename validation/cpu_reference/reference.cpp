@@ -69,15 +69,14 @@ std::vector<CompressedRecord> records_of(const Hierarchy& tree, BuildTree input,
 }  // namespace
 
 std::vector<LeafBox> leaves_triangles(std::span<const vec3> positions, std::span<const uvec3> triangles,
-                                      std::span<const uint> leaves) {
+                                      std::span<const Leaf> leaves) {
     const auto box_of = [&](uint triangle) {
         return box_of_triangle(gather(positions, triangles[triangle], triangle));
     };
     std::vector<LeafBox> boxes;
     if (leaves.empty())
         for (uint i = 0; i < triangles.size(); ++i) boxes.push_back(box_of(i));
-    for (const uint leaf : leaves)
-        boxes.push_back(around_both(box_of(first_in_leaf(leaf)), box_of(second_in_leaf(leaf))));
+    for (const Leaf& leaf : leaves) boxes.push_back(around_both(box_of(leaf.first), box_of(leaf.second)));
     return boxes;
 }
 
@@ -184,11 +183,11 @@ std::vector<BvhTriangle> encode_triangles(std::span<const vec3> positions, std::
 
 std::vector<CompressedRecord> records_of_triangles(const Hierarchy& tree, std::span<const vec3> positions,
                                                    std::span<const uvec3> triangles, uint width,
-                                                   std::span<const uint> leaves) {
+                                                   std::span<const Leaf> leaves) {
     BuildTree input{};
     input.count = static_cast<uint>(leaves.empty() ? triangles.size() : leaves.size());
     if (triangles.empty()) return {};
-    if (!leaves.empty()) input.leaves = Uints::to(leaves.data());
+    if (!leaves.empty()) input.leaves = Ref<Leaf>::to(leaves.data());
     input.positions = Floats::to(&positions.data()->x);
     input.indices = Uints::to(&triangles.data()->x);
     return records_of(tree, input, width);

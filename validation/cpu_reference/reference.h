@@ -14,7 +14,7 @@ namespace twinray::reference {
 
 // `leaves`, here and below: as Geometry::leaves.
 std::vector<LeafBox> leaves_triangles(std::span<const vec3> positions, std::span<const uvec3> triangles,
-                                      std::span<const uint> leaves = {});
+                                      std::span<const Leaf> leaves = {});
 
 // Writes the instances and returns their world boxes. geometry addresses are host addresses of SwGeometry.
 std::vector<LeafBox> leaves_instances(std::span<const InstanceRecord> records, std::vector<SwInstance>& instances);
@@ -51,7 +51,7 @@ std::vector<BvhTriangle> encode_triangles(std::span<const vec3> positions, std::
 // kernels' binary trees refer to positions in the order; their records are the same.)
 std::vector<CompressedRecord> records_of_triangles(const Hierarchy& tree, std::span<const vec3> positions,
                                                    std::span<const uvec3> triangles, uint width,
-                                                   std::span<const uint> leaves = {});
+                                                   std::span<const Leaf> leaves = {});
 std::vector<CompressedRecord> records_of_instances(const Hierarchy& tree, uint leaf_count, uint width);
 
 }  // namespace twinray::reference

@@ -11,7 +11,7 @@ namespace twinray::reference {
 
 std::size_t Scene::add_geometry(const MeshView& mesh) {
     Geometry geometry(mesh, software_unit(mesh.positions));
-    if (has_records(layout_)) geometry.leaves = pair_triangles(geometry.positions, geometry.triangles);
+    if (has_records(layout_)) choose_leaves(geometry, false);
     const std::vector<LeafBox> boxes = leaves_triangles(geometry.positions, geometry.triangles, geometry.leaves);
     const Codes codes = morton(boxes, centroids(boxes));
     const std::vector<uint> order = sort(codes);

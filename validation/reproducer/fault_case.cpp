@@ -6,7 +6,7 @@
 #include <map>
 
 #include "engine/accel/geometry.h"
-#include "hwtlas/order.h"
+#include "engine/accel/morton_order.h"
 #include "validation/reference/geometry64.h"
 
 namespace twinray::reproducer {

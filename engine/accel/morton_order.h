@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The order in which primitives go to a driver that builds in input order. Pure functions.
+// Triangles in an order in which neighbours in space are near each other. Pure functions.
 #pragma once
 
 #include <span>

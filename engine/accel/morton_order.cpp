@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "hwtlas/order.h"
+#include "engine/accel/morton_order.h"
 
 #include <algorithm>
 

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+// What the kernels that copy take.
+#ifndef TWINRAY_SHARED_COPIES_H
+#define TWINRAY_SHARED_COPIES_H
+
+struct CopyWordsArgs
+{
+    Uints from;
+    Uints to;
+    uint count;
+    uint reserved;
+};
+
+struct CopyFloatsArgs
+{
+    Floats from;
+    Floats to;
+    uint count;
+    float factor;
+};
+#endif

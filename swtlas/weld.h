@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+
+#include "engine/accel/geometry.h"
+
+namespace twinray {
+
+// The mesh with one vertex for each position that triangles use, in their order, or nothing where that saves less than
+// a sixteenth. Positions are equal if their bits are. Files have many a vertex several times: on both sides of a hard
+// edge, of a seam of textures.
+Welded weld(std::span<const vec3> positions, std::span<const uvec3> triangles);
+
+}  // namespace twinray
