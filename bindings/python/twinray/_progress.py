@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor, TimeoutError
-
 _MOST_STEPS = 100
 _SECONDS = 0.1  # from one look to the next
 
@@ -28,6 +26,8 @@ def in_blocks(count, least, name, work):
 
 def watched(scene, name, work):
     """The result of work(), which another thread does, while its rows are counted here."""
+    from concurrent.futures import ThreadPoolExecutor, TimeoutError  # takes a third of `import twinray`
+
     with _bar(None, name) as bar, ThreadPoolExecutor(1) as pool:
         future = pool.submit(work)
         while True:

@@ -4,20 +4,22 @@
 from __future__ import annotations
 
 import os
-import subprocess
 import threading
 import warnings
 from html import escape
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from . import _core, picture, viewing
+from . import _core, picture
 from . import device_array as _device
 from ._arrays import Array, arrays_of_mesh, geometry_of, indices_of, matrix_of, number_of, rows_of, vector_of
 from ._frame import Frame
 from .pinhole import create_rays_pinhole
+
+if TYPE_CHECKING:
+    import subprocess
 
 INVALID_ID: int = 0xFFFFFFFF  #: in place of the number of a geometry or a triangle, where there is none
 
@@ -111,6 +113,8 @@ class Scene:
         FileNotFoundError
             Where there is no such command: it is built from the same sources, not part of this package.
         """
+        from . import viewing
+
         return viewing.view(self, *options)
 
     def bounds(self) -> NDArray[np.float64]:
