@@ -20,19 +20,16 @@ PipelineVariants::~PipelineVariants() {
 }
 
 const TraceProgram& PipelineVariants::get(uint features, Query query, Level level) {
-    const Job wanted = job(features, query, level);
-    if (state(wanted) == State::ready) return *wanted.program;
-    if (!in_background_) {
-        compile_now(wanted);
+    const Job wanted = job(features, query, level), general = job(all_, query, level);
+    if (state(wanted) == State::ready) {
+        if (in_background_) queue(general);
         return *wanted.program;
     }
-    const Job general = job(all_, query, level);
-    if (state(general) == State::ready) {
+    if (in_background_ && state(general) == State::ready) {
         queue(wanted);
         return *general.program;
     }
     compile_now(wanted);
-    queue(general);
     return *wanted.program;
 }
 

@@ -14,9 +14,10 @@
 
 namespace twinray {
 
-// The leanest program that fits is compiled by the first trace, which waits for it, and after it, in the background,
-// the one that fits all scenes: that serves from then on while leaner ones are compiled in the background, too. There
-// are at most 32 sets of features of an accelerator (see features_of.h), so that none has to go.
+// The first trace compiles the leanest program that fits, and waits for it. The next one has the program that fits all
+// scenes compiled in the background, which serves from then on while leaner ones are compiled there, too: who traces
+// once pays for one program. There are at most 32 sets of features of an accelerator (see features_of.h), so that none
+// has to go.
 //
 // Used by one thread at a time; one of its own compiles. The context must outlive it.
 class PipelineVariants {

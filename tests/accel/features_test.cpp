@@ -86,6 +86,8 @@ class Features : public test::VulkanTest, public ::testing::WithParamInterface<s
         for (std::size_t i = 0; i < rays.size(); ++i)
             if (closest[i].hit && i % 3 != 0) (i % 3 == 1 ? rays[i].t_min : rays[i].t_max) = closest[i].t;
         const std::vector<Hit> whole = accel().any_hits(rays, desc);
+        accel().any_hits(rays, desc);  // from the second on the general program is there
+        accel().wait_for_programs();
         for (const bool is_waited_for : {false, true}) {
             if (is_waited_for) accel().wait_for_programs();
             const std::vector<Hit> answers = answers_alone(rays, desc);
@@ -214,6 +216,8 @@ TEST_P(FeaturesOfAccel, ProgramsChangeInTheBackgroundAndHitsDoNot) {
     accel().push(make_icosphere(3), Transform{}, {.mask = 1});
     const std::vector<Ray> rays = rays_with_zeros();
     const TraceDesc descs[] = {{}, {.cull = Cull::back}, {.mask = 2}, {.mask = 2, .cull = Cull::back}};
+    for (int i = 0; i < 2; ++i) accel().closest_hits(rays, {.level = level()});
+    accel().wait_for_programs();  // the general one is there
     std::vector<std::vector<Hit>> first;
     for (int pass = 0; pass < 3; ++pass) {
         for (std::size_t i = 0; i < std::size(descs); ++i) {

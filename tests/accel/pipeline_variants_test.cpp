@@ -36,6 +36,13 @@ class PipelineVariantsTest : public ::testing::Test {
         return std::make_unique<PipelineVariants>(
             [this](uint features) { return std::make_unique<Program>(*this, features); }, all_programs, in_background);
     }
+    // With the program for features 1, and the general one.
+    std::unique_ptr<PipelineVariants> make_with_both() {
+        std::unique_ptr<PipelineVariants> programs = make(true);
+        for (int i = 0; i < 2; ++i) serving(*programs, 1);
+        programs->wait();
+        return programs;
+    }
     static uint serving(PipelineVariants& programs, uint features, Query query = Query::closest) {
         return programs.get(features, query, Level::watertight).features();
     }
@@ -44,17 +51,18 @@ class PipelineVariantsTest : public ::testing::Test {
     std::atomic<int> compiled = 0;
 };
 
-TEST_F(PipelineVariantsTest, TheFirstTraceHasTheProgramThatFits) {
+TEST_F(PipelineVariantsTest, TheFirstTraceHasTheProgramThatFitsAndTheSecondWantsTheGeneralOne) {
     const auto programs = make(true);
     EXPECT_EQ(serving(*programs, 1), 1u);
     programs->wait();
-    EXPECT_EQ(compiled, 2) << "and the general one in the background";
+    EXPECT_EQ(compiled, 1);
+    for (int i = 0; i < 2; ++i) EXPECT_EQ(serving(*programs, 1), 1u);
+    programs->wait();
+    EXPECT_EQ(compiled, 2);
 }
 
 TEST_F(PipelineVariantsTest, TheGeneralOneServesUntilTheLeanOneIsThere) {
-    const auto programs = make(true);
-    serving(*programs, 1);
-    programs->wait();
+    const auto programs = make_with_both();
     gate.acquire();
     EXPECT_EQ(serving(*programs, 2), all_programs);
     EXPECT_EQ(serving(*programs, 2), all_programs);
@@ -75,7 +83,7 @@ TEST_F(PipelineVariantsTest, WithoutABackgroundEachTraceWaits) {
 TEST_F(PipelineVariantsTest, WhatFailsInTheBackgroundIsNeverServed) {
     const auto programs = make(true);
     EXPECT_THROW(serving(*programs, 4), Error) << "no other is there";
-    serving(*programs, 1);
+    for (int i = 0; i < 2; ++i) serving(*programs, 1);
     programs->wait();
     EXPECT_EQ(serving(*programs, 4), all_programs);
     programs->wait();
@@ -83,9 +91,7 @@ TEST_F(PipelineVariantsTest, WhatFailsInTheBackgroundIsNeverServed) {
 }
 
 TEST_F(PipelineVariantsTest, TheEndWaitsForTheOneThatIsBeingCompiledAlone) {
-    auto programs = make(true);
-    serving(*programs, 1);
-    programs->wait();
+    auto programs = make_with_both();
     gate.acquire();
     serving(*programs, 2);
     serving(*programs, 3);

@@ -6,7 +6,6 @@ from __future__ import annotations
 import os
 import threading
 import warnings
-from html import escape
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -85,6 +84,8 @@ class Scene:
         )
 
     def _repr_html_(self) -> str:
+        from html import escape
+
         backend = self.backend
         rows = {"geometries": len(self), "triangles": self._core.triangle_count()} | backend
         cells = "".join(
