@@ -171,7 +171,7 @@ FUNC uint corner_of(uvec3 triangle, uint corner)
 // The corners across an edge that two triangles share, in either direction.
 FUNC uvec2 lone_corners(uvec3 first, uvec3 second)
 {
-    for (uint i = 0u; i < 9u; i = i + 1u)
+    DONT_UNROLL for (uint i = 0u; i < 9u; i = i + 1u)
     {
         uvec2 corners = uvec2(i % 3u, i / 3u);
         uint begin = corner_of(first, corners.x + 1u);
