@@ -4,7 +4,6 @@
 #include <vk_mem_alloc.h>
 
 #include <twinray/vma_adapter.h>
-#include "samples/support/devices.h"
 #include "samples/support/text.h"
 
 namespace twinray::embed_renderer {
@@ -112,9 +111,13 @@ void Device::choose(const std::string& request) {
         properties.push_back(query_device_properties(vkGetInstanceProcAddr, instance_, device));
         properties.back().has_compute_queue = universal_family(device) >= 0;
     }
-    const std::optional<std::size_t> best = samples::best_device(properties, request);
-    if (!best) fail("of ", properties.size(), " devices none that matches '", request, "' rasterises and runs twinray");
-    physical_ = devices[*best];
+    const DeviceChoice choice = choose_device(properties, request);
+    if (choice.index < 0) {
+        std::string reasons;
+        for (const std::string& reason : choice.rejections) reasons += "\n  " + reason;
+        fail("no device that matches '", request, "' rasterises and runs twinray:", reasons);
+    }
+    physical_ = devices[static_cast<std::size_t>(choice.index)];
     queue_family_ = static_cast<std::uint32_t>(universal_family(physical_));
     VkPhysicalDeviceProperties chosen;
     vkGetPhysicalDeviceProperties(physical_, &chosen);

@@ -4,15 +4,14 @@
 #include <vector>
 
 #include <twinray/context.h>
-#include "samples/support/devices.h"
 
 namespace twinray::path_tracer {
 
 std::size_t device_of_rank(std::span<const DeviceProperties> devices, uint local_index) {
-    const std::optional<std::size_t> best = samples::best_device(devices);
-    if (!best) return 0;
+    const int best = choose_device(devices, "").index;
+    if (best < 0) return 0;
     const auto is_alike = [&](const DeviceProperties& device) {
-        return device.kind == devices[*best].kind && missing_for_software(device).empty();
+        return device.kind == devices[static_cast<std::size_t>(best)].kind && missing_for_software(device).empty();
     };
     std::vector<std::size_t> alike;
     for (std::size_t i = 0; i < devices.size(); ++i)

@@ -91,6 +91,17 @@ TEST_F(EmbedRenderer, ARayTracingPipelineShowsTheSame) {
     for (std::size_t i = 0; i < software.size(); ++i) EXPECT_LE(differing(software[i], pipeline[i]), 10u);
 }
 
+TEST_F(EmbedRenderer, ANumberIsTheIndexOfADeviceAndNoPartOfAName) {
+    const std::string beyond = std::to_string(list_devices().size());
+    try {
+        const Device device({.device = beyond});
+        ADD_FAILURE() << "there is no device " << beyond;
+    } catch (const std::exception& error) {
+        EXPECT_NE(std::string(error.what()).find("does not match the request '" + beyond + "'"), std::string::npos)
+            << error.what();
+    }
+}
+
 class EmbedRendererBy : public EmbedRenderer, public ::testing::WithParamInterface<const char*> {
   protected:
     void SetUp() override {
