@@ -2,6 +2,7 @@
 find_package(Threads REQUIRED)
 find_package(Vulkan REQUIRED)
 find_package(VulkanMemoryAllocator CONFIG REQUIRED)
+find_path(VOLK_INCLUDE_DIR volk.h REQUIRED) # Debian: libvulkan-volk-dev
 find_package(glm CONFIG REQUIRED)
 find_package(ZLIB REQUIRED)
 

@@ -5,6 +5,7 @@ target_compile_features(twinray_options INTERFACE cxx_std_20)
 # No code of ours calls a global vk* function; in the headers this would decide for the host, too.
 target_compile_definitions(twinray_options INTERFACE VK_NO_PROTOTYPES=)
 target_include_directories(twinray_options INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/include)
+target_include_directories(twinray_options SYSTEM INTERFACE ${VOLK_INCLUDE_DIR})
 target_compile_options(
     twinray_options
     INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wconversion -Wshadow -ffp-contract=off>

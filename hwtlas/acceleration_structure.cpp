@@ -5,6 +5,7 @@
 
 #include "engine/accel/batches.h"
 #include "engine/core/error.h"
+#include "engine/core/vulkan.h"
 
 namespace twinray {
 namespace {
@@ -72,7 +73,7 @@ AccelerationStructure::AccelerationStructure(Context& context, const std::string
                          .bytes = bytes,
                          .usage = VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR,
                          .alignment = storage_alignment}) {
-    const VulkanFunctions& vk = context.state().vk();
+    const VulkanTable& vk = context.state().vk();
     VkAccelerationStructureCreateInfoKHR info{};
     info.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_CREATE_INFO_KHR;
     info.buffer = storage_.handle();

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "engine/core/error.h"
+#include "engine/core/vulkan.h"
 
 namespace twinray {
 
@@ -12,7 +13,7 @@ CompactedSizes::CompactedSizes(Commands& commands, std::span<const AccelerationS
       bytes_(
           context_,
           {.name = "compacted sizes", .bytes = structures.size() * sizeof(std::uint64_t), .memory = Memory::readback}) {
-    const VulkanFunctions& vk = context_.state().vk();
+    const VulkanTable& vk = context_.state().vk();
     std::vector<VkAccelerationStructureKHR> handles;
     for (const AccelerationStructure* structure : structures) handles.push_back(structure->handle());
     const auto count = static_cast<std::uint32_t>(handles.size());

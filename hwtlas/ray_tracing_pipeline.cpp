@@ -7,6 +7,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/kernel_addresses.h"
+#include "engine/core/vulkan.h"
 
 namespace twinray {
 namespace {
@@ -162,7 +163,7 @@ void RayTracingPipeline::create_shader_binding_table() {
 }
 
 void RayTracingPipeline::trace(Commands& commands, const TraceArgs& args) const {
-    const VulkanFunctions& vk = context_.state().vk();
+    const VulkanTable& vk = context_.state().vk();
     const auto region = [&](Group group) {
         return VkStridedDeviceAddressRegionKHR{table_.address() + group * record_bytes_, record_bytes_, record_bytes_};
     };

@@ -6,11 +6,12 @@
 #include "engine/core/device_properties.h"
 #include "engine/core/error.h"
 #include "engine/core/requirement.h"
+#include "engine/core/vulkan.h"
 
 namespace twinray {
 namespace {
 
-void check_queue_family(const AdoptedDevice& adopted, const VulkanFunctions& vk) {
+void check_queue_family(const AdoptedDevice& adopted, const VulkanTable& vk) {
     std::uint32_t count = 0;
     vk.vkGetPhysicalDeviceQueueFamilyProperties(adopted.physical_device, &count, nullptr);
     if (adopted.queue_family >= count)
@@ -32,7 +33,7 @@ void check_needs(const DeviceProperties& enabled) {
 }
 
 // A host that tells what the driver supports, and not what it enabled, is found out where it can be.
-void check_claims(const DeviceProperties& told, const DeviceProperties& supported, const VulkanFunctions& vk) {
+void check_claims(const DeviceProperties& told, const DeviceProperties& supported, const VulkanTable& vk) {
     if (const char* feature = feature_beyond(told, supported))
         fail("adopted device '", told.name, "': ", feature, " is told to be enabled but the device has none");
     const auto check_function = [&](bool is_told, const void* function, const char* extension) {
@@ -50,7 +51,7 @@ void check_claims(const DeviceProperties& told, const DeviceProperties& supporte
 
 }  // namespace
 
-DeviceProperties check_adoption(const AdoptedDevice& adopted, const VulkanFunctions& vk) {
+DeviceProperties check_adoption(const AdoptedDevice& adopted, const VulkanTable& vk) {
     if (!vk.vkGetPhysicalDeviceFeatures2)
         fail("adopted device: its VkInstance was created for less than Vulkan 1.1; twinray needs 1.2");
     check_queue_family(adopted, vk);

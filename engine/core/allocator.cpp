@@ -3,6 +3,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/vma.h"
+#include "engine/core/vulkan.h"
 
 namespace twinray {
 
@@ -10,7 +11,7 @@ Allocator::Allocator(const AllocatorHooks& hooks) : hooks_(hooks) {
     if (!hooks.allocate || !hooks.free) fail("allocator hooks: allocate and free must both be set");
 }
 
-Allocator::Allocator(const VulkanFunctions& vk, VkInstance instance, VkPhysicalDevice physical_device, VkDevice device,
+Allocator::Allocator(const VulkanTable& vk, VkInstance instance, VkPhysicalDevice physical_device, VkDevice device,
                      std::uint32_t api_version, std::uint64_t block_bytes)
     : own_(create_vma(vk, instance, physical_device, device, api_version, block_bytes)), hooks_(vma_hooks(own_)) {}
 

@@ -8,7 +8,7 @@ typedef struct VmaAllocator_T* VmaAllocator;
 
 namespace twinray {
 
-struct VulkanFunctions;
+struct VulkanTable;
 
 // The one door through which buffers and images are made and freed.
 class Allocator {
@@ -16,7 +16,7 @@ class Allocator {
     // The host's. Throws Error if one hook is missing.
     explicit Allocator(const AllocatorHooks& hooks);
     // twinray's own.
-    Allocator(const VulkanFunctions& vk, VkInstance instance, VkPhysicalDevice physical_device, VkDevice device,
+    Allocator(const VulkanTable& vk, VkInstance instance, VkPhysicalDevice physical_device, VkDevice device,
               std::uint32_t api_version, std::uint64_t block_bytes);
     ~Allocator();  // every buffer must have been freed
     Allocator(const Allocator&) = delete;

@@ -7,6 +7,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/external_memory.h"
+#include "engine/core/vulkan.h"
 
 namespace twinray {
 namespace {

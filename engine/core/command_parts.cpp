@@ -7,6 +7,7 @@
 #include "engine/core/commands.h"
 #include "engine/core/error.h"
 #include "engine/core/pace.h"
+#include "engine/core/vulkan.h"
 
 namespace twinray {
 namespace {
@@ -37,7 +38,7 @@ VkQueryPool new_timestamps(Context& context, VkCommandBuffer commands, std::uint
 }
 
 VkCommandBuffer begun_buffer(Context& context, VkCommandPool pool, const std::string& name) {
-    const VulkanFunctions& vk = context.state().vk();
+    const VulkanTable& vk = context.state().vk();
     VkCommandBufferAllocateInfo allocate{};
     allocate.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
     allocate.commandPool = pool;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "engine/core/error.h"
+#include "engine/core/vulkan.h"
 
 namespace twinray {
 namespace {
@@ -24,7 +25,7 @@ Commands::Pass::~Pass() {
     State& state = *commands_.state_;
     state.write_timestamp(2 * state.parts.back().passes.size() - 1);
     state.end_pass();
-    const VulkanFunctions& vk = state.context.state().vk();
+    const VulkanTable& vk = state.context.state().vk();
     if (vk.vkCmdEndDebugUtilsLabelEXT) vk.vkCmdEndDebugUtilsLabelEXT(state.handle());
 }
 

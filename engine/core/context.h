@@ -32,7 +32,7 @@ struct Context::State {
     State(const State&) = delete;
     State& operator=(const State&) = delete;
 
-    const VulkanFunctions& vk() const { return vk_; }
+    const VulkanTable& vk() const { return vk_; }
     VkDevice device() const { return device_; }
     VkPhysicalDevice physical_device() const { return physical_device_; }
     Allocator& allocator() const { return *allocator_; }
@@ -118,7 +118,8 @@ struct Context::State {
     void collect() noexcept;
     void destroy_everything() noexcept;
 
-    VulkanFunctions vk_;
+    std::unique_ptr<VulkanTable> table_;
+    VulkanTable& vk_;
     DeviceProperties properties_;
     KernelTuning tuning_;
     Log log_;

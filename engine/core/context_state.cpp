@@ -11,12 +11,13 @@
 #include "engine/core/dry_device.h"
 #include "engine/core/error.h"
 #include "engine/core/statistics_feature.h"
+#include "engine/core/vulkan.h"
 #include "twinray/glsl/cpp.h"
 
 namespace twinray {
 namespace {
 
-VkInstance new_instance(const VulkanFunctions& vk, const std::string& name, bool validation) {
+VkInstance new_instance(const VulkanTable& vk, const std::string& name, bool validation) {
     VkApplicationInfo application{};
     application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
     application.pApplicationName = name.c_str();
@@ -47,13 +48,13 @@ VkInstance new_instance(const VulkanFunctions& vk, const std::string& name, bool
     return instance;
 }
 
-std::vector<DeviceProperties> facts_of(const VulkanFunctions& vk, const std::vector<VkPhysicalDevice>& devices) {
+std::vector<DeviceProperties> facts_of(const VulkanTable& vk, const std::vector<VkPhysicalDevice>& devices) {
     std::vector<DeviceProperties> properties;
     for (VkPhysicalDevice device : devices) properties.push_back(query_device_properties(vk, device));
     return properties;
 }
 
-bool has_timestamps(const VulkanFunctions& vk, VkPhysicalDevice device, std::uint32_t family) {
+bool has_timestamps(const VulkanTable& vk, VkPhysicalDevice device, std::uint32_t family) {
     std::uint32_t count = 0;
     vk.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
     std::vector<VkQueueFamilyProperties> families(count);
@@ -88,7 +89,11 @@ void disable_features(ContextDesc& desc, const std::string& list) {
 }
 
 Context::State::State(const ContextDesc& desc)
-    : log_(desc.log), watch_(desc.watch_kernels), most_wait_seconds_(desc.most_wait_seconds) {
+    : table_(std::make_unique<VulkanTable>()),
+      vk_(*table_),
+      log_(desc.log),
+      watch_(desc.watch_kernels),
+      most_wait_seconds_(desc.most_wait_seconds) {
     vk_.load_global(desc.get_instance_proc_addr);
     try {
         create_instance(desc);
@@ -101,7 +106,9 @@ Context::State::State(const ContextDesc& desc)
 }
 
 Context::State::State(const AdoptedDevice& adopted)
-    : log_(adopted.log),
+    : table_(std::make_unique<VulkanTable>()),
+      vk_(*table_),
+      log_(adopted.log),
       owns_device_(false),
       instance_(adopted.instance),
       physical_device_(adopted.physical_device),
@@ -314,7 +321,7 @@ VkBool32 VKAPI_PTR Context::State::on_message(VkDebugUtilsMessageSeverityFlagBit
 }
 
 std::vector<DeviceProperties> list_devices(PFN_vkGetInstanceProcAddr get_instance_proc_addr) {
-    VulkanFunctions vk;
+    VulkanTable vk;
     vk.load_global(get_instance_proc_addr);
     const VkInstance instance = new_instance(vk, "twinray devices", false);
     vk.load_instance(instance);

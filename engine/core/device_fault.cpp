@@ -5,6 +5,7 @@
 #include <iomanip>
 
 #include "engine/core/error.h"
+#include "engine/core/vulkan.h"
 
 namespace twinray {
 namespace {
@@ -46,7 +47,7 @@ void tell(const std::vector<Info>& infos, std::vector<std::string>& parts) {
 
 }  // namespace
 
-DeviceFault query_device_fault(const VulkanFunctions& vk, VkDevice device) {
+DeviceFault query_device_fault(const VulkanTable& vk, VkDevice device) {
     if (!vk.vkGetDeviceFaultInfoEXT) return {};
     VkDeviceFaultCountsEXT counts{};
     counts.sType = VK_STRUCTURE_TYPE_DEVICE_FAULT_COUNTS_EXT;

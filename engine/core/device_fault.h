@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "engine/core/vulkan_functions.h"
+#include <vulkan/vulkan_core.h>
 
 namespace twinray {
+
+struct VulkanTable;
 
 struct DeviceFault {
     std::string description = {};
@@ -16,7 +18,7 @@ struct DeviceFault {
 };
 
 // Of a lost device; empty where the driver does not tell.
-DeviceFault query_device_fault(const VulkanFunctions& vk, VkDevice device);
+DeviceFault query_device_fault(const VulkanTable& vk, VkDevice device);
 
 // "; the driver says: 'ring hang', invalid read at 0x1200 to 0x12ff, 'engine' (code 0x7, data 0x1)"; empty where that
 // is nothing.

@@ -3,6 +3,7 @@
 #include "engine/core/context.h"
 #include "engine/core/device_fault.h"
 #include "engine/core/error.h"
+#include "engine/core/vulkan.h"
 
 namespace twinray {
 

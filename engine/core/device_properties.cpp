@@ -7,6 +7,7 @@
 #include "engine/core/cpu_threads.h"
 #include "engine/core/error.h"
 #include "engine/core/requirement.h"
+#include "engine/core/vulkan.h"
 
 namespace twinray {
 namespace {
@@ -22,7 +23,7 @@ DeviceKind kind_of(VkPhysicalDeviceType type) {
 }
 
 // As if a device were created with everything that this one has.
-void query_features(const VulkanFunctions& vk, VkPhysicalDevice device, DeviceProperties& properties) {
+void query_features(const VulkanTable& vk, VkPhysicalDevice device, DeviceProperties& properties) {
     const std::vector<VkExtensionProperties> extensions = device_extensions(vk, device);
     std::vector<const char*> names;
     for (const VkExtensionProperties& extension : extensions) names.push_back(extension.extensionName);
@@ -38,8 +39,8 @@ void query_features(const VulkanFunctions& vk, VkPhysicalDevice device, DevicePr
     state_features(everything, properties);
 }
 
-VulkanFunctions instance_functions(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance instance) {
-    VulkanFunctions vk;
+VulkanTable instance_functions(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance instance) {
+    VulkanTable vk;
     vk.load_global(get_instance_proc_addr);
     vk.load_instance(instance);
     if (!vk.vkGetPhysicalDeviceFeatures2)
@@ -49,7 +50,7 @@ VulkanFunctions instance_functions(PFN_vkGetInstanceProcAddr get_instance_proc_a
 
 }  // namespace
 
-std::vector<VkPhysicalDevice> physical_devices(const VulkanFunctions& vk, VkInstance instance) {
+std::vector<VkPhysicalDevice> physical_devices(const VulkanTable& vk, VkInstance instance) {
     std::uint32_t count = 0;
     vk_check(vk.vkEnumeratePhysicalDevices(instance, &count, nullptr), "list Vulkan devices");
     std::vector<VkPhysicalDevice> devices(count);
@@ -57,7 +58,7 @@ std::vector<VkPhysicalDevice> physical_devices(const VulkanFunctions& vk, VkInst
     return devices;
 }
 
-std::vector<VkExtensionProperties> device_extensions(const VulkanFunctions& vk, VkPhysicalDevice device) {
+std::vector<VkExtensionProperties> device_extensions(const VulkanTable& vk, VkPhysicalDevice device) {
     std::uint32_t count = 0;
     vk_check(vk.vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr), "list device extensions");
     std::vector<VkExtensionProperties> extensions(count);
@@ -66,7 +67,7 @@ std::vector<VkExtensionProperties> device_extensions(const VulkanFunctions& vk, 
     return extensions;
 }
 
-int compute_queue_family(const VulkanFunctions& vk, VkPhysicalDevice device) {
+int compute_queue_family(const VulkanTable& vk, VkPhysicalDevice device) {
     std::uint32_t count = 0;
     vk.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
     std::vector<VkQueueFamilyProperties> families(count);
@@ -76,7 +77,7 @@ int compute_queue_family(const VulkanFunctions& vk, VkPhysicalDevice device) {
     return -1;
 }
 
-DeviceProperties query_device_properties(const VulkanFunctions& vk, VkPhysicalDevice device) {
+DeviceProperties query_device_properties(const VulkanTable& vk, VkPhysicalDevice device) {
     VkPhysicalDeviceDriverProperties driver{};
     driver.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES;
     VkPhysicalDeviceSubgroupProperties subgroup{};

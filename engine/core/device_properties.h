@@ -9,11 +9,11 @@
 namespace twinray {
 
 // Asks the driver. Functions of the instance level must be loaded.
-DeviceProperties query_device_properties(const VulkanFunctions& vk, VkPhysicalDevice device);
-std::vector<VkPhysicalDevice> physical_devices(const VulkanFunctions& vk, VkInstance instance);
-std::vector<VkExtensionProperties> device_extensions(const VulkanFunctions& vk, VkPhysicalDevice device);
+DeviceProperties query_device_properties(const VulkanTable& vk, VkPhysicalDevice device);
+std::vector<VkPhysicalDevice> physical_devices(const VulkanTable& vk, VkInstance instance);
+std::vector<VkExtensionProperties> device_extensions(const VulkanTable& vk, VkPhysicalDevice device);
 
 // First queue family with compute; -1 if none.
-int compute_queue_family(const VulkanFunctions& vk, VkPhysicalDevice device);
+int compute_queue_family(const VulkanTable& vk, VkPhysicalDevice device);
 
 }  // namespace twinray

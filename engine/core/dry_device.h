@@ -9,7 +9,7 @@ namespace twinray {
 // Puts functions in the place of those that record, submit, wait or want memory: every semaphore has passed every
 // value, query results stay as they are, and addresses are aligned, distinct and of nothing. Objects have no names in
 // debuggers.
-void run_nothing(VulkanFunctions& vk);
+void run_nothing(VulkanTable& vk);
 
 // What was recorded on such devices by this thread since it asked last.
 struct RecordedWork {

@@ -4,13 +4,14 @@
 #include <unistd.h>
 
 #include "engine/core/error.h"
+#include "engine/core/vulkan.h"
 
 namespace twinray {
 namespace {
 
 constexpr VkExternalMemoryHandleTypeFlagBits opaque_fd = VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT;
 
-VkBuffer new_buffer(const VulkanFunctions& vk, VkDevice device, std::uint64_t bytes, VkBufferUsageFlags usage) {
+VkBuffer new_buffer(const VulkanTable& vk, VkDevice device, std::uint64_t bytes, VkBufferUsageFlags usage) {
     VkExternalMemoryBufferCreateInfo external{};
     external.sType = VK_STRUCTURE_TYPE_EXTERNAL_MEMORY_BUFFER_CREATE_INFO;
     external.handleTypes = opaque_fd;

@@ -6,7 +6,6 @@
 #include <span>
 
 #include <twinray/context.h>
-#include "engine/core/vulkan_functions.h"
 
 namespace twinray {
 

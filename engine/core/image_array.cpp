@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/core/error.h"
+#include "engine/core/vulkan.h"
 
 namespace twinray {
 namespace {
@@ -151,7 +152,7 @@ ImageArray::ImageArray(Context& context, std::span<const VkDescriptorImageInfo> 
     if (images.empty() || images.size() > max_images)
         fail("image array of ", images.size(), " images; 1 to ", max_images, " fit");
     const auto count = static_cast<std::uint32_t>(images.size());
-    const VulkanFunctions& vk = context.state().vk();
+    const VulkanTable& vk = context.state().vk();
     const VkDescriptorSetLayout layout = context.state().image_array_layout();
     const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, count};
     VkDescriptorPoolCreateInfo pool{};

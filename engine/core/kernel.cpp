@@ -9,6 +9,7 @@
 #include "engine/core/kernel_addresses.h"
 #include "engine/core/pruned_spirv.h"
 #include "engine/core/spirv_words.h"
+#include "engine/core/vulkan.h"
 
 namespace twinray {
 namespace {
@@ -64,7 +65,7 @@ void ComputePipeline::bind(Commands& commands, const void* args, VkDescriptorSet
     if (desc_.has_images != (images != VK_NULL_HANDLE))
         fail("kernel '", desc_.name, "': ", desc_.has_images ? "dispatched without images" : "it takes no images");
     if (!compiled_) compiled_ = context_.state().pipelines().get(context_, desc_, args_bytes_);
-    const VulkanFunctions& vk = context_.state().vk();
+    const VulkanTable& vk = context_.state().vk();
     vk.vkCmdBindPipeline(commands.handle(), VK_PIPELINE_BIND_POINT_COMPUTE, compiled_->pipeline);
     if (images)
         vk.vkCmdBindDescriptorSets(commands.handle(), VK_PIPELINE_BIND_POINT_COMPUTE, compiled_->layout, 0, 1, &images,

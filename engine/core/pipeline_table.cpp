@@ -4,6 +4,7 @@
 #include "engine/core/error.h"
 #include "engine/core/kernel.h"
 #include "engine/core/kernel_addresses.h"
+#include "engine/core/vulkan.h"
 
 namespace twinray {
 namespace {

@@ -9,12 +9,13 @@
 #include <string>
 #include <vector>
 
-#include "engine/core/vulkan_functions.h"
+#include <vulkan/vulkan_core.h>
 
 namespace twinray {
 
 class Context;
 struct KernelDesc;
+struct VulkanTable;
 
 // An address in the push constants of a kernel: see engine/core/kernel_addresses.h.
 struct KernelAddress {
@@ -24,12 +25,12 @@ struct KernelAddress {
 
 // Destroys what it holds when the last who shares it lets go: not before the GPU is done with it.
 struct CompiledKernel {
-    CompiledKernel(const VulkanFunctions& functions, VkDevice owner) : vk(functions), device(owner) {}
+    CompiledKernel(const VulkanTable& functions, VkDevice owner) : vk(functions), device(owner) {}
     ~CompiledKernel();
     CompiledKernel(const CompiledKernel&) = delete;
     CompiledKernel& operator=(const CompiledKernel&) = delete;
 
-    const VulkanFunctions& vk;
+    const VulkanTable& vk;
     VkDevice device;
     VkPipelineLayout layout = VK_NULL_HANDLE;
     VkPipeline pipeline = VK_NULL_HANDLE;

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "engine/core/device_properties.h"
+#include "engine/core/vulkan.h"
 
 namespace twinray {
 namespace {
@@ -17,7 +18,7 @@ bool is_that(const VkExtensionProperties& extension) {
 
 }  // namespace
 
-void StatisticsFeature::add_to(VkDeviceCreateInfo& info, const VulkanFunctions& vk, VkPhysicalDevice device) {
+void StatisticsFeature::add_to(VkDeviceCreateInfo& info, const VulkanTable& vk, VkPhysicalDevice device) {
     if (std::ranges::none_of(device_extensions(vk, device), is_that)) return;
     feature_.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR;
     feature_.pipelineExecutableInfo = VK_TRUE;

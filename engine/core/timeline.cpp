@@ -7,6 +7,7 @@
 
 #include "engine/core/context.h"
 #include "engine/core/error.h"
+#include "engine/core/vulkan.h"
 
 namespace twinray {
 

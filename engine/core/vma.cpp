@@ -8,11 +8,12 @@
 #include <vk_mem_alloc.h>
 
 #include "engine/core/vma.h"
+#include "engine/core/vulkan.h"
 #include <twinray/vma_adapter.h>
 
 namespace twinray {
-VmaAllocator create_vma(const VulkanFunctions& vk, VkInstance instance, VkPhysicalDevice physical_device,
-                        VkDevice device, std::uint32_t api_version, std::uint64_t block_bytes) {
+VmaAllocator create_vma(const VulkanTable& vk, VkInstance instance, VkPhysicalDevice physical_device, VkDevice device,
+                        std::uint32_t api_version, std::uint64_t block_bytes) {
     VmaVulkanFunctions functions{};
     functions.vkGetInstanceProcAddr = vk.vkGetInstanceProcAddr;
     functions.vkGetDeviceProcAddr = vk.vkGetDeviceProcAddr;

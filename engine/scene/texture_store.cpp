@@ -7,6 +7,7 @@
 #include "engine/core/error.h"
 #include "engine/core/fault_log.h"
 #include "engine/core/image_array.h"
+#include "engine/core/vulkan.h"
 #include "engine/scene/set_uploads.h"
 #include "engine/scene/texels.h"
 

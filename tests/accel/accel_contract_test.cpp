@@ -6,6 +6,7 @@
 #include <random>
 
 #include "engine/accel/world_bound.h"
+#include "engine/core/vulkan.h"
 #include "validation/reference/aimed_rays.h"
 #include "validation/reference/classify.h"
 #include "tests/accel/accel_fixture.h"

@@ -7,6 +7,7 @@
 #include "engine/core/error.h"
 #include "engine/core/vma.h"
 #include <twinray/geometry.h>
+#include "engine/core/vulkan.h"
 #include "tests/accel/fault_world.h"
 #include "tests/support/caller.h"
 #include "tests/support/device.h"

@@ -8,6 +8,7 @@
 
 #include "engine/accel/world_bound.h"
 #include "engine/core/context.h"
+#include "engine/core/vulkan.h"
 #include "tests/accel/accel_fixture.h"
 
 namespace twinray {

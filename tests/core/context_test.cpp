@@ -8,6 +8,7 @@
 #include "engine/core/error.h"
 #include "engine/core/vma.h"
 #include <twinray/tlas.h>
+#include "engine/core/vulkan.h"
 #include "tests/scene/temp_dir.h"
 #include "tests/support/device.h"
 

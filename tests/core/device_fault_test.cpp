@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What the error of a lost device says of VK_EXT_device_fault: no driver here has it, so that structs stand in.
 #include "engine/core/device_fault.h"
+#include "engine/core/vulkan.h"
 
 #include <gtest/gtest.h>
 
@@ -56,7 +57,7 @@ VkResult VKAPI_PTR fault_info(VkDevice, VkDeviceFaultCountsEXT* counts, VkDevice
 }
 
 TEST(DeviceFault, IsAskedForWhereTheDeviceHasIt) {
-    VulkanFunctions vk;
+    VulkanTable vk;
     EXPECT_EQ(sentence(query_device_fault(vk, VK_NULL_HANDLE)), "");
     vk.vkGetDeviceFaultInfoEXT = fault_info;
     EXPECT_EQ(sentence(query_device_fault(vk, VK_NULL_HANDLE)),

@@ -8,6 +8,7 @@
 
 #include "engine/core/commands.h"
 #include "engine/core/error.h"
+#include "engine/core/vulkan.h"
 #include "tests/core/host_device.h"
 #include "tests/support/device.h"
 #include "validation/faults/fault_injection.h"

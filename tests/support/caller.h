@@ -4,6 +4,7 @@
 
 #include "engine/core/commands.h"
 #include "engine/core/error.h"
+#include "engine/core/vulkan.h"
 
 namespace twinray::test {
 
@@ -75,7 +76,7 @@ class Caller {
 
   private:
     Context& context_;
-    const VulkanFunctions& vk_;
+    const VulkanTable& vk_;
     VkQueue queue_ = VK_NULL_HANDLE;
     VkSemaphore timeline_ = VK_NULL_HANDLE;
     VkCommandPool pool_ = VK_NULL_HANDLE;

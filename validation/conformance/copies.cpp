@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "engine/core/error.h"
+#include "engine/core/vulkan.h"
 #include "validation/conformance/case_run.h"
 #include "validation/conformance/suite.h"
 

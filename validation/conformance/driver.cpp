@@ -8,6 +8,7 @@
 #include "conformance_query_culling.spv.h"
 #include "engine/core/buffer.h"
 #include "engine/core/error.h"
+#include "engine/core/vulkan.h"
 
 namespace twinray::conformance {
 namespace {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Copies of structures, and structures as bytes.
 #include "engine/core/buffer.h"
+#include "engine/core/vulkan.h"
 #include "validation/conformance/driver.h"
 
 namespace twinray::conformance {
@@ -13,7 +14,7 @@ constexpr std::uint64_t serialized_alignment = 256;  // of the address that Vulk
 }  // namespace
 
 std::uint64_t Driver::property(const AccelerationStructure& structure, VkQueryType type) {
-    const VulkanFunctions& vk = context_.state().vk();
+    const VulkanTable& vk = context_.state().vk();
     const Buffer result(context_, {.name = "conformance property", .bytes = sizeof(std::uint64_t)});
     VkQueryPoolCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <utility>
 
-#include "engine/core/vulkan_functions.h"
+#include <vulkan/vulkan_core.h>
 
 namespace twinray::faults {
 

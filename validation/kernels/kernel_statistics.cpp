@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "engine/core/error.h"
+#include "engine/core/vulkan.h"
 
 namespace twinray {
 namespace {

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "validation/suite/inputs.h"
+#include "engine/core/vulkan.h"
 #include "validation/suite/scenes.h"
 #include "engine/core/context.h"
 #include <twinray/geometry.h>

@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: MIT
-#include "engine/core/vulkan_functions.h"
+#include "engine/core/vulkan.h"
 
 #include <dlfcn.h>
 
 #include <algorithm>
 #include <cstdint>
+#include <mutex>
 #include <string_view>
 #include <vector>
 
 #include "engine/core/error.h"
+
+#define VOLK_IMPLEMENTATION
+#include <volk.h>
 
 namespace twinray {
 namespace {
@@ -20,7 +24,7 @@ PFN_vkGetInstanceProcAddr open_system_loader() {
     return reinterpret_cast<PFN_vkGetInstanceProcAddr>(dlsym(loader, "vkGetInstanceProcAddr"));
 }
 
-std::vector<VkLayerProperties> installed_layers(const VulkanFunctions& vk) {
+std::vector<VkLayerProperties> installed_layers(const VulkanTable& vk) {
     if (!vk.vkEnumerateInstanceLayerProperties) return {};  // a host's lookup may know its own instance only
     std::uint32_t count = 0;
     vk.vkEnumerateInstanceLayerProperties(&count, nullptr);
@@ -32,17 +36,16 @@ std::vector<VkLayerProperties> installed_layers(const VulkanFunctions& vk) {
 
 }  // namespace
 
-void VulkanFunctions::load_global(PFN_vkGetInstanceProcAddr get_instance_proc_addr) {
+void VulkanTable::load_global(PFN_vkGetInstanceProcAddr get_instance_proc_addr) {
     vkGetInstanceProcAddr = get_instance_proc_addr ? get_instance_proc_addr : open_system_loader();
-#define TWINRAY_LOAD(name) name = reinterpret_cast<PFN_##name>(vkGetInstanceProcAddr(nullptr, #name));
-    TWINRAY_GLOBAL_FUNCTIONS(TWINRAY_LOAD)
-#undef TWINRAY_LOAD
+    vkCreateInstance = reinterpret_cast<PFN_vkCreateInstance>(vkGetInstanceProcAddr(nullptr, "vkCreateInstance"));
+    vkEnumerateInstanceLayerProperties = reinterpret_cast<PFN_vkEnumerateInstanceLayerProperties>(
+        vkGetInstanceProcAddr(nullptr, "vkEnumerateInstanceLayerProperties"));
 }
 
-void VulkanFunctions::load_instance(VkInstance instance) {
+void VulkanTable::load_instance(VkInstance instance) {
 #define TWINRAY_LOAD(name) name = reinterpret_cast<PFN_##name>(vkGetInstanceProcAddr(instance, #name));
     TWINRAY_INSTANCE_FUNCTIONS(TWINRAY_LOAD)
-    TWINRAY_DEBUG_FUNCTIONS(TWINRAY_LOAD)
 #undef TWINRAY_LOAD
     if (!vkCmdBeginDebugUtilsLabelEXT || labels_are_safe(installed_layers(*this))) return;
     vkCmdBeginDebugUtilsLabelEXT = nullptr;
@@ -56,14 +59,12 @@ bool labels_are_safe(std::span<const VkLayerProperties> layers) {
     });
 }
 
-void VulkanFunctions::load_device(VkDevice device) {
-#define TWINRAY_LOAD(name) name = reinterpret_cast<PFN_##name>(vkGetDeviceProcAddr(device, #name));
-    TWINRAY_DEVICE_FUNCTIONS(TWINRAY_LOAD)
-    TWINRAY_STATISTICS_FUNCTIONS(TWINRAY_LOAD)
-    TWINRAY_EXTERNAL_FUNCTIONS(TWINRAY_LOAD)
-    TWINRAY_FAULT_FUNCTIONS(TWINRAY_LOAD)
-    TWINRAY_RAY_TRACING_FUNCTIONS(TWINRAY_LOAD)
-#undef TWINRAY_LOAD
+// volk looks functions up by a global of its own, which contexts take turns to set.
+void VulkanTable::load_device(VkDevice device) {
+    static std::mutex mutex;
+    const std::lock_guard lock(mutex);
+    ::vkGetDeviceProcAddr = vkGetDeviceProcAddr;
+    volkLoadDeviceTable(this, device);
 }
 
 void vk_check(VkResult result, const char* action) {

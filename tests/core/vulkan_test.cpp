@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/core/vulkan_functions.h"
+#include "engine/core/vulkan.h"
 
 #include <gtest/gtest.h>
 

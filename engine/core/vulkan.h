@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// The Vulkan functions of one device. The library calls no global vk* function, and its copy of volk is its own, so
+// that a host may link the Vulkan loader, volk or another copy beside it.
+#pragma once
+
+#include <volk.h>
+
+#include <span>
+
+// No device knows these: volk has them among its globals alone.
+#define TWINRAY_INSTANCE_FUNCTIONS(F)           \
+    F(vkDestroyInstance)                        \
+    F(vkEnumeratePhysicalDevices)               \
+    F(vkEnumerateDeviceExtensionProperties)     \
+    F(vkGetPhysicalDeviceProperties2)           \
+    F(vkGetPhysicalDeviceFeatures2)             \
+    F(vkGetPhysicalDeviceQueueFamilyProperties) \
+    F(vkGetPhysicalDeviceMemoryProperties)      \
+    F(vkGetPhysicalDeviceFormatProperties)      \
+    F(vkCreateDevice)                           \
+    F(vkGetDeviceProcAddr)                      \
+    F(vkCreateDebugUtilsMessengerEXT)           \
+    F(vkDestroyDebugUtilsMessengerEXT)          \
+    F(vkSetDebugUtilsObjectNameEXT)             \
+    F(vkCmdBeginDebugUtilsLabelEXT)             \
+    F(vkCmdEndDebugUtilsLabelEXT)
+
+namespace twinray {
+
+// Filled from one vkGetInstanceProcAddr; a function of an extension that is not enabled stays null.
+struct VulkanTable : VolkDeviceTable {
+    PFN_vkGetInstanceProcAddr vkGetInstanceProcAddr = nullptr;
+    PFN_vkCreateInstance vkCreateInstance = nullptr;
+    PFN_vkEnumerateInstanceLayerProperties vkEnumerateInstanceLayerProperties = nullptr;
+#define TWINRAY_MEMBER(name) PFN_##name name = nullptr;
+    TWINRAY_INSTANCE_FUNCTIONS(TWINRAY_MEMBER)
+#undef TWINRAY_MEMBER
+
+    VulkanTable() : VolkDeviceTable{} {}
+
+    // get_instance_proc_addr null: opens the system's Vulkan loader. Throws Error if there is none.
+    void load_global(PFN_vkGetInstanceProcAddr get_instance_proc_addr);
+    // Without debug labels where an installed validation layer would crash by them: see labels_are_safe.
+    void load_instance(VkInstance instance);
+    void load_device(VkDevice device);
+};
+
+// False where one of the layers is the Khronos validation layer of before 1.3.243. It forgets the labels of a destroyed
+// command buffer on a thread of its own without its lock, by the handle, which a new command buffer may have by then:
+// the heap is corrupted, seldom (issue 5172 of Vulkan-ValidationLayers).
+bool labels_are_safe(std::span<const VkLayerProperties> layers);
+
+// Throws Error naming the action and the VkResult unless result is VK_SUCCESS.
+void vk_check(VkResult result, const char* action);
+const char* name_of(VkResult result);
+
+}  // namespace twinray
