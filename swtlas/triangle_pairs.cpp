@@ -146,7 +146,7 @@ class Window {
     std::array<std::uint64_t, 3> with_left_{};  // those without a partner, a bit each, by how many neighbours are left
 };
 
-// Of each triangle the other one of its leaf, or itself.
+// A partner for each triangle: the other one of its leaf, or itself.
 class Partners {
   public:
     Partners(std::span<const vec3> positions, std::span<const uvec3> triangles)

@@ -10,7 +10,7 @@ namespace {
 
 using Bits = std::array<std::uint32_t, 3>;
 
-// Of positions that differ, each with its number, by linear probing: at most half of the slots are taken.
+// A hash table from positions to their numbers, with linear probing: at most half of the slots are taken.
 class Numbers {
   public:
     explicit Numbers(std::size_t most) : slots_(std::bit_ceil(2 * most + 1), NOTHING) {}

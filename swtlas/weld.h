@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Welds the vertices of a mesh that lie at one place, for the copy of positions that a tree keeps.
 #pragma once
 
 #include <span>

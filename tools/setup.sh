@@ -14,8 +14,9 @@
 set -euo pipefail
 
 demo_packages=(
-    g++ cmake ninja-build libvulkan-dev libvulkan-memory-allocator-dev libvulkan-volk-dev mesa-vulkan-drivers glslang-tools spirv-tools
-    libglm-dev libtinygltf-dev libstb-dev nlohmann-json3-dev libcli11-dev libopenexr-dev zlib1g-dev
+    g++ cmake ninja-build libvulkan-dev libvulkan-memory-allocator-dev libvulkan-volk-dev
+    mesa-vulkan-drivers glslang-tools spirv-tools libglm-dev
+    libtinygltf-dev libstb-dev nlohmann-json3-dev libcli11-dev libopenexr-dev zlib1g-dev
 )
 packages=(
     "${demo_packages[@]}" pkg-config python3-minimal python3-venv python3-dev vulkan-tools

@@ -210,6 +210,7 @@ class AccelBackend {
     bool is_sync_done() const { return context_.is_reached(synced_); }
     // False: the host answers, and neither reads vertices in device memory nor measures costs.
     virtual bool works_on_device() const { return true; }
+    // On the device, whether their vertices move or not.
     bool keeps_meshes() const { return refinement_ || options_.keeps_surfaces; }
     // What closest_hits() and any_hits() do.
     virtual std::vector<Hit> trace_host(std::span<const Ray> rays, TraceDesc desc);
@@ -305,7 +306,6 @@ class AccelBackend {
     std::vector<InstanceSlice*> slices_to_stage();
     void stage_vertices(Commands& commands, Staged& staged);
     void stage_surfaces(Commands& commands, Staged& staged);
-    // On the device, whether their vertices move or not.
     void stage_sources(Commands& commands, Staged& staged);
     static PackedMesh kept_mesh(const HeldGeometry& held, const Staged& staged);
     bool lacks_mesh(const HeldGeometry& held) const;

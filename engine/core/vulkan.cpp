@@ -59,7 +59,7 @@ bool labels_are_safe(std::span<const VkLayerProperties> layers) {
     });
 }
 
-// volk looks functions up by a global of its own, which contexts take turns to set.
+// volk looks functions up by a global of its own, which only one context at a time may set.
 void VulkanTable::load_device(VkDevice device) {
     static std::mutex mutex;
     const std::lock_guard lock(mutex);

@@ -47,7 +47,7 @@ struct VulkanTable : VolkDeviceTable {
 
 // False where one of the layers is the Khronos validation layer of before 1.3.243. It forgets the labels of a destroyed
 // command buffer on a thread of its own without its lock, by the handle, which a new command buffer may have by then:
-// the heap is corrupted, seldom (issue 5172 of Vulkan-ValidationLayers).
+// the heap is corrupted, seldom (KhronosGroup/Vulkan-ValidationLayers, 5172).
 bool labels_are_safe(std::span<const VkLayerProperties> layers);
 
 // Throws Error naming the action and the VkResult unless result is VK_SUCCESS.

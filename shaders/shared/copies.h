@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the kernels that copy take.
+// The arguments of kernels that copy an array.
 #ifndef TWINRAY_SHARED_COPIES_H
 #define TWINRAY_SHARED_COPIES_H
 

@@ -71,10 +71,4 @@ FUNC bool seen_occludes(INOUT(SeenTriangle) seen, RaySpace space, vec2 ends, INO
     }
     return is_met && is_within;
 }
-FUNC bool triangle_occludes(vec3 v0, vec3 v1, vec3 v2, RaySpace space, vec2 ends, INOUT(uint) sign_of_t,
-                            INOUT(bool) along)
-{
-    SeenTriangle seen = seen_triangle(v0, v1, v2, space);
-    return seen_occludes(seen, space, ends, sign_of_t, along);
-}
 #endif

@@ -45,15 +45,19 @@ struct Counts {
     std::size_t met = 0, decided = 0, faults = 0;
 };
 
-// Calls triangle_occludes() and tells it the sign of t where it asks.
+// Calls seen_occludes() and tells it the sign of t where it asks.
 bool occludes(const std::array<vec3, 3>& corners, const RaySpace& space, vec2 ends, bool& along) {
-    const auto& [a, b, c] = corners;
+    const vec3 a = corners[0], b = corners[1], c = corners[2];
     uint sign_of_t = SIGN_UNASKED;
-    const bool is_found = triangle_occludes(a, b, c, space, ends, sign_of_t, along);
+    const auto is_seen_to_occlude = [&] {
+        SeenTriangle seen = seen_triangle(a, b, c, space);
+        return seen_occludes(seen, space, ends, sign_of_t, along);
+    };
+    const bool is_found = is_seen_to_occlude();
     if (!is_sign_asked(sign_of_t)) return is_found;
     EXPECT_FALSE(is_found);
     sign_of_t = told_sign(a, b, c, space.origin, sign_of_t);
-    return sign_of_t != SIGN_UNASKED && triangle_occludes(a, b, c, space, ends, sign_of_t, along);
+    return sign_of_t != SIGN_UNASKED && is_seen_to_occlude();
 }
 
 void compare(const Case& made, float t_min, float t_max, Counts& counts) {

@@ -154,11 +154,13 @@ TEST(PlaneSide, GivesTItsSign) {
         bool along = false;
         uint of_occluder = SIGN_UNASKED;
         const vec2 ends(0, INFINITY);
-        bool occludes = triangle_occludes(corners[0], corners[1], corners[2], space, ends, of_occluder, along);
+        const auto is_seen_to_occlude = [&](uint& sign) {
+            SeenTriangle occluder = seen_triangle(corners[0], corners[1], corners[2], space);
+            return seen_occludes(occluder, space, ends, sign, along);
+        };
+        bool occludes = is_seen_to_occlude(of_occluder);
         EXPECT_EQ(is_sign_asked(of_occluder), asks) << i;
-        if (asks)
-            occludes = sign_of_t != SIGN_UNASKED &&
-                       triangle_occludes(corners[0], corners[1], corners[2], space, ends, sign_of_t, along);
+        if (asks) occludes = sign_of_t != SIGN_UNASKED && is_seen_to_occlude(sign_of_t);
         EXPECT_EQ(occludes, is_ahead) << i;
         const SeenTriangle seen = seen_triangle(corners[0], corners[1], corners[2], space);
         rounded_wrong += (twinray::crossing(seen.a, seen.b, seen.c, space.shear_z).t > 0) != is_ahead;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Makes meshes whose vertices are there twice.
 #pragma once
 
 #include "engine/scene/mesh.h"

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Scenes of triangle meshes, with the names, shapes and dtypes of Open3D's ``RaycastingScene``."""
+"""Scenes of triangle meshes, with the names, shapes and dtypes of Open3D's ``RaycastingScene``.
+
+One file, since it is one class, half of which are docstrings.
+"""
 
 from __future__ import annotations
 
