@@ -152,6 +152,12 @@ HwBackend::Built HwBackend::compact_geometries(Commands& commands, std::span<con
     return built;
 }
 
+twinray::TlasInput HwBackend::builder_input(const TlasInput& input) const {
+    twinray::TlasInput builders{input.records, input.count, input.bound, input.cost, {}};
+    if (input.sole) builders.sole = {input.sole->record, HwBuiltGeometry::of(&input.sole->geometry)->block(context())};
+    return builders;
+}
+
 std::unique_ptr<AccelBackend::BuiltTlas> HwBackend::build_tlas(Commands& commands, const TlasInput& input,
                                                                const BuiltTlas* current) {
     const auto* level = static_cast<const HwTopLevel*>(current);
@@ -161,19 +167,16 @@ std::unique_ptr<AccelBackend::BuiltTlas> HwBackend::build_tlas(Commands& command
         made = std::make_unique<HwTopLevel>(tlas_builder_.make(commands, capacity, input.header));
         level = made.get();
     }
-    tlas_builder_.record_build(commands, level->tlas, {input.records, input.count, input.bound, input.cost},
-                               input.will_move);
+    tlas_builder_.record_build(commands, level->tlas, builder_input(input), input.will_move);
     return made;
 }
 
 void HwBackend::measure_tlas(Commands& commands, const TlasInput& input, const BuiltTlas& current) const {
-    tlas_builder_.record_measure(commands, static_cast<const HwTopLevel&>(current).tlas,
-                                 {input.records, input.count, input.bound, input.cost});
+    tlas_builder_.record_measure(commands, static_cast<const HwTopLevel&>(current).tlas, builder_input(input));
 }
 
 void HwBackend::refit_tlas(Commands& commands, const TlasInput& input, const BuiltTlas& current) {
-    tlas_builder_.record_update(commands, static_cast<const HwTopLevel&>(current).tlas,
-                                {input.records, input.count, input.bound, input.cost});
+    tlas_builder_.record_update(commands, static_cast<const HwTopLevel&>(current).tlas, builder_input(input));
 }
 
 }  // namespace twinray

@@ -41,6 +41,7 @@ class HwBackend final : public AccelBackend {
     struct HwBuiltGeometry;
     struct HwTopLevel;
     void build_still(Commands& commands, std::span<const GeometryInput> inputs, Built& built);
+    twinray::TlasInput builder_input(const TlasInput& input) const;
     MovingMesh prepare_moving(const GeometryInput& input, std::unique_ptr<BuiltGeometry>& built) const;
 
     bool reorder_;

@@ -35,9 +35,14 @@ StructureBuild build_of(std::uint64_t driver_records, std::size_t count, bool ca
     return build;
 }
 
-HwGatherArgs gather_args(const Tlas& tlas, const TlasInput& input, Uints order) {
-    return {input.records, order, tlas.driver_records.ref<InstanceRecord>(), tlas.instances.ref<HwInstance>(),
-            input.count,   0};
+// As the kernel writes it that gathers many.
+void write_sole(Commands& commands, const Tlas& tlas, const SoleInstance& sole) {
+    const auto pass = commands.pass("hwtlas instance");
+    InstanceRecord record = sole.record;
+    record.geometry = sole.geometry.blas;
+    record.sbt_offset_flags |= sole.geometry.kind;
+    commands.write(tlas.driver_records, record);
+    if (tlas.instances.bytes()) commands.write(tlas.instances, HwInstance{sole.geometry.triangles, 0, 0});
 }
 
 KernelDesc stage(const char* name, std::span<const std::uint32_t> spirv) {
@@ -119,8 +124,16 @@ void TlasBuilder::record_measure(Commands& commands, const Tlas& tlas, const Tla
     record_areas(commands, tlas, input, true);
 }
 
+void TlasBuilder::record_instances(Commands& commands, const Tlas& tlas, const TlasInput& input, Uints order) const {
+    if (input.sole) return write_sole(commands, tlas, *input.sole);
+    gather_.dispatch(commands,
+                     {input.records, order, tlas.driver_records.ref<InstanceRecord>(), tlas.instances.ref<HwInstance>(),
+                      input.count, 0},
+                     input.count);
+}
+
 void TlasBuilder::record_build(Commands& commands, const Tlas& tlas, const TlasInput& input, bool can_update) const {
-    gather_.dispatch(commands, gather_args(tlas, input, record_order(commands, input)), input.count);
+    record_instances(commands, tlas, input, record_order(commands, input));
     record_areas(commands, tlas, input, true);
     const StructureWork work{build_of(tlas.driver_records.address(), input.count, can_update), BuildMode::build,
                              &tlas.structure};
@@ -128,7 +141,7 @@ void TlasBuilder::record_build(Commands& commands, const Tlas& tlas, const TlasI
 }
 
 void TlasBuilder::record_update(Commands& commands, const Tlas& tlas, const TlasInput& input) const {
-    gather_.dispatch(commands, gather_args(tlas, input, {}), input.count);
+    record_instances(commands, tlas, input, {});
     record_areas(commands, tlas, input, false);
     const StructureWork work{build_of(tlas.driver_records.address(), input.count, true), BuildMode::update,
                              &tlas.structure};

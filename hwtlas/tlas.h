@@ -2,6 +2,8 @@
 // The top level of HwTlas.
 #pragma once
 
+#include <optional>
+
 #include <twinray/abstract_accel.h>
 #include "engine/core/kernel.h"
 #include "engine/core/radix_sort.h"
@@ -24,11 +26,18 @@ struct Tlas {
     std::uint64_t scratch_bytes() const { return driver_records.bytes() + scratch.bytes(); }
 };
 
+// A record in built units, and the block of its geometry.
+struct SoleInstance {
+    InstanceRecord record;
+    HwGeometry geometry;
+};
+
 struct TlasInput {
     Ref<InstanceRecord> records;
     uint count = 0;
     BoundOfSync* bound = nullptr;  // never null
     CostTarget cost;
+    std::optional<SoleInstance> sole;  // of a scene of one instance that the host knows
 };
 
 // Makes and builds top levels.
@@ -52,6 +61,7 @@ class TlasBuilder {
     };
     Sizes sizes(std::size_t capacity) const;
     Uints record_order(Commands& commands, const TlasInput& input) const;
+    void record_instances(Commands& commands, const Tlas& tlas, const TlasInput& input, Uints order) const;
     void record_areas(Commands& commands, const Tlas& tlas, const TlasInput& input, bool is_build) const;
 
     Context& context_;

@@ -156,6 +156,11 @@ class AccelBackend {
         std::uint64_t scratch_bytes = 0;  // kept with it
         std::size_t capacity = 0;         // instances that it has room for
     };
+    // The one instance of a scene whose record no kernel may have written, and which can be hit.
+    struct SoleInstance {
+        InstanceRecord record;  // in built units
+        const BuiltGeometry& geometry;
+    };
     // What to build the top level from, all on the device by the time it runs.
     struct TlasInput {
         Ref<InstanceRecord> records;
@@ -164,6 +169,7 @@ class AccelBackend {
         bool will_move = false;        // refits may follow
         CostTarget cost = {};          // as in GeometryInput
         AccelHeader header = {};       // what the top level begins with
+        std::optional<SoleInstance> sole = {};
     };
     static constexpr std::uint64_t geometry_block_bytes = GEOMETRY_SOURCE_OFFSET + sizeof(GeometrySource);
     static constexpr double default_rebuild_ratio = 1.5;
@@ -311,6 +317,7 @@ class AccelBackend {
     bool lacks_mesh(const HeldGeometry& held) const;
     void stage_geometries(Commands& commands, Staged& staged);
     void stage_scene(Commands& commands, Staged& staged, BoundOfSync& bound);
+    std::optional<SoleInstance> sole_instance(const Staged& staged) const;
     void measure_bound() const;
     void commit(Staged&& staged, SyncPoint done);
     enum class Wait : std::uint8_t { no, yes };

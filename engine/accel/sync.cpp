@@ -156,7 +156,8 @@ void AccelBackend::stage_scene(Commands& commands, Staged& staged, BoundOfSync& 
                           staged.has_moved,
                           staged.has_moved ? scene_costs_.target() : CostTarget{},
                           {surfaces_ ? surfaces_->table().address : context_.absent(),
-                           refinement_ ? refinement_->scene().address : context_.absent()}};
+                           refinement_ ? refinement_->scene().address : context_.absent()},
+                          sole_instance(staged)};
     if (refinement_) staged.refinement = refinement_->stage(commands, input.records, input.count, bound.on_device());
     if (surfaces_ && dirty_ == Dirty::structure) stage_surfaces(commands, staged);
     staged.is_scene_built = must_build({.is_built = scene_ != nullptr,
@@ -170,6 +171,19 @@ void AccelBackend::stage_scene(Commands& commands, Staged& staged, BoundOfSync& 
         staged.scene = build_tlas(commands, input, scene_.get());
     else
         refit_tlas(commands, input, *scene_);
+}
+
+std::optional<AccelBackend::SoleInstance> AccelBackend::sole_instance(const Staged& staged) const {
+    if (pushed_.size() != 1 || instance_count_ != 1) return {};
+    const auto& [held, instances] = pushed_.begin()->second;
+    if (instances.device_wrote || instances.incoming.address) return {};
+    const auto found = std::ranges::find(staged.building, held.get());
+    const BuiltGeometry* built =
+        found == staged.building.end() ? held->built.get() : staged.built[found - staged.building.begin()].get();
+    InstanceRecord record = instances.records.front();
+    record.object_to_world = scaled_map(record.object_to_world, held->geometry.scale);
+    if (!built || !is_usable(record.object_to_world, inverse_of(record.object_to_world))) return {};
+    return SoleInstance{record, *built};
 }
 
 void AccelBackend::stage_surfaces(Commands& commands, Staged& staged) {

@@ -77,6 +77,27 @@ TEST_P(LeftOut, TheBoundIsThatOfTheLastSync) {
     EXPECT_EQ(accel().world_bound().hi.z, 7.0f);
 }
 
+TEST_P(LeftOut, TheKernelThatGathersInstancesUntilAKernelHasWrittenTheOneThatThereIs) {
+    const auto height = [&] { return 10.0f - closest(test::down(0.5f, 0.25f)).t; };
+    const AccelHandle handle = accel().push(square(1));
+    EXPECT_EQ(height(), 1.0f);
+    EXPECT_FALSE(has_pass("hwtlas_gather_instances"));
+    accel().update_transform(handle, Transform::translation({0, 0, 2}));
+    EXPECT_EQ(height(), 3.0f) << "the host has moved it";
+    EXPECT_FALSE(has_pass("hwtlas_gather_instances"));
+    const InstanceRange range = accel().instance_buffer(handle);
+    const Transform up = Transform::translation({0, 0, 4});
+    Commands commands(context(), "move");
+    {
+        const auto pass = commands.pass("move");
+        context().state().vk().vkCmdUpdateBuffer(commands.handle(), range.buffer, range.offset, sizeof up, &up);
+    }
+    commands.submit();
+    accel().mark_transforms_dirty(handle);
+    EXPECT_EQ(height(), 5.0f) << "a kernel has";
+    EXPECT_EQ(has_pass("hwtlas_gather_instances"), !accel().is_software());
+}
+
 TEST_P(LeftOut, TheBoundUnlessAMeshOfOtherUnitsMakesATransformUnusable) {
     const AccelHandle handle = accel().push(square(0), Transform::scaling(vec3(1e20f)));
     accel().sync();
