@@ -6,8 +6,8 @@
 
 #include "cli/command/values.h"
 #include "engine/core/error.h"
-#include "validation/conformance/suite.h"
-#include "validation/suite/suite.h"
+#include "report/conformance/suite.h"
+#include "report/suite/suite.h"
 
 namespace twinray::cli {
 

@@ -11,7 +11,7 @@
 #include <twinray/scene.h>
 
 #include "cli/command/values.h"
-#include "validation/suite/suite.h"
+#include "report/suite/suite.h"
 #include "cli/coordinates.h"
 #include "engine/core/error.h"
 #include "engine/scene/local_origin.h"

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/common.h"
-#include "validation/report/compare_text.h"
+#include "report/page/compare_text.h"
 
 namespace twinray::cli {
 namespace {

@@ -10,7 +10,7 @@
 #include "cli/coordinates.h"
 #include "cli/query_points.h"
 #include "engine/core/error.h"
-#include "validation/picture/page.h"
+#include "viewer/picture/page.h"
 
 namespace twinray::cli {
 

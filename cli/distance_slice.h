@@ -7,7 +7,7 @@
 #include "cli/command/command.h"
 #include <twinray/scene.h>
 
-#include "validation/picture/slice_picture.h"
+#include "viewer/picture/slice_picture.h"
 
 namespace twinray::cli {
 

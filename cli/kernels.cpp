@@ -8,8 +8,8 @@
 #include "cli/commands.h"
 #include "cli/common.h"
 #include "engine/core/error.h"
-#include "validation/kernels/compile.h"
-#include "validation/kernels/family.h"
+#include "cli/kernels/compile.h"
+#include "cli/kernels/family.h"
 
 namespace twinray::cli {
 namespace {

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "cli/common.h"
-#include "validation/picture/marks.h"
-#include "validation/picture/page.h"
-#include "validation/picture/scene_picture.h"
+#include "viewer/picture/marks.h"
+#include "viewer/picture/page.h"
+#include "viewer/picture/scene_picture.h"
 
 namespace twinray::cli {
 

@@ -14,9 +14,9 @@
 #include "twinray_version.h"
 #include "validation/records/recorder.h"
 #include "validation/reference/float_probe.h"
-#include "validation/report/ci_formats.h"
-#include "validation/report/summary.h"
-#include "validation/suite/devices.h"
+#include "report/page/ci_formats.h"
+#include "report/page/summary.h"
+#include "report/suite/devices.h"
 
 namespace twinray::cli {
 namespace {

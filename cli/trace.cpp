@@ -17,7 +17,7 @@
 #include <twinray/queries.h>
 #include "engine/core/error.h"
 #include "engine/core/files.h"
-#include "validation/picture/ray_picture.h"
+#include "viewer/picture/ray_picture.h"
 #include "validation/records/progress.h"
 
 namespace twinray::cli {

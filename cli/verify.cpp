@@ -14,14 +14,14 @@
 #include "engine/core/error.h"
 #include "twinray_version.h"
 #include "validation/exact/exact_reference.h"
-#include "validation/replay/scene_file.h"
-#include "validation/replay/show.h"
-#include "validation/reproducer/write.h"
+#include "report/replay/scene_file.h"
+#include "report/replay/show.h"
+#include "report/reproducer/write.h"
 #include "validation/verify/output.h"
 #include "validation/records/progress.h"
 #include "validation/reference/aimed_rays.h"
 #include <twinray/tlas.h>
-#include "validation/replay/write_faults.h"
+#include "report/replay/write_faults.h"
 
 namespace twinray::cli {
 namespace {

@@ -10,7 +10,7 @@
 #include "cli/qualified_devices.h"
 #include "engine/core/error.h"
 #include "twinray_version.h"
-#include "validation/conformance/output.h"
+#include "report/conformance/output.h"
 #include "validation/records/temporary_folder.h"
 
 namespace twinray::cli {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "cli/common.h"
-#include "validation/conformance/suite.h"
+#include "report/conformance/suite.h"
 
 namespace twinray::cli {
 

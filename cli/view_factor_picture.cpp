@@ -7,7 +7,7 @@
 
 #include "cli/command/values.h"
 #include "engine/core/error.h"
-#include "validation/picture/matrix_picture.h"
+#include "viewer/picture/matrix_picture.h"
 
 namespace twinray::cli {
 namespace {

@@ -2,14 +2,14 @@
 # SPDX-License-Identifier: MIT
 """Checks that no decision rests on an absolute epsilon. Every small number (below 1/64) and every name like "eps" in shaders
 and sources must stand in tools/small_numbers.txt, which says what it is a factor of and where it comes from. The settings of
-the cases in validation/suite are no decisions and are left out.
+the cases in report/suite are no decisions and are left out.
 Usage: check_epsilons.py [ROOT]; prints file:line of each number without a reason and exits with 1."""
 import pathlib
 import re
 import sys
 
 root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).resolve().parent.parent)
-FOLDERS = ["include", "shaders", "engine", "swtlas", "hwtlas", "samples", "validation/reference", "validation/leaks"]
+FOLDERS = ["include", "shaders", "engine", "swtlas", "hwtlas", "renderer", "samples", "validation/reference", "validation/leaks"]
 SUFFIXES = {".h", ".cpp", ".glsl", ".comp", ".rgen", ".rmiss", ".rchit", ".rahit", ".rint", ".vert", ".frag"}
 LIMIT = 1 / 64
 LITERAL = re.compile(r"(?<![\w.])(0[xX][0-9a-fA-F.]+[pP][+-]?\d+|(?:\d+\.\d*|\.\d+|\d+(?=[eE]))(?:[eE][+-]?\d+)?)(?=[fFlL]*\b|[fF]|\W)")

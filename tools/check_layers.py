@@ -9,12 +9,12 @@ import sys
 BASE = ["engine/core", "engine/scene", "engine/accel"]
 ENGINE = BASE + ["engine", "engine/analysis", "engine/collide", "engine/points"]
 PRODUCT = ENGINE + ["swtlas", "hwtlas"]
-# twinray::validation, then what the command and the tests link beside it.
 VALIDATION = ["validation/" + room for room in ("reference", "leaks", "records", "verify", "cpu_reference")]
-BESIDE = "conformance exact faults kernels picture replay report reproducer suite".split()
-CHECKS = VALIDATION + ["validation/" + room for room in BESIDE]
+REPORT = ["report/" + room for room in "conformance faults page replay reproducer suite".split()]
+CHECKS = VALIDATION + ["validation/exact"] + REPORT
 # See include alone.
-AS_HOSTS = ["samples", "bindings", "shaders/path_tracer", "shaders/embed_renderer", "shaders/particles"]
+AS_HOSTS = ["samples", "samples/support", "renderer", "bindings", "shaders/path_tracer", "shaders/embed_renderer",
+            "shaders/particles"]
 # Built alone, too: a header lies beside what includes it. One shows the structs of the engine.
 TUTORIALS, INSIDE = "samples/tutorials/", "samples/tutorials/10_inside_the_builder/"
 SEES = {  # besides itself, include and, unless AS_HOSTS, shaders/shared
@@ -27,16 +27,18 @@ SEES = {  # besides itself, include and, unless AS_HOSTS, shaders/shared
     "validation/reference": BASE + ["shaders/verify"], "validation/leaks": BASE + VALIDATION[:1],
     "validation/records": BASE + VALIDATION[:1], "validation/verify": PRODUCT + VALIDATION,
     "validation/cpu_reference": ENGINE + ["swtlas"], "validation/exact": BASE + VALIDATION[:1] + ["shaders/collide"],
-    "validation/conformance": PRODUCT + VALIDATION + ["shaders/conformance"],
-    "validation/suite": PRODUCT + CHECKS + ["shaders/suite", "shaders/path_tracer", "shaders/collide", "samples"],
-    "validation/replay": PRODUCT + CHECKS, "validation/report": BASE + CHECKS, "validation/picture": BASE,
-    "validation/reproducer": PRODUCT + CHECKS,
-    "validation/faults": BASE, "validation/kernels": PRODUCT + CHECKS + ["shaders/path_tracer", "samples"],
-    "viewer": PRODUCT + CHECKS + ["samples"],
-    "cli": PRODUCT + CHECKS + ["bench", "viewer"],
+    "report/conformance": PRODUCT + VALIDATION + ["shaders/conformance"],
+    "report/suite": PRODUCT + CHECKS + ["shaders/suite", "shaders/path_tracer", "shaders/collide", "renderer"],
+    "report/replay": PRODUCT + CHECKS, "report/page": BASE + CHECKS, "report/reproducer": PRODUCT + CHECKS,
+    "report/faults": BASE,
+    "renderer": ["shaders/path_tracer", "samples/support"], "samples/support": [],
+    "viewer": PRODUCT + CHECKS + ["viewer/picture", "renderer"], "viewer/picture": BASE,
+    "cli": PRODUCT + CHECKS + ["bench", "viewer", "viewer/picture", "renderer", "shaders/path_tracer"],
     "bindings": [],
-    "samples": ["shaders/path_tracer", "shaders/embed_renderer", "shaders/particles"],
-    "bench": PRODUCT + VALIDATION, "tests": PRODUCT + CHECKS + ["shaders/scene", "cli", "samples", "bench", "viewer"],
+    "samples": ["shaders/path_tracer", "shaders/embed_renderer", "shaders/particles", "renderer", "samples/support"],
+    "bench": PRODUCT + VALIDATION,
+    "tests": PRODUCT + CHECKS + ["shaders/scene", "cli", "samples", "samples/support", "renderer", "bench", "viewer",
+                                 "viewer/picture"],
     "shaders/path_tracer": [], "shaders/particles": [], "shaders/embed_renderer": ["shaders/path_tracer"],
     "shaders/points": ["shaders/collide", "shaders/engine"],
     # Each other folder of shaders, but shaders/shared, which sees nothing else.
@@ -62,7 +64,9 @@ def file_of(root, target):
 
 def layer(path):
     parts = path.split("/")
-    return "/".join(parts[:2]) if parts[0] in ("engine", "shaders", "validation") and len(parts) > 2 else parts[0]
+    room = "/".join(parts[:2])
+    has_rooms = parts[0] in ("engine", "shaders", "validation", "report")
+    return room if len(parts) > 2 and (has_rooms or room in SEES) else parts[0]
 
 
 def violation(root, source, bracket, target):

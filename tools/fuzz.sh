@@ -19,12 +19,12 @@ declare -A readers=(
     [encodings]="engine/scene/bytes.cpp"
     [events]="viewer/events.cpp"
     [exr]="engine/scene/image_exr.cpp"
-    [film]="samples/path_tracer/film_file.cpp"
+    [film]="renderer/film_file.cpp"
     [gltf]="$(echo $importers/gltf*.cpp)"
     [hdr]="engine/scene/image.cpp"
     [image]="engine/scene/image.cpp"
-    [json]="validation/records/record_json.cpp validation/replay/replay.cpp validation/leaks/leak_state.cpp
-        validation/kernels/limits.cpp"
+    [json]="validation/records/record_json.cpp report/replay/replay.cpp validation/leaks/leak_state.cpp
+        cli/kernels/limits.cpp"
     [obj]="$(echo $importers/{obj,obj_file,obj_lines,mtl,polygon}.cpp)"
     [ply]="$(echo $importers/{ply,ply_header,polygon}.cpp)"
     [rays]="engine/scene/ray_file.cpp"

@@ -8,7 +8,7 @@
 #include <twinray/queries.h>
 
 #include "twinray/glsl/vector_math.h"
-#include "validation/picture/face_picture.h"
+#include "viewer/picture/face_picture.h"
 
 namespace twinray::viewer {
 namespace {

@@ -2,7 +2,7 @@
 // What analyses say of each face.
 #pragma once
 
-#include "validation/picture/marks.h"
+#include "viewer/picture/marks.h"
 #include "viewer/layers.h"
 #include "viewer/stage.h"
 

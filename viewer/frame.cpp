@@ -8,7 +8,7 @@
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
 #include "twinray/glsl/vector_math.h"
-#include "validation/picture/font.h"
+#include "viewer/picture/font.h"
 #include "viewer/face_values.h"
 #include "viewer/tree_lines.h"
 #include "viewer/viewer.h"

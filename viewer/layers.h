@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "validation/picture/raster.h"
-#include "validation/picture/value_scale.h"
+#include "viewer/picture/raster.h"
+#include "viewer/picture/value_scale.h"
 #include "viewer/state.h"
 
 namespace twinray::viewer {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "engine/core/parallel.h"
-#include "samples/path_tracer/camera.h"
+#include "renderer/camera.h"
 
 namespace twinray::viewer {
 namespace {

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <memory>
 
-#include "samples/path_tracer/lights.h"
-#include "samples/path_tracer/renderer.h"
-#include "samples/path_tracer/scene_upload.h"
-#include "validation/picture/raster.h"
+#include "renderer/lights.h"
+#include "renderer/renderer.h"
+#include "renderer/scene_upload.h"
+#include "viewer/picture/raster.h"
 #include "viewer/orbit.h"
 
 namespace twinray::viewer {

@@ -5,9 +5,9 @@
 #include <sstream>
 
 #include "twinray/glsl/vector_math.h"
-#include "validation/picture/face_picture.h"
-#include "validation/replay/explain.h"
-#include "validation/replay/scene_file.h"
+#include "viewer/picture/face_picture.h"
+#include "report/replay/explain.h"
+#include "report/replay/scene_file.h"
 
 namespace twinray::viewer {
 namespace {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "validation/replay/replay.h"
+#include "report/replay/replay.h"
 #include "viewer/stage.h"
 
 namespace twinray::viewer {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "validation/picture/raster.h"
+#include "viewer/picture/raster.h"
 #include "viewer/screen_device.h"
 
 namespace twinray::viewer {

@@ -4,7 +4,7 @@
 #include <chrono>
 
 #include "engine/core/error.h"
-#include "validation/suite/cpu_reference.h"
+#include "report/suite/cpu_reference.h"
 
 namespace twinray::viewer {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <twinray/scene.h>
 
-#include "validation/picture/color_map.h"
+#include "viewer/picture/color_map.h"
 
 namespace twinray::viewer {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "validation/cpu_reference/reference_scene.h"
-#include "validation/picture/marks.h"
+#include "viewer/picture/marks.h"
 
 namespace twinray::viewer {
 

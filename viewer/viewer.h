@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "validation/picture/face_picture.h"
-#include "validation/picture/marks.h"
+#include "viewer/picture/face_picture.h"
+#include "viewer/picture/marks.h"
 #include "viewer/events.h"
 #include "viewer/keys.h"
 #include "viewer/layers.h"

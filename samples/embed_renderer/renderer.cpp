@@ -14,7 +14,7 @@
 #include "embed_renderer_rays.spv.h"
 #include <twinray/geometry.h>
 #include <twinray/tlas.h>
-#include "samples/path_tracer/camera.h"
+#include "renderer/camera.h"
 #include "samples/support/text.h"
 
 namespace twinray::embed_renderer {

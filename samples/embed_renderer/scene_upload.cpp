@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "samples/path_tracer/surface_records.h"
+#include "renderer/surface_records.h"
 
 namespace twinray::embed_renderer {
 

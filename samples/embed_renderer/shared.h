@@ -2,7 +2,7 @@
 // The structs that the renderer shares with its shaders, for C++.
 #pragma once
 
-#include "samples/path_tracer/shared.h"
+#include "renderer/shared.h"
 
 namespace twinray::embed_renderer {
 using path_tracer::CameraRays;

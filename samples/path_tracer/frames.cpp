@@ -5,8 +5,8 @@
 
 #include <twinray/scene.h>
 
-#include "samples/path_tracer/camera.h"
-#include "samples/path_tracer/moving_scene.h"
+#include "renderer/camera.h"
+#include "renderer/moving_scene.h"
 #include "samples/path_tracer/report.h"
 #include "samples/support/text.h"
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "samples/path_tracer/options.h"
-#include "samples/path_tracer/ranks.h"
+#include "renderer/ranks.h"
 
 namespace twinray::path_tracer {
 

@@ -3,7 +3,7 @@
 
 #include <cstdio>
 
-#include "samples/path_tracer/film_file.h"
+#include "renderer/film_file.h"
 #include "samples/path_tracer/report.h"
 
 namespace twinray::path_tracer {

@@ -5,7 +5,7 @@
 
 #include <string_view>
 
-#include "samples/path_tracer/film_file.h"
+#include "renderer/film_file.h"
 
 namespace twinray::path_tracer {
 namespace {

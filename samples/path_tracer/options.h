@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "samples/path_tracer/sequence.h"
+#include "renderer/sequence.h"
 #include "samples/support/program.h"
 
 namespace twinray::path_tracer {

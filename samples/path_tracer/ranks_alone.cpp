@@ -2,7 +2,7 @@
 // Without MPI.
 #include <cstdlib>
 
-#include "samples/path_tracer/ranks.h"
+#include "renderer/ranks.h"
 #include "samples/support/text.h"
 
 namespace twinray::path_tracer {

@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-#include "samples/path_tracer/ranks.h"
+#include "renderer/ranks.h"
 
 namespace twinray::path_tracer {
 namespace {

@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "samples/path_tracer/display.h"
-#include "samples/path_tracer/film_file.h"
+#include "renderer/film_file.h"
 #include "samples/path_tracer/interrupts.h"
-#include "samples/path_tracer/layers.h"
-#include "samples/path_tracer/rounds.h"
+#include "renderer/layers.h"
+#include "renderer/rounds.h"
 #include "samples/support/progress.h"
 #include "samples/support/text.h"
 

@@ -2,7 +2,7 @@
 // Renders a film round by round until the options are content, and saves what is there to disk meanwhile.
 #pragma once
 
-#include "samples/path_tracer/ranks.h"
+#include "renderer/ranks.h"
 #include "samples/path_tracer/session.h"
 
 namespace twinray::path_tracer {

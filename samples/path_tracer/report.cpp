@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "samples/path_tracer/reference.h"
+#include "renderer/reference.h"
 #include "samples/support/text.h"
 
 namespace twinray::path_tracer {

@@ -7,8 +7,8 @@
 
 #include <twinray/validation.h>
 
-#include "samples/path_tracer/cross_check.h"
-#include "samples/path_tracer/moving_scene.h"
+#include "renderer/cross_check.h"
+#include "renderer/moving_scene.h"
 #include "samples/path_tracer/rendering.h"
 
 namespace twinray::path_tracer {

@@ -8,9 +8,9 @@
 #include <twinray/scene.h>
 #include <twinray/geometry.h>
 #include <twinray/tlas.h>
-#include "samples/path_tracer/camera.h"
-#include "samples/path_tracer/film_file.h"
-#include "samples/path_tracer/stopped_lights.h"
+#include "renderer/camera.h"
+#include "renderer/film_file.h"
+#include "renderer/stopped_lights.h"
 
 #include "samples/support/files.h"
 #include "samples/support/text.h"

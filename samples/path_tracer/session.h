@@ -5,10 +5,10 @@
 #include <memory>
 
 #include <twinray/tlas.h>
-#include "samples/path_tracer/configuration.h"
+#include "renderer/configuration.h"
 #include "samples/path_tracer/options.h"
-#include "samples/path_tracer/ranks.h"
-#include "samples/path_tracer/rounds.h"
+#include "renderer/ranks.h"
+#include "renderer/rounds.h"
 
 namespace twinray::path_tracer {
 

@@ -3,7 +3,7 @@
 #include <cstring>
 
 #include "tests/accel/surfaces_fixture.h"
-#include "validation/faults/fault_injection.h"
+#include "report/faults/fault_injection.h"
 
 namespace twinray {
 namespace {

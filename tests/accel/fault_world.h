@@ -8,7 +8,7 @@
 
 #include <twinray/abstract_accel.h>
 #include "tests/accel/accel_fixture.h"
-#include "validation/faults/fault_injection.h"
+#include "report/faults/fault_injection.h"
 
 namespace twinray {
 

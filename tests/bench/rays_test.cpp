@@ -11,7 +11,7 @@
 
 #include "validation/reference/aimed_rays.h"
 #include "validation/reference/reference_scene.h"
-#include "validation/suite/shapes.h"
+#include "report/suite/shapes.h"
 
 namespace twinray::bench {
 namespace {

@@ -11,7 +11,7 @@
 #include "engine/core/vulkan.h"
 #include "tests/core/host_device.h"
 #include "tests/support/device.h"
-#include "validation/faults/fault_injection.h"
+#include "report/faults/fault_injection.h"
 
 namespace twinray {
 namespace {

@@ -21,7 +21,7 @@ import code_blocks
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAMS = ("twinray", "path_tracer", "particles", "embed_renderer")
 OF_OTHERS = {"--fix", "--eliminate-dead-branches", "--freeze-spec-const", "--merge-return"}  # tools/lint.sh, spirv-opt
-FOLDERS_OF_TYPES = ("include", "engine", "swtlas", "hwtlas", "validation", "samples", "cli", "viewer", "bench")
+FOLDERS_OF_TYPES = "include engine swtlas hwtlas validation report renderer samples cli viewer bench".split()
 SOURCES = {".h", ".cpp"}
 TYPE = re.compile(r"\b(?:struct|class|namespace) ([A-Z]\w*)")
 SPAN = re.compile(r"`([^`]+)`")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "samples/path_tracer/film_file.h"
+#include "renderer/film_file.h"
 
 #include <cstring>
 

@@ -2,10 +2,10 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/fuzz/contract.h"
-#include "validation/kernels/limits.h"
+#include "cli/kernels/limits.h"
 #include "validation/leaks/leak_state.h"
 #include "validation/records/recorder.h"
-#include "validation/replay/replay.h"
+#include "report/replay/replay.h"
 
 namespace twinray::fuzz {
 

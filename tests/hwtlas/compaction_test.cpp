@@ -7,7 +7,7 @@
 #include <twinray/tlas.h>
 #include "tests/support/caller.h"
 #include "tests/support/device.h"
-#include "validation/faults/fault_injection.h"
+#include "report/faults/fault_injection.h"
 
 namespace twinray {
 namespace {

@@ -2,7 +2,7 @@
 // BSDFs, their samples and their integrals.
 #pragma once
 
-#include "samples/path_tracer/shared.h"
+#include "renderer/shared.h"
 
 namespace twinray::path_tracer {
 

@@ -7,9 +7,9 @@
 
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
-#include "samples/path_tracer/camera.h"
-#include "samples/path_tracer/lights.h"
-#include "samples/path_tracer/reference.h"
+#include "renderer/camera.h"
+#include "renderer/lights.h"
+#include "renderer/reference.h"
 
 namespace twinray::path_tracer {
 namespace {

@@ -8,7 +8,7 @@
 
 #include <twinray/scene.h>
 
-#include "samples/path_tracer/camera.h"
+#include "renderer/camera.h"
 
 namespace twinray::path_tracer {
 namespace {

@@ -6,7 +6,7 @@
 #include <twinray/geometry.h>
 #include <twinray/scene.h>
 
-#include "samples/path_tracer/material_kinds.h"
+#include "renderer/material_kinds.h"
 
 namespace twinray::path_tracer {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A scene that has moved is the scene as if it had been made so.
-#include "samples/path_tracer/moving_scene.h"
+#include "renderer/moving_scene.h"
 
 #include <cstring>
 #include <limits>

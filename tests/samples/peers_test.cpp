@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "samples/path_tracer/reference.h"
+#include "renderer/reference.h"
 #include "tests/samples/render.h"
 
 namespace twinray::path_tracer {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "samples/path_tracer/ranks.h"
+#include "renderer/ranks.h"
 
 #include <gtest/gtest.h>
 

@@ -10,8 +10,8 @@
 
 #include <twinray/geometry.h>
 #include <twinray/tlas.h>
-#include "samples/path_tracer/camera.h"
-#include "samples/path_tracer/cross_check.h"
+#include "renderer/camera.h"
+#include "renderer/cross_check.h"
 #include "tests/support/device.h"
 
 namespace twinray::path_tracer {

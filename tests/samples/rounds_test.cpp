@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Which samples come next, and what adaptive sampling does to the picture.
-#include "samples/path_tracer/rounds.h"
+#include "renderer/rounds.h"
 
 #include <algorithm>
 
 #include <gtest/gtest.h>
 
-#include "samples/path_tracer/renderer.h"
+#include "renderer/renderer.h"
 
 namespace twinray::path_tracer {
 namespace {

@@ -5,8 +5,8 @@
 #include <random>
 #include <set>
 
-#include "samples/path_tracer/alias_table.h"
-#include "samples/path_tracer/environment.h"
+#include "renderer/alias_table.h"
+#include "renderer/environment.h"
 
 namespace twinray::path_tracer {
 namespace {

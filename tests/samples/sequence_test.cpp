@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Which moment, view and file the pictures of a sequence have.
-#include "samples/path_tracer/sequence.h"
+#include "renderer/sequence.h"
 
 #include <cmath>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "samples/path_tracer/stopped_lights.h"
+#include "renderer/stopped_lights.h"
 
 #include <gtest/gtest.h>
 
 #include <twinray/geometry.h>
 #include <twinray/scene.h>
 
-#include "samples/path_tracer/material_kinds.h"
+#include "renderer/material_kinds.h"
 
 namespace twinray::path_tracer {
 namespace {

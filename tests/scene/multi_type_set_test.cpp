@@ -12,7 +12,7 @@
 #include "tests/scene/set_kernel_shared.h"
 #include "tests/support/caller.h"
 #include "tests/support/device.h"
-#include "validation/faults/fault_injection.h"
+#include "report/faults/fault_injection.h"
 
 namespace twinray {
 namespace {

@@ -7,7 +7,7 @@
 #include "test_soa_debug.spv.h"
 #include "tests/scene/set_kernel_shared.h"
 #include "tests/support/device.h"
-#include "validation/faults/fault_injection.h"
+#include "report/faults/fault_injection.h"
 
 namespace twinray {
 namespace {

@@ -13,7 +13,7 @@
 #include "test_texture_images.spv.h"
 #include "test_texture_images_debug.spv.h"
 #include "tests/support/device.h"
-#include "validation/faults/fault_injection.h"
+#include "report/faults/fault_injection.h"
 
 namespace twinray::test {
 #include "twinray/glsl/cpp_begin.h"

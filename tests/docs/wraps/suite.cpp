@@ -1,5 +1,5 @@
 #include "validation/reference/aimed_rays.h"
-#include "validation/suite/case_run.h"
+#include "report/suite/case_run.h"
 
 namespace twinray::suite {
 BLOCK

@@ -4,10 +4,10 @@
 
 #include <twinray/scene.h>
 
-#include "validation/suite/case_run.h"
+#include "report/suite/case_run.h"
 #include <twinray/geometry.h>
 #include "validation/leaks/inside_rays.h"
-#include "validation/suite/shapes.h"
+#include "report/suite/shapes.h"
 #include "tests/support/device.h"
 
 namespace twinray::suite {

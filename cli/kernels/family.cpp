@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+#include "cli/kernels/family.h"
+
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <optional>
+
+#include "engine/core/context.h"
+#include "engine/core/error.h"
+
+namespace twinray::kernels {
+namespace {
+
+constexpr const char* amd_shim = "libamdgpu_noop_drm_shim.so";
+constexpr const char* nvidia_shim = "libnouveau_noop_drm_shim.so";
+constexpr const char* qualcomm_shim = "libfreedreno_noop_drm_shim.so";
+
+constexpr Family families[] = {
+    {"navi10", "AMD RDNA 1", "RADV", "radeon_icd", amd_shim, "AMDGPU_GPU_ID", "navi10", "NAVI10"},
+    {"navi21", "AMD RDNA 2", "RADV", "radeon_icd", amd_shim, "AMDGPU_GPU_ID", "navi21", "NAVI21"},
+    {"navi31", "AMD RDNA 3", "RADV", "radeon_icd", amd_shim, "AMDGPU_GPU_ID", "navi31", "NAVI31"},
+    {"gfx1201", "AMD RDNA 4", "RADV", "radeon_icd", amd_shim, "AMDGPU_GPU_ID", "gfx1201", "GFX1201"},
+    {"turing", "NVIDIA Turing", "NVK", "nouveau_icd", nvidia_shim, "NOUVEAU_CHIPSET", "162", "NVK"},
+    {"ampere", "NVIDIA Ampere", "NVK", "nouveau_icd", nvidia_shim, "NOUVEAU_CHIPSET", "172", "NVK"},
+    {"ada", "NVIDIA Ada", "NVK", "nouveau_icd", nvidia_shim, "NOUVEAU_CHIPSET", "192", "NVK"},
+    {"blackwell", "NVIDIA Blackwell", "NVK", "nouveau_icd", nvidia_shim, "NOUVEAU_CHIPSET", "1b2", "NVK"},
+    {"adreno740", "Qualcomm Adreno 740", "Turnip", "freedreno_icd", qualcomm_shim, "FD_GPU_ID", "740", "740"},
+};
+
+// The file that names the driver; empty: there is none in the usual folders.
+std::string find_manifest(const std::string& beginning) {
+    constexpr const char* folders[] = {"/usr/share/vulkan/icd.d", "/usr/local/share/vulkan/icd.d", "/etc/vulkan/icd.d",
+                                       "/usr/local/etc/vulkan/icd.d"};
+    for (const char* folder : folders) {
+        std::error_code none;
+        for (const auto& file : std::filesystem::directory_iterator(folder, none)) {
+            const std::string name = file.path().filename().string();
+            if (name.starts_with(beginning) && name.ends_with(".json")) return file.path().string();
+        }
+    }
+    return {};
+}
+
+bool can_be_loaded(const char* library) {
+    void* handle = dlopen(library, RTLD_LAZY | RTLD_LOCAL);
+    if (handle) dlclose(handle);
+    return handle != nullptr;
+}
+
+std::string in_front(const char* first, const char* others) {
+    return others && *others ? text(first, ':', others) : first;
+}
+
+void set_environment(const Family& family, const std::string& manifest) {
+    // The second name is for loaders before 1.3.207.
+    for (const char* name : {"VK_DRIVER_FILES", "VK_ICD_FILENAMES"}) setenv(name, manifest.c_str(), 1);
+    setenv("LD_PRELOAD", in_front(family.shim, std::getenv("LD_PRELOAD")).c_str(), 1);
+    setenv(family.variable, family.value, 1);
+}
+
+[[noreturn]] void become_again(const std::vector<std::string>& arguments) {
+    std::string program = "twinray";
+    std::vector<std::string> copies = arguments;
+    std::vector<char*> words{program.data()};
+    for (std::string& copy : copies) words.push_back(copy.data());
+    words.push_back(nullptr);
+    execv("/proc/self/exe", words.data());
+    _exit(127);
+}
+
+// Nothing where a signal ended it.
+std::optional<int> exit_status_of(pid_t child) {
+    int status = 0;
+    if (child < 0 || waitpid(child, &status, 0) != child || !WIFEXITED(status)) return std::nullopt;
+    return WEXITSTATUS(status);
+}
+
+int index_of_device(const Family& family) {
+    const std::vector<DeviceProperties> devices = list_devices();
+    const auto found = std::ranges::find_if(
+        devices, [&](const DeviceProperties& device) { return device.name.find(family.says) != std::string::npos; });
+    return found == devices.end() ? -1 : static_cast<int>(found - devices.begin());
+}
+
+// A shim ends a process in which it is told of a GPU that it does not know: a child asks.
+bool has_device(const Family& family) {
+    const pid_t child = fork();
+    if (child == 0) {
+        dup2(open("/dev/null", O_WRONLY), STDERR_FILENO);
+        try {
+            _exit(index_of_device(family) < 0);
+        } catch (const Error&) {  // the driver knows no such GPU
+            _exit(1);
+        }
+    }
+    return exit_status_of(child) == 0;
+}
+
+}  // namespace
+
+std::span<const Family> all_families() { return families; }
+
+const Family& find_family(const std::string& name) {
+    const auto found = std::ranges::find(families, name, &Family::name);
+    if (found != std::end(families)) return *found;
+    std::string names;
+    for (const Family& family : families) names += text(names.empty() ? "" : ", ", family.name);
+    fail("there is no family '", name, "'; there are ", names);
+}
+
+bool is_in_effect(const Family& family) {
+    const char* value = std::getenv(family.variable);
+    const char* libraries = std::getenv("LD_PRELOAD");
+    return value && libraries && value == std::string_view(family.value) &&
+           std::string_view(libraries).find(family.shim) != std::string_view::npos;
+}
+
+int run_again(const Family& family, const std::vector<std::string>& arguments) {
+    const std::string manifest = find_manifest(family.manifest);
+    if (manifest.empty())
+        fail("family '", family.name, "' is not here: Mesa's driver ", family.driver,
+             " is not installed (Debian: apt-get install mesa-vulkan-drivers, which on Debian 12 has RADV alone)");
+    if (!can_be_loaded(family.shim))
+        fail("family '", family.name, "' is not here: ", family.shim,
+             " is not installed (Debian: apt-get install mesa-drm-shim)");
+    std::cout.flush();
+    const pid_t child = fork();
+    if (child == 0) {
+        set_environment(family, manifest);
+        become_again(arguments);
+    }
+    const std::optional<int> status = exit_status_of(child);
+    if (!status)
+        fail("family '", family.name, "': a signal ended the process that compiled for it, as where ", family.shim,
+             " is of another version of Mesa than its driver ", family.driver);
+    return *status;
+}
+
+std::string find_device(const Family& family) {
+    if (!has_device(family))
+        fail("family '", family.name, "' is not here: this Mesa's ", family.shim, " or its driver ", family.driver,
+             " does not know ", family.what, " (", family.variable, '=', family.value,
+             "), or they are of two versions of Mesa");
+    return std::to_string(index_of_device(family));
+}
+
+}  // namespace twinray::kernels

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+// What a picture is made of: for each pixel the sums of its samples, and what samples they are. Films of the same
+// configuration add up in any order to the same bits.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <twinray/scene.h>
+
+#include "renderer/shared.h"
+
+namespace twinray::path_tracer {
+
+// All that the value of a sample depends on, but for its number, by name: samples of unlike configurations do not
+// belong into one picture.
+using Configuration = std::vector<std::pair<std::string, std::string>>;
+
+// "seed is 2, not 1; ..." for all that differs; empty where nothing does.
+std::string difference(const Configuration& found, const Configuration& wanted);
+// The value of that name, or nothing.
+std::string value_of(const Configuration& configuration, const std::string& name);
+
+// Which blocks of samples a film holds, by number.
+class BlockSet {
+  public:
+    void insert(uint number);
+    bool contains(uint number) const;
+    void unite(const BlockSet& other);
+    uint count() const;
+    // 1 + the largest number; 0: it is empty.
+    uint end() const;
+    // A number that both hold, or nothing.
+    std::optional<uint> common(const BlockSet& other) const;
+
+    // Bit i % 32 of word i / 32 stands for block i; the last word is not 0.
+    const std::vector<uint>& words() const { return words_; }
+    explicit BlockSet(std::vector<uint> words = {}) : words_(std::move(words)) {}
+    bool operator==(const BlockSet&) const = default;
+
+  private:
+    std::vector<uint> words_;
+};
+
+struct Film {
+    uint width = 0;
+    uint height = 0;
+    uint block_size = 1;  // samples that are added as one
+    Configuration configuration = {};
+    BlockSet blocks = BlockSet{};
+    std::vector<FilmPixel> pixels = {};
+
+    // Without samples.
+    static Film empty(uint width, uint height, uint block_size, Configuration configuration);
+
+    // A block's sum of one pixel: the CPU reference of accumulate.comp. The caller notes the block's number.
+    void add(std::size_t pixel, vec3 sum);
+    // Throws Error, naming both, where the other's samples are of another configuration or partly the same ones.
+    void merge(const Film& other, const std::string& name, const std::string& other_name);
+
+    HdrImage mean() const;
+    // Of each pixel's mean luminance: the square of its standard error, from how its blocks differ. Infinite where
+    // there are less than two.
+    std::vector<double> variances() const;
+    // Of the picture: the root mean square of the pixels' standard errors, over the mean luminance of the picture. What
+    // to expect of the root mean square of its difference to the true picture (relative RMSE). Infinite where some
+    // pixel has less than two blocks.
+    double error() const;
+    // Of a pixel, on average.
+    double mean_samples() const;
+};
+
+// Of samples that do not depend on each other the above is unbiased. Samples of one Sobol sequence are spread more
+// evenly than that, and the error is smaller than it says.
+
+// A sum of a pixel: red, green, blue, or of squared luminances (FILM_SQUARES).
+double sum_of(const FilmPixel& pixel, uint sum);
+double mean_luminance(const Film& film);
+
+}  // namespace twinray::path_tracer

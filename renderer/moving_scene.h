@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// A scene on the device that is posed anew for each picture.
+#pragma once
+
+#include <twinray/abstract_accel.h>
+#include <twinray/scene.h>
+
+#include "renderer/scene_upload.h"
+
+namespace twinray::path_tracer {
+
+// What one pose took, in milliseconds.
+struct MotionTimes {
+    double host = 0;          // lights, records
+    double vertices = 0;      // skins and morph targets on the device
+    double refit = 0;         // of the accelerator, until it is done
+    double refit_device = 0;  // the device's share of it
+};
+
+// Brings poses of a scene's rig to the device: vertices by a Deformer, instances by their transforms, the accelerator
+// by a refit, and lights with densities that fit where they are. All the while views stay valid.
+class MovingScene {
+  public:
+    // The scene has a rig, and the accelerator holds it as push_scene pushes it. All three must outlive this.
+    MovingScene(Context& context, Scene& scene, DeviceScene& device_scene, AbstractAccel& accel);
+
+    // Waits for it to be done. The scene's instances, cameras and lights move, too, and of its meshes those that emit.
+    MotionTimes move_to(const Pose& pose);
+
+  private:
+    void move_emitters(const Pose& pose);
+    void move_vertices(const Pose& pose);
+    // False where nothing moved.
+    bool edit_accel(const std::vector<Instance>& before);
+
+    Context& context_;
+    Scene& scene_;
+    DeviceScene& device_scene_;
+    AbstractAccel& accel_;
+    std::vector<AccelHandle> handles_;   // by mesh
+    std::vector<uint> deformed_;         // deformed_meshes() of the rig
+    std::vector<std::size_t> emitting_;  // indices into those
+    Deformer deformer_;
+    Kernel<MoveVerticesArgs> move_vertices_;
+    Buffer transforms_;  // by instance
+};
+
+}  // namespace twinray::path_tracer

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// The processes that mpirun started, where the program was built with MPI; else this one alone.
+#pragma once
+
+#include <span>
+
+#include "renderer/renderer.h"
+
+namespace twinray::path_tracer {
+
+class Ranks {
+  public:
+    Ranks(int& argc, char**& argv);
+    // Waits for the others, unless abandon() was called.
+    ~Ranks();
+    Ranks(const Ranks&) = delete;
+    Ranks& operator=(const Ranks&) = delete;
+
+    uint index() const { return index_; }
+    uint count() const { return count_; }
+    uint local_index() const { return local_index_; }  // among those on this machine
+
+    // Rank 0 gets what the others have, in their order; the others keep theirs. Waits for all.
+    void gather(Film& film, RenderStats& stats) const;
+    // Ends without the others, of which one is lost: from now on nothing waits for them.
+    void abandon() { is_abandoned_ = true; }
+
+  private:
+    uint index_ = 0, count_ = 1, local_index_ = 0;
+    bool is_abandoned_ = false;
+};
+
+// Processes of one machine take turns on its best devices. Returns the index of the device.
+std::size_t device_of_rank(std::span<const DeviceProperties> devices, uint local_index);
+
+}  // namespace twinray::path_tracer

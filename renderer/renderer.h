@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+// A picture by path tracing in waves of rays, with the error that is left in it.
+#pragma once
+
+#include <deque>
+#include <map>
+
+#include <twinray/abstract_accel.h>
+#include <twinray/commands.h>
+#include "renderer/film.h"
+#include "renderer/wave_buffers.h"
+
+namespace twinray::path_tracer {
+
+// A part of a picture, in pixels.
+struct Crop {
+    uint x = 0, y = 0, width = 0, height = 0;
+};
+
+struct RenderSettings {
+    uint width = 640;  // of the whole picture
+    uint height = 480;
+    std::optional<Crop> crop = {};  // what is rendered of it; none: all
+    uint samples = 16;              // per pixel
+    // Samples that are added to the film as one. Above 1 each block has random numbers of its own, so that blocks do
+    // not depend on each other; else all samples of a pixel are of one Sobol sequence, which are spread more evenly.
+    uint block_size = 1;
+    uint max_depth = 8;  // scatterings of a path; 0 = only what emits is seen
+    uint seed = 1;
+    CameraRays camera = {};
+    uint filter = FILTER_GAUSSIAN;
+    uint strategy = STRATEGY_MIS;
+    bool is_timed = false;  // keeps times by pass
+
+    Crop part() const { return crop.value_or(Crop{0, 0, width, height}); }
+};
+
+struct RenderStats {
+    std::uint64_t path_rays = 0;    // camera rays and scattered ones, counted again behind each surface passed
+    std::uint64_t shadow_rays = 0;  // likewise
+    std::uint64_t non_finite = 0;   // contributions dropped as NaN or infinite
+    double seconds = 0;             // of rendering
+    std::map<std::string, double> pass_ms = {};  // the device's time by pass, where RenderSettings::is_timed
+};
+
+// Camera rays of a pixel that Renderer::first_surfaces follows.
+constexpr uint samples_of_first_surfaces = 16;
+
+// Sees every batch of rays that is traced.
+class WaveObserver {
+  public:
+    virtual ~WaveObserver() = default;
+    // What was recorded before writes the hits of `desc`. pixels: which the rays are of.
+    virtual void record(Commands& commands, const TraceDesc& desc, Uints pixels) = 0;
+    // Everything recorded so far has run.
+    virtual void collect() = 0;
+};
+
+// A wavefront path tracer: the rays of one sample of many pixels advance together, one bounce a wave, through
+// AbstractAccel::trace, so both accelerators and both hardware paths are shaded by the same kernels. A block's sum is
+// added up in a fixed order, and blocks add up to the same bits in any: the same input gives the same bits.
+class Renderer {
+  public:
+    // The scene must outlive the renderer.
+    Renderer(Context& context, const DeviceScene& scene, const RenderSettings& settings);
+
+    // An empty film for the settings.
+    Film make_film(Configuration configuration = {}) const;
+    // What start() begins next is seen so, with other random numbers.
+    void set_frame(const CameraRays& camera, uint seed) { settings_.camera = camera, settings_.seed = seed; }
+    // Goes on from a film that make_film made.
+    void start(const Film& film);
+    // The pixels of the film that the next blocks are of, by index, in the order in which they are traced.
+    void set_pixels(std::span<const uint> pixels);
+    // Samples number * block_size and those after it. The accelerator must hold the scene as push_scene pushes it.
+    void add_block(AbstractAccel& accel, uint number, WaveObserver* observer = nullptr);
+    // What the film has by now.
+    void read(Film& film);
+    const RenderStats& stats() const { return stats_; }  // since start()
+
+    // What the camera rays of the first samples see, per pixel of the film. No part of stats().
+    std::vector<FirstSurface> first_surfaces(AbstractAccel& accel);
+    // Of rays, paths, sums and film.
+    std::uint64_t device_bytes() const;
+    // Most rays in one trace.
+    std::uint64_t batch_size() const { return waves_.capacity(); }
+    std::uint64_t film_size() const { return film_size_; }
+
+  private:
+    // One sample of some of the pixels.
+    struct Batch {
+        uint first = 0;  // in the order of pixels
+        uint count = 0;
+        uint sample = 0;
+        uint seed = 0;
+    };
+    struct Tracing {
+        AbstractAccel& accel;
+        AccelView view;
+        WaveObserver* observer;
+        const std::deque<Kernel<ShadeArgs>>& shade;  // by kind of material
+        uint max_depth;
+    };
+    void trace_block(const Tracing& tracing, uint number);
+    void trace_batch(const Tracing& tracing, const Batch& batch);
+    Counters wave(const Tracing& tracing, const Batch& batch, uint count);
+    void shadow_rounds(const Tracing& tracing, uint count);
+    void trace(Commands& commands, const Tracing& tracing, const TraceDesc& desc, Uints pixels);
+    void shade(Commands& commands, const Tracing& tracing, const Batch& batch, uint count);
+    std::deque<Kernel<ShadeArgs>> shade_kernels(bool has_aovs) const;
+    Counters run(Commands& commands, const Tracing& tracing);
+    void clear_appended(Commands& commands);
+    void submit(Commands& commands);
+    void add_times(const Commands& commands);
+    void accumulate();
+
+    Context& context_;
+    const DeviceScene& scene_;
+    RenderSettings settings_;
+    FilmWindow window_;
+    std::uint64_t film_size_;
+    Buffer sums_, film_, pixels_;
+    WaveBuffers waves_;
+    Buffer counters_readback_;
+    Kernel<GenerateArgs> generate_;
+    Kernel<SortArgs> sort_;
+    std::deque<Kernel<ShadeArgs>> shade_;
+    Kernel<ShadowArgs> shadow_;
+    Kernel<AccumulateArgs> accumulate_;
+    Pace pace_;
+    uint pixel_count_ = 0;  // in pixels_
+    uint turn_ = 0;         // whose the wave in flight is
+    RenderStats stats_;
+};
+
+// All pixels in strips of eight rows, column by column: 64 neighbours in the order lie in a block of 8 x 8.
+std::vector<uint> pixel_order(uint width, uint height);
+
+// All samples of the settings, from the first one on. One step of progress per block.
+HdrImage render_picture(Renderer& renderer, const RenderSettings& settings, AbstractAccel& accel, bool quiet,
+                        WaveObserver* observer = nullptr);
+
+}  // namespace twinray::path_tracer

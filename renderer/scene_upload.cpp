@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/scene_upload.h"
+
+#include "renderer/layered_records.h"
+#include "renderer/surface_records.h"
+#include "samples/support/text.h"
+
+namespace twinray::path_tracer {
+using samples::fail;
+
+namespace {
+
+void fill_absent(const Context& context, SceneData& data) {
+    context.fill_absent(data.instances, data.extras, data.materials, data.layered, data.material_kinds,
+                        data.textures.records, data.textures.faults, data.lights.emitters, data.lights.punctual,
+                        data.lights.faults, data.light_keys, data.light_table, data.environment.pixels,
+                        data.environment.row_sums, data.environment.column_sums);
+}
+
+}  // namespace
+
+SceneFeatures features_of(const Scene& scene, const LocalLights& lights, const EnvironmentMap* environment) {
+    SceneFeatures features;
+    features.kinds = kinds_of(scene);
+    features.environment = environment && !environment->is_black();
+    features.deep_textures =
+        std::ranges::any_of(scene.images, [](const Image& image) { return !image.rgba16.empty(); });
+    features.local_lights = !lights.empty();
+    const std::vector<bool> used = used_materials(scene);
+    for (std::size_t i = 0; i < scene.materials.size(); ++i)
+        features.panes |= used[i] && may_be_pane(scene.materials[i]);
+    return features;
+}
+
+SceneFeatures all_features(const Scene& scene) {
+    SceneFeatures features;
+    features.kinds.needs = {0};
+    for (const uint need : material_needs) features.kinds.needs[0] |= 1u << need;
+    features.kinds.of.resize(scene.materials.size());
+    features.environment = features.local_lights = features.panes = features.deep_textures = true;
+    return features;
+}
+
+DeviceScene::DeviceScene(Context& context, const Scene& scene, const LocalLights& lights,
+                         const EnvironmentMap* environment, SceneFeatures features)
+    : context_(context),
+      features_(std::move(features)),
+      data_(context, {.name = "path tracer scene", .bytes = sizeof(SceneData)}) {
+    Commands commands(context, "path tracer upload");
+    {
+        const auto pass = commands.pass("path tracer upload");
+        upload_all(commands, scene, lights, environment);
+        fill_absent(context, record_);
+        commands.write(data_, record_);
+    }
+    commands.submit();
+}
+
+void DeviceScene::move(const Scene& scene, const LocalLights& lights) {
+    if (!lights.empty() && !features_.local_lights)
+        fail("a surface or light begins to shine in a scene that is dark at rest, which is not supported");
+    context_.wait_for_gpu();
+    moving_.clear();
+    Commands commands(context_, "path tracer move");
+    {
+        const auto pass = commands.pass("path tracer move");
+        record_.instances = upload_instances(commands, scene, lights);
+        upload_lights(commands, lights);
+        fill_absent(context_, record_);
+        commands.write(data_, record_);
+    }
+    commands.submit();
+}
+
+void DeviceScene::upload_all(Commands& commands, const Scene& scene, const LocalLights& lights,
+                             const EnvironmentMap* map) {
+    TextureList textures;
+    upload_meshes(commands, scene);
+    upload_extras(commands, scene);
+    record_.instances = upload_instances(commands, scene, lights);
+    record_.materials = upload(commands, "materials", material_records(scene, textures));
+    if (features_.has_layers())
+        record_.layered = upload(commands, "layers of materials", layered_records(scene, textures));
+    if (features_.kinds.needs.size() > 1)
+        record_.material_kinds = upload(commands, "kinds of materials", features_.kinds.of);
+    upload_textures(scene, textures);
+    if (features_.environment)
+        record_.environment = upload_environment(commands, map ? *map : EnvironmentMap(constant_sky(vec3(0))));
+    upload_lights(commands, lights);
+}
+
+// Where all lights have gone out, kernels that look for them find a key that names nothing.
+void DeviceScene::upload_lights(Commands& commands, const LocalLights& lights) {
+    const bool is_dark = features_.local_lights && lights.empty();
+    if (features_.local_lights) {
+        if (!lights_) lights_.emplace(context_);
+        const std::vector<SetKey> keys = is_dark ? std::vector<SetKey>(1) : lights_->put(lights);
+        record_.lights = lights_->view();
+        record_.light_keys = upload_moving(commands, "keys of lights", keys);
+        record_.light_table =
+            upload_moving(commands, "light table", is_dark ? std::vector<AliasEntry>(1) : lights.table);
+        record_.light_count = static_cast<uint>(keys.size());
+    }
+    const bool has_sky = record_.environment.density_per_luminance > 0;
+    record_.environment.chance = !has_sky ? 0 : features_.local_lights && !is_dark ? 0.5f : 1.0f;
+}
+
+std::uint64_t DeviceScene::device_bytes() const {
+    std::uint64_t bytes = data_.bytes();
+    if (textures_) bytes += textures_->buffer_bytes();
+    if (lights_) bytes += lights_->buffer_bytes();
+    for (const auto* buffers : {&buffers_, &moving_})
+        for (const Buffer& buffer : *buffers) bytes += buffer.bytes();
+    return bytes;
+}
+
+template <class T>
+Ref<T> DeviceScene::upload(Commands& commands, const std::string& name, const std::vector<T>& values) {
+    Buffer buffer(context_, {.name = name, .bytes = values.size() * sizeof(T)});
+    commands.upload(buffer, std::span(values));
+    buffers_.push_back(std::move(buffer));
+    return buffers_.back().ref<T>();
+}
+
+template <class T>
+Ref<T> DeviceScene::upload_moving(Commands& commands, const std::string& name, const std::vector<T>& values) {
+    Buffer buffer(context_, {.name = name, .bytes = values.size() * sizeof(T)});
+    commands.upload(buffer, std::span(values));
+    moving_.push_back(std::move(buffer));
+    return moving_.back().ref<T>();
+}
+
+void DeviceScene::upload_meshes(Commands& commands, const Scene& scene) {
+    for (const Mesh& mesh : scene.meshes)
+        meshes_.push_back({upload(commands, "vertices of '" + mesh.name + "'", vertex_records(mesh)),
+                           upload(commands, "triangles of '" + mesh.name + "'", triangle_records(mesh))});
+}
+
+void DeviceScene::upload_extras(Commands& commands, const Scene& scene) {
+    const bool has_colors = features_.some(PT_HAS_COLORS), has_second_uvs = features_.some(PT_HAS_SECOND_UVS);
+    if (!has_colors && !has_second_uvs) return;
+    std::vector<VertexExtras> of_meshes, records;
+    for (const Mesh& mesh : scene.meshes) {
+        VertexExtras& extras = of_meshes.emplace_back();
+        if (has_colors && !mesh.colors.empty())
+            extras.colors = {upload(commands, "colors of '" + mesh.name + "'", mesh.colors).address};
+        if (has_second_uvs && !mesh.second_uvs.empty())
+            extras.second_uvs = {upload(commands, "second uvs of '" + mesh.name + "'", mesh.second_uvs).address};
+        context_.fill_absent(extras.second_uvs, extras.colors);
+    }
+    for (const Instance& instance : scene.instances) records.push_back(of_meshes[instance.mesh]);
+    record_.extras = upload(commands, "extras of vertices", records);
+}
+
+Ref<SurfaceInstance> DeviceScene::upload_instances(Commands& commands, const Scene& scene, const LocalLights& lights) {
+    std::vector<SurfaceInstance> records;
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+        SurfaceInstance record = instance_record(scene.instances[i].transform);
+        record.vertices = meshes_[scene.instances[i].mesh].vertices;
+        record.triangles = meshes_[scene.instances[i].mesh].triangles;
+        record.emitter_density = upload_moving(commands, "emitter densities", lights.densities[i]);
+        context_.fill_absent(record.vertices, record.triangles, record.emitter_density);
+        records.push_back(record);
+    }
+    return upload_moving(commands, "surface instances", records);
+}
+
+// In buffers, which are filtered in float32 everywhere: a picture does not depend on the device's samplers.
+void DeviceScene::upload_textures(const Scene& scene, const TextureList& list) {
+    if (list.textures.empty() || !features_.some(PT_HAS_TEXTURES)) return;
+    textures_.emplace(context_, "textures", TextureStorage::buffers);
+    push_textures(*textures_, scene, list);
+    textures_->sync();
+    record_.textures = textures_->view();
+}
+
+Environment DeviceScene::upload_environment(Commands& commands, const EnvironmentMap& map) {
+    std::vector<Radiance> pixels;
+    pixels.reserve(map.image.rgb.size());
+    for (const vec3& rgb : map.image.rgb) pixels.push_back({rgb});
+    return {upload(commands, "environment", pixels),
+            upload(commands, "environment row sums", map.row_sums),
+            upload(commands, "environment column sums", map.column_sums),
+            map.image.width,
+            map.image.height,
+            map.density_per_luminance,
+            1.0f};
+}
+
+}  // namespace twinray::path_tracer

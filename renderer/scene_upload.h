@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+// A scene in device memory, as kernels read it.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <twinray/commands.h>
+#include "renderer/environment.h"
+#include "renderer/lights.h"
+#include "renderer/material_kinds.h"
+#include "renderer/texture_list.h"
+
+namespace twinray::path_tracer {
+
+// What a scene needs of the kernels; the rest is compiled out.
+struct SceneFeatures {
+    MaterialKinds kinds;
+    bool environment = false;
+    bool local_lights = false;
+    bool panes = false;
+    bool deep_textures = false;  // of 16 bits a channel
+
+    // Whether some material needs it; need: PT_HAS_ALPHA and the like.
+    bool some(uint need) const { return kinds.all_needs() >> need & 1; }
+    // Whether shadow rays pass any surface.
+    bool passes_shadows() const { return panes || some(PT_HAS_ALPHA); }
+    bool has_layers() const {
+        return some(PT_HAS_SPECULAR) || some(PT_HAS_COAT) || some(PT_HAS_SHEEN) || some(PT_HAS_ANISOTROPY) ||
+               some(PT_HAS_VOLUME);
+    }
+};
+SceneFeatures features_of(const Scene& scene, const LocalLights& lights, const EnvironmentMap* environment);
+// One kind of material that has all there is, under an environment: to measure what leaving out saves.
+SceneFeatures all_features(const Scene& scene);
+
+// A scene in device memory as the kernels read it. Instances keep their index.
+class DeviceScene {
+  public:
+    // environment: null for black. features: at least what the scene needs. Returns before the upload is done; later
+    // submissions see it.
+    DeviceScene(Context& context, const Scene& scene, const LocalLights& lights, const EnvironmentMap* environment,
+                SceneFeatures features);
+    // With what the scene needs.
+    DeviceScene(Context& context, const Scene& scene, const LocalLights& lights, const EnvironmentMap* environment)
+        : DeviceScene(context, scene, lights, environment, features_of(scene, lights, environment)) {}
+
+    // Takes over where instances and lights of the scene are now. Waits for the device. Throws Error where there are
+    // lights now and were none when this was made: kernels lack what finds them.
+    void move(const Scene& scene, const LocalLights& lights);
+    // Of a mesh, for kernels that move them.
+    Ref<SurfaceVertex> vertices(std::size_t mesh) const { return meshes_[mesh].vertices; }
+
+    Ref<SceneData> data() const { return data_.ref<SceneData>(); }
+    const SceneFeatures& features() const { return features_; }
+    std::uint64_t device_bytes() const;
+
+  private:
+    template <class T>
+    Ref<T> upload(Commands& commands, const std::string& name, const std::vector<T>& values);
+    template <class T>
+    Ref<T> upload_moving(Commands& commands, const std::string& name, const std::vector<T>& values);
+    void upload_meshes(Commands& commands, const Scene& scene);
+    void upload_extras(Commands& commands, const Scene& scene);
+    Ref<SurfaceInstance> upload_instances(Commands& commands, const Scene& scene, const LocalLights& lights);
+    void upload_lights(Commands& commands, const LocalLights& lights);
+    void upload_textures(const Scene& scene, const TextureList& list);
+    Environment upload_environment(Commands& commands, const EnvironmentMap& map);
+    void upload_all(Commands& commands, const Scene& scene, const LocalLights& lights, const EnvironmentMap* map);
+
+    struct MeshRefs {
+        Ref<SurfaceVertex> vertices;
+        Ref<SurfaceTriangle> triangles;
+    };
+    Context& context_;
+    SceneFeatures features_;
+    std::vector<Buffer> buffers_, moving_;  // what stays, what move() replaces
+    std::vector<MeshRefs> meshes_;
+    std::optional<LightSet> lights_;        // none: no need for any
+    std::optional<TextureStore> textures_;  // none: no material has any
+    SceneData record_{};
+    Buffer data_;  // of record_
+};
+
+}  // namespace twinray::path_tracer

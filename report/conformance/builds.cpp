@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: MIT
+// Builds: flags, several geometries, nothing at all, what is inactive, where data begins.
+#include <limits>
+
+#include "report/conformance/case_run.h"
+#include "report/conformance/suite.h"
+
+namespace twinray::conformance {
+namespace {
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+void every_preference(CaseRun& run) {
+    constexpr VkBuildAccelerationStructureFlagsKHR trace = VK_BUILD_ACCELERATION_STRUCTURE_PREFER_FAST_TRACE_BIT_KHR,
+                                                   build = VK_BUILD_ACCELERATION_STRUCTURE_PREFER_FAST_BUILD_BIT_KHR,
+                                                   small = VK_BUILD_ACCELERATION_STRUCTURE_LOW_MEMORY_BIT_KHR,
+                                                   update = VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_UPDATE_BIT_KHR,
+                                                   compact = VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_COMPACTION_BIT_KHR;
+    SceneInput scene = scene_of(random_triangles(run.draws(), usual_triangle_count));
+    for (const auto flags : {trace, build, trace | small, build | small, trace | update, build | update | compact}) {
+        scene.bottoms[0].flags = scene.top.flags = flags;
+        run.check_hits(scene, random_shots(run.draws(), run.rays() / 6 + 1));
+    }
+}
+
+void several_geometries(CaseRun& run) {
+    std::vector<GeometryInput> geometries;
+    for (uint i = 0; i < 4; ++i) geometries.push_back(random_triangles(run.draws(), 2 + 4 * i));
+    geometries[1].flags = geometries[2].flags = 0;
+    std::vector<Shot> shots = random_shots(run.draws(), run.rays());
+    for (Shot& shot : shots) shot.refused = run.draws().below(256);
+    run.check_hits(scene_of(geometries), shots);
+}
+
+void one_command(CaseRun& run) {
+    SceneInput scene;
+    for (uint i = 0; i < 3; ++i) {
+        scene.bottoms.push_back({{random_triangles(run.draws(), 6 + i)}});
+        scene.top.instances.push_back({.bottom = i});
+    }
+    const std::vector<Bottom> bottoms = run.driver().build_together(scene.bottoms);
+    run.check_hits(scene, run.driver().build(scene.top, bottoms), random_shots(run.draws(), run.rays()));
+}
+
+void nothing(CaseRun& run) {
+    SceneInput scene = scene_of(random_triangles(run.draws(), usual_triangle_count));
+    GeometryInput empty;
+    empty.positions = {vec3(0)};
+    scene.bottoms.push_back({{empty}});
+    scene.bottoms.push_back({});
+    scene.top.instances.insert(scene.top.instances.begin(), {.bottom = 1});
+    scene.top.instances.push_back({.bottom = 2});
+    run.check_hits(scene, random_shots(run.draws(), run.rays()));
+    run.check_hits(SceneInput{}, random_shots(run.draws(), run.rays()));
+}
+
+void inactive_triangles(CaseRun& run) {
+    GeometryInput geometry = random_triangles(run.draws(), usual_triangle_count);
+    for (uint i = 0; i < usual_triangle_count; i += 3) geometry.positions[3 * i + run.draws().below(3)].x = nan;
+    run.check_hits(scene_of(geometry), random_shots(run.draws(), run.rays()));
+}
+
+void degenerate_triangles(CaseRun& run) {
+    GeometryInput geometry = random_triangles(run.draws(), usual_triangle_count);
+    for (uint i = 0; i < usual_triangle_count; i += 3)
+        geometry.positions[3 * i + 2] = geometry.positions[3 * i + run.draws().below(2)];
+    run.check_hits(scene_of(geometry), random_shots(run.draws(), run.rays()));
+}
+
+void inactive_boxes(CaseRun& run) {
+    GeometryInput geometry = layered_boxes(6);
+    geometry.boxes[run.draws().below(3)].lo.x = nan;
+    std::vector<Shot> shots = layer_shots(run.draws(), run.rays());
+    for (Shot& shot : shots) shot.refused = run.draws().below(64);
+    for (Shot& shot : shots) shot.box_t = 1.5f, shot.box_step = 2;
+    run.check_hits(scene_of(geometry), shots);
+    run.check_candidates(scene_of(geometry), shots);
+}
+
+void inactive_instances(CaseRun& run) {
+    SceneInput scene = scene_of(random_triangles(run.draws(), usual_triangle_count));
+    scene.top.instances.insert(scene.top.instances.begin(), {.bottom = no_bottom});
+    run.check_hits(scene, random_shots(run.draws(), run.rays()));
+}
+
+void pointers(CaseRun& run) {
+    SceneInput scene = scene_of(random_triangles(run.draws(), usual_triangle_count));
+    scene.top.instances.resize(3);
+    for (uint i = 0; i < 3; ++i) scene.top.instances[i].custom_index = 7 + i;
+    for (uint i = 0; i < 3; ++i) scene.top.instances[i].mask = 1u << i;
+    scene.top.has_pointers = true;
+    std::vector<Shot> shots = random_shots(run.draws(), run.rays());
+    for (Shot& shot : shots) shot.cull_mask = 1 + run.draws().below(7);
+    run.check_hits(scene, shots);
+}
+
+// Triangles that the build is to pass over come first.
+void later_primitives(CaseRun& run) {
+    for (const Indices indices : {Indices::none, Indices::bits16, Indices::bits32}) {
+        GeometryInput geometry = random_triangles(run.draws(), usual_triangle_count);
+        geometry.indices = indices;
+        geometry.earlier_items = 1 + run.draws().below(4);
+        run.check_hits(scene_of(geometry), random_shots(run.draws(), run.rays() / 3 + 1));
+    }
+}
+
+void later_boxes(CaseRun& run) {
+    GeometryInput geometry = layered_boxes(5);
+    geometry.earlier_items = 1 + run.draws().below(4);
+    run.check_candidates(scene_of(geometry), layer_shots(run.draws(), run.rays()));
+}
+
+void later_vertices(CaseRun& run) {
+    for (const Indices indices : {Indices::none, Indices::bits16, Indices::bits32}) {
+        GeometryInput geometry = random_triangles(run.draws(), usual_triangle_count);
+        geometry.indices = indices;
+        geometry.first_vertex = 3 * (1 + run.draws().below(4));
+        run.check_hits(scene_of(geometry), random_shots(run.draws(), run.rays() / 3 + 1));
+    }
+}
+
+// A turn, a mirror or a scale by a power of two and a move: exact.
+Transform exact_placement(Draws& draws) {
+    Transform placement;
+    const uint turn = draws.below(3);
+    const float size = draws.chance(0.5) ? 0.5f : 2.0f;
+    for (std::size_t row = 0; row < 3; ++row) {
+        vec4& entries = placement.rows[row];
+        entries = vec4(0, 0, 0, draws.coordinate(1));
+        entries[(row + turn) % 3] = draws.chance(0.5) ? size : -size;
+    }
+    return placement;
+}
+
+void placed_geometries(CaseRun& run) {
+    std::vector<GeometryInput> geometries;
+    for (uint i = 0; i < 3; ++i) {
+        geometries.push_back(random_triangles(run.draws(), 8));
+        if (i != 1) geometries[i].transform = exact_placement(run.draws());
+    }
+    geometries[2].earlier_places = 2;
+    run.check_hits(scene_of(geometries), random_shots(run.draws(), run.rays()));
+}
+
+}  // namespace
+
+std::vector<Case> build_cases() {
+    using enum Misdeed;
+    constexpr Topic topic = Topic::builds;
+    const std::string same = "hits are those of float64";
+    return {
+        {"K01", topic, "fast trace, fast build, low memory, updates, compaction", "VK-GL-CTS builds", same,
+         Demand::must, forgets_later_half, every_preference},
+        {"K02", topic, "four geometries in a bottom level, two of them not opaque", "VK-GL-CTS builds", same,
+         Demand::must, forgets_later_half, several_geometries},
+        {"K03", topic, "three bottom levels by one command", "VK-GL-CTS builds", same, Demand::must, forgets_later_half,
+         one_command},
+        {"K04", topic, "no geometry, no triangle, no instance", "VK-GL-CTS empty structures",
+         "nothing is hit there, and the rest as float64 says", Demand::must, forgets_later_half, nothing},
+        {"K05", topic, "triangles with NaN as an x", "VK-GL-CTS inactive triangles",
+         "they are not hit, and others keep their index", Demand::must, forgets_later_half, inactive_triangles},
+        {"K06", topic, "triangles with two equal vertices", "VK-GL-CTS degenerate triangles",
+         "they are not hit, and others keep their index", Demand::must, forgets_later_half, degenerate_triangles},
+        {"K07", topic, "boxes with NaN as the least x", "VK-GL-CTS inactive boxes",
+         "they are not offered, and others keep their index", Demand::must, forgets_later_half, inactive_boxes},
+        {"K08", topic, "an instance of address 0", "VK-GL-CTS inactive instances",
+         "it is not hit, and others keep their index", Demand::must, forgets_later_half, inactive_instances},
+        {"K09", topic, "instances by an array of pointers", "VK-GL-CTS array of pointers", same, Demand::must,
+         forgets_instance_ids, pointers},
+        {"K10", topic, "triangles from primitiveOffset on", "VK-GL-CTS build offsets", same, Demand::must,
+         forgets_later_half, later_primitives},
+        {"K11", topic, "boxes from primitiveOffset on", "VK-GL-CTS build offsets", "those that a ray meets are offered",
+         Demand::must, forgets_later_half, later_boxes},
+        {"K12", topic, "vertices from firstVertex on", "VK-GL-CTS build offsets", same, Demand::must,
+         forgets_later_half, later_vertices},
+        {"K13", topic, "geometries with transforms, one from transformOffset on", "VK-GL-CTS transforms", same,
+         Demand::must, forgets_transforms, placed_geometries},
+    };
+}
+
+}  // namespace twinray::conformance

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// A round of a case: what it may use, and where its findings go.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "report/conformance/draws.h"
+#include "report/conformance/driver.h"
+#include "report/conformance/verdict.h"
+#include "validation/records/record.h"
+
+namespace twinray::conformance {
+
+// What a case has found so far.
+struct Tally {
+    std::uint64_t n = 0;
+    std::uint64_t faults = 0;
+    std::map<std::string, std::uint64_t> counts = {};
+    std::string example = {};  // of the first fault: its class, and the ray's 8 floats, hexadecimal
+    std::string what = {};     // of the first fault that is not about a ray
+    Values results = {};
+
+    void add(Finding finding, const Ray& ray);
+    void add_fault(const std::string& sentence);
+};
+
+class CaseRun {
+  public:
+    // `rays`: of this round.
+    CaseRun(Driver& driver, std::uint64_t seed, std::size_t rays, Tally& tally)
+        : driver_(driver), draws_(seed), rays_(rays), tally_(tally) {}
+
+    Driver& driver() { return driver_; }
+    Draws& draws() { return draws_; }
+    std::size_t rays() const { return rays_; }
+    Tally& tally() { return tally_; }
+
+    // Builds the scene, traces and judges the hits.
+    void check_hits(const SceneInput& scene, std::span<const Shot> shots);
+    // Judges the hits of a structure that is there. `scene`: what it should hold.
+    void check_hits(const SceneInput& scene, const Top& top, std::span<const Shot> shots);
+    // Refuses all candidates and judges which were offered.
+    void check_candidates(const SceneInput& scene, std::span<const Shot> shots);
+    // What is not about a ray.
+    void expect(bool holds, const std::string& sentence_if_not);
+
+  private:
+    Driver& driver_;
+    Draws draws_;
+    std::size_t rays_;
+    Tally& tally_;
+};
+
+// How many candidates of a ray are told.
+inline constexpr uint candidate_slots = 48;
+
+std::string hexadecimal(const Ray& ray);
+
+}  // namespace twinray::conformance

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+#include "report/conformance/draws.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace twinray::conformance {
+
+float Draws::coordinate(float extent) {
+    const int steps = static_cast<int>(extent * 0x1p10f);
+    return static_cast<float>(static_cast<int>(below(static_cast<uint>(2 * steps + 1))) - steps) * 0x1p-10f;
+}
+
+vec3 Draws::point(float extent) {
+    const float x = coordinate(extent), y = coordinate(extent);
+    return {x, y, coordinate(extent)};
+}
+
+vec3 Draws::direction() {
+    for (;;) {
+        const vec3 point = this->point(2);
+        const vec3 rounded(std::round(point.x * 0x1p8f) * 0x1p-8f, std::round(point.y * 0x1p8f) * 0x1p-8f,
+                           std::round(point.z * 0x1p8f) * 0x1p-8f);
+        const float square = dot(rounded, rounded);
+        if (square >= 0.25f && square <= 4) return rounded;
+    }
+}
+
+GeometryInput random_triangles(Draws& draws, uint count) {
+    GeometryInput geometry;
+    while (geometry.triangles.size() < count) {
+        const vec3 center = draws.point(1);
+        const std::array<vec3, 3> corners = {center + draws.point(0.5f), center + draws.point(0.5f),
+                                             center + draws.point(0.5f)};
+        const dvec3 normal = cross(dvec3(corners[1] - corners[0]), dvec3(corners[2] - corners[0]));
+        if (length(normal) < 0.1) continue;
+        const uint first = static_cast<uint>(geometry.positions.size());
+        geometry.positions.insert(geometry.positions.end(), corners.begin(), corners.end());
+        geometry.triangles.emplace_back(first, first + 1, first + 2);
+    }
+    return geometry;
+}
+
+GeometryInput layered_boxes(uint count) {
+    GeometryInput geometry;
+    for (uint i = 0; i < count; ++i) {
+        const float z = 2 * static_cast<float>(i);
+        geometry.boxes.push_back({vec3(-1, -1, z), vec3(1, 1, z + 1)});
+    }
+    return geometry;
+}
+
+GeometryInput layered_triangles(uint count) {
+    GeometryInput geometry;
+    for (uint i = 0; i < count; ++i) {
+        const float z = 2 * static_cast<float>(i);
+        geometry.positions.insert(geometry.positions.end(), {vec3(-4, -4, z), vec3(8, -4, z), vec3(-4, 8, z)});
+        geometry.triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
+    }
+    return geometry;
+}
+
+SceneInput scene_of(GeometryInput geometry) { return scene_of(std::vector<GeometryInput>{std::move(geometry)}); }
+
+SceneInput scene_of(std::vector<GeometryInput> geometries) {
+    SceneInput scene;
+    scene.bottoms.push_back({std::move(geometries), VK_BUILD_ACCELERATION_STRUCTURE_PREFER_FAST_TRACE_BIT_KHR});
+    scene.top.instances.push_back({});
+    return scene;
+}
+
+SceneInput scene_of_both(std::vector<GeometryInput> triangles, std::vector<GeometryInput> boxes) {
+    SceneInput scene = scene_of(std::move(triangles));
+    scene.bottoms.push_back({std::move(boxes), scene.bottoms[0].flags});
+    scene.top.instances.push_back({.bottom = 1});
+    return scene;
+}
+
+Shot shot_of(const Ray& ray) {
+    return {.ray = ray,
+            .flags = no_flags,
+            .cull_mask = all_instances,
+            .refused = 0,
+            .box_t = 0,
+            .box_step = 0,
+            .reserved = 0};
+}
+
+std::vector<Shot> random_shots(Draws& draws, std::size_t count, float extent) {
+    constexpr float inf = std::numeric_limits<float>::infinity();
+    std::vector<Shot> shots;
+    while (shots.size() < count) {
+        const vec3 direction = draws.direction();
+        const vec3 target = draws.point(extent);
+        shots.push_back(shot_of({target - 4.0f * direction, 0, direction, inf}));
+    }
+    return shots;
+}
+
+std::vector<Shot> layer_shots(Draws& draws, std::size_t count) {
+    std::vector<Shot> shots;
+    for (std::size_t i = 0; i < count; ++i) {
+        const float x = draws.coordinate(0.75f), y = draws.coordinate(0.75f);
+        shots.push_back(shot_of({vec3(x, y, -1), 0, vec3(0, 0, 1), std::numeric_limits<float>::infinity()}));
+    }
+    return shots;
+}
+
+Transform random_instance_transform(Draws& draws) {
+    for (;;) {
+        Transform placement;
+        for (vec4& row : placement.rows) {
+            const vec3 linear = draws.point(1.5f);
+            row = vec4(linear, draws.coordinate(2));
+        }
+        const double size = std::abs(determinant(placement));
+        if (size > 0.5 && size < 4) return placement;
+    }
+}
+
+}  // namespace twinray::conformance

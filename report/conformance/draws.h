@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// Random scenes and rays on a grid of numbers, so that moves, turns and scales of them are exact.
+#pragma once
+
+#include <random>
+
+#include "report/conformance/query.h"
+#include "report/conformance/scene_input.h"
+
+namespace twinray::conformance {
+
+// The same numbers on every platform for one seed.
+class Draws {
+  public:
+    explicit Draws(std::uint64_t seed) : engine_(seed) {}
+
+    uint below(uint count) { return static_cast<uint>(engine_() % count); }
+    bool chance(double share) { return unit() < share; }
+    double unit() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
+    // A multiple of 2^-10 in [-extent, extent].
+    float coordinate(float extent);
+    vec3 point(float extent);
+    // Multiples of 2^-8, of which the length is between 1/2 and 2.
+    vec3 direction();
+
+  private:
+    std::mt19937_64 engine_;
+};
+
+constexpr uint usual_triangle_count = 24;
+// Random triangles about the origin, within [-1.5, 1.5]: of areas that no rounding turns into edges.
+GeometryInput random_triangles(Draws& draws, uint count);
+// Boxes one behind the other along z, from z = 2 i to 2 i + 1, of which x and y reach from -1 to 1.
+GeometryInput layered_boxes(uint count);
+// The same as triangles at z = 2 i, larger than the boxes.
+GeometryInput layered_triangles(uint count);
+SceneInput scene_of(GeometryInput geometry);
+SceneInput scene_of(std::vector<GeometryInput> geometries);
+// In two instances, for no bottom level may hold both.
+SceneInput scene_of_both(std::vector<GeometryInput> triangles, std::vector<GeometryInput> boxes);
+
+// From afar through the middle of things: of each two about one hits something.
+std::vector<Shot> random_shots(Draws& draws, std::size_t count, float extent = 1);
+// Along z through x, y in (-0.75, 0.75), from z = -1; of layered scenes.
+std::vector<Shot> layer_shots(Draws& draws, std::size_t count);
+Shot shot_of(const Ray& ray);
+// Rotations, scales, shears and mirrors, of which no inverse loses much.
+Transform random_instance_transform(Draws& draws);
+
+}  // namespace twinray::conformance

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: MIT
+#include "report/conformance/driver.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "conformance_query.spv.h"
+#include "conformance_query_culling.spv.h"
+#include "engine/core/buffer.h"
+#include "engine/core/error.h"
+#include "engine/core/vulkan.h"
+
+namespace twinray::conformance {
+namespace {
+
+KernelDesc query_desc(const Context& context) {
+    if (!context.properties().ray_query) fail("the conformance suite needs VK_KHR_ray_query");
+    KernelDesc desc{.name = "conformance_query", .spirv = conformance_query_spirv};
+    if (context.properties().primitive_culling) desc.spirv = conformance_query_culling_spirv;
+    return desc;
+}
+
+VkAccelerationStructureBuildGeometryInfoKHR build_info(const BuildInput& input) {
+    VkAccelerationStructureBuildGeometryInfoKHR info{};
+    info.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_GEOMETRY_INFO_KHR;
+    info.type = input.type;
+    info.flags = input.flags;
+    info.mode = VK_BUILD_ACCELERATION_STRUCTURE_MODE_BUILD_KHR;
+    info.geometryCount = static_cast<std::uint32_t>(input.geometries.size());
+    info.pGeometries = input.geometries.data();
+    return info;
+}
+
+VkAccelerationStructureBuildSizesInfoKHR sizes_of(const Context& context, const BuildInput& input) {
+    const VkAccelerationStructureBuildGeometryInfoKHR info = build_info(input);
+    VkAccelerationStructureBuildSizesInfoKHR sizes{};
+    sizes.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_SIZES_INFO_KHR;
+    context.state().vk().vkGetAccelerationStructureBuildSizesKHR(
+        context.device(), VK_ACCELERATION_STRUCTURE_BUILD_TYPE_DEVICE_KHR, &info, input.counts.data(), &sizes);
+    return sizes;
+}
+
+BottomInput spoiled(Misdeed misdeed, BottomInput input) {
+    spoil(misdeed, input);
+    return input;
+}
+
+// Stages of a pipeline are not told of them.
+void add_record_offsets(const Top& top, Traced& traced) {
+    for (Answer& answer : traced.answers)
+        if (answer.kind != ANSWER_MISS && answer.instance < top.input.instances.size())
+            answer.sbt_offset = top.input.instances[answer.instance].sbt_offset;
+}
+
+}  // namespace
+
+BottomRef Bottom::ref() const {
+    const bool holds_boxes = std::ranges::any_of(input.geometries, &GeometryInput::is_boxes);
+    return {structure.address(), holds_boxes};
+}
+
+Driver::Driver(Context& context, Way way) : context_(context) {
+    if (way == Way::query)
+        query_ = std::make_unique<Kernel<QueryArgs>>(context, query_desc(context));
+    else
+        pipeline_ = std::make_unique<PipelineQuery>(context);
+}
+
+TopInput Driver::told(const TopInput& input, const std::vector<BottomRef>& bottoms) const {
+    TopInput told = input;
+    spoil(misdeed_, told);
+    if (!pipeline_) return told;
+    for (InstanceInput& instance : told.instances)
+        instance.sbt_offset = instance.bottom != no_bottom && bottoms[instance.bottom].holds_boxes ? 1 : 0;
+    return told;
+}
+
+AccelerationStructure Driver::new_structure(const char* name, const BuildInput& input) {
+    return {context_, name, input.type, sizes_of(context_, input).accelerationStructureSize};
+}
+
+void Driver::record_build(Commands& commands, std::span<const BuildInput> inputs,
+                          std::span<const AccelerationStructure* const> targets,
+                          const AccelerationStructure* updated_from) {
+    std::vector<VkAccelerationStructureBuildGeometryInfoKHR> infos;
+    std::vector<const VkAccelerationStructureBuildRangeInfoKHR*> ranges;
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+        const VkAccelerationStructureBuildSizesInfoKHR sizes = sizes_of(context_, inputs[i]);
+        const std::uint64_t bytes = updated_from ? sizes.updateScratchSize : sizes.buildScratchSize;
+        Buffer scratch = make_build_scratch(context_, "conformance scratch", std::max<std::uint64_t>(bytes, 1));
+        VkAccelerationStructureBuildGeometryInfoKHR& info = infos.emplace_back(build_info(inputs[i]));
+        info.dstAccelerationStructure = targets[i]->handle();
+        info.scratchData.deviceAddress = scratch.address();
+        if (updated_from) {
+            info.mode = VK_BUILD_ACCELERATION_STRUCTURE_MODE_UPDATE_KHR;
+            info.srcAccelerationStructure = updated_from->handle();
+        }
+        ranges.push_back(inputs[i].ranges.data());
+        commands.retain(std::move(scratch));
+    }
+    const auto pass = commands.pass("conformance build");
+    context_.state().vk().vkCmdBuildAccelerationStructuresKHR(
+        commands.handle(), static_cast<std::uint32_t>(infos.size()), infos.data(), ranges.data());
+}
+
+Bottom Driver::build(const BottomInput& input) { return std::move(build_together(std::span(&input, 1)).front()); }
+
+std::vector<Bottom> Driver::build_together(std::span<const BottomInput> inputs) {
+    Commands commands(context_, "conformance bottom levels");
+    std::vector<Bottom> bottoms;
+    std::vector<BuildInput> uploaded;
+    std::vector<const AccelerationStructure*> targets;
+    bottoms.reserve(inputs.size());
+    for (const BottomInput& input : inputs) {
+        uploaded.push_back(upload(commands, spoiled(misdeed_, input)));
+        bottoms.push_back({new_structure("conformance bottom level", uploaded.back()), input});
+        targets.push_back(&bottoms.back().structure);
+    }
+    record_build(commands, uploaded, targets);
+    commands.submit();
+    return bottoms;
+}
+
+Top Driver::build(const TopInput& input, std::span<const Bottom> bottoms) {
+    std::vector<BottomRef> refs;
+    for (const Bottom& bottom : bottoms) refs.push_back(bottom.ref());
+    return build(input, refs);
+}
+
+Top Driver::build(const TopInput& input, const std::vector<BottomRef>& bottoms) {
+    Commands commands(context_, "conformance top level");
+    const BuildInput uploaded = upload(commands, told(input, bottoms), bottoms);
+    Top top{new_structure("conformance top level", uploaded), input, bottoms};
+    const AccelerationStructure* target = &top.structure;
+    record_build(commands, std::span(&uploaded, 1), std::span(&target, 1));
+    commands.submit();
+    return top;
+}
+
+DriverScene Driver::build(const SceneInput& scene) {
+    DriverScene built;
+    for (const BottomInput& bottom : scene.bottoms) built.bottoms.push_back(build(bottom));
+    built.top = build(scene.top, built.bottoms);
+    return built;
+}
+
+void Driver::rebuild(Bottom& bottom, const BottomInput& input) {
+    if (misdeed_ == Misdeed::forgets_updates) return;
+    Commands commands(context_, "conformance rebuild");
+    const BuildInput uploaded = upload(commands, spoiled(misdeed_, input));
+    const AccelerationStructure* target = &bottom.structure;
+    record_build(commands, std::span(&uploaded, 1), std::span(&target, 1));
+    commands.submit();
+    bottom.input = input;
+}
+
+void Driver::update(Bottom& bottom, const BottomInput& input) {
+    if (misdeed_ == Misdeed::forgets_updates) return;
+    Commands commands(context_, "conformance update");
+    const BuildInput uploaded = upload(commands, spoiled(misdeed_, input));
+    const AccelerationStructure* target = &bottom.structure;
+    record_build(commands, std::span(&uploaded, 1), std::span(&target, 1), target);
+    commands.submit();
+    bottom.input = input;
+}
+
+void Driver::update(Top& top, const TopInput& input) {
+    if (misdeed_ == Misdeed::forgets_updates) return;
+    Commands commands(context_, "conformance update of a top level");
+    const BuildInput uploaded = upload(commands, told(input, top.bottoms), top.bottoms);
+    const AccelerationStructure* target = &top.structure;
+    record_build(commands, std::span(&uploaded, 1), std::span(&target, 1), target);
+    commands.submit();
+    top.input = input;
+}
+
+Bottom Driver::updated(const Bottom& source, const BottomInput& input) {
+    if (misdeed_ == Misdeed::forgets_updates) return clone(source);
+    Commands commands(context_, "conformance update into another");
+    const BuildInput uploaded = upload(commands, spoiled(misdeed_, input));
+    Bottom updated{new_structure("conformance updated", uploaded), input};
+    const AccelerationStructure* target = &updated.structure;
+    record_build(commands, std::span(&uploaded, 1), std::span(&target, 1), &source.structure);
+    commands.submit();
+    return updated;
+}
+
+Traced Driver::trace(const Top& top, std::span<const Shot> given, uint slots) {
+    std::vector<Shot> shots(given.begin(), given.end());
+    spoil(misdeed_, shots);
+    const Buffer from(context_, {.name = "conformance shots", .bytes = shots.size() * sizeof(Shot)});
+    const Buffer answers(context_, {.name = "conformance answers", .bytes = shots.size() * sizeof(Answer)});
+    const Buffer candidates(context_, {.name = "conformance candidates", .bytes = shots.size() * slots * sizeof(uint)});
+    Commands commands(context_, "conformance trace");
+    {
+        const auto pass = commands.pass("conformance upload of shots");
+        commands.upload(from, std::span<const Shot>(shots));
+    }
+    const QueryArgs args{.structure = top.structure.address(),
+                         .shots = from.ref<Shot>(),
+                         .answers = answers.ref<Answer>(),
+                         .candidates = candidates.ref<uint>(),
+                         .count = static_cast<uint>(shots.size()),
+                         .slots = slots};
+    if (query_)
+        query_->dispatch(commands, args, shots.size());
+    else
+        pipeline_->record(commands, args, answers);
+    commands.submit();
+    Traced traced{download<Answer>(context_, answers, shots.size()),
+                  download<uint>(context_, candidates, shots.size() * slots), slots};
+    if (pipeline_) add_record_offsets(top, traced);
+    spoil(misdeed_, traced, traces_++);
+    return traced;
+}
+
+}  // namespace twinray::conformance

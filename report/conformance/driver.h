@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+// A driver's acceleration structures without HwTlas in between: builds, updates, copies, files and ray queries.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "engine/core/kernel.h"
+#include "hwtlas/acceleration_structure.h"
+#include "report/conformance/driver_input.h"
+#include "report/conformance/misdeed.h"
+#include "report/conformance/pipeline_query.h"
+#include "report/conformance/query.h"
+#include "report/conformance/serialized.h"
+
+namespace twinray::conformance {
+
+// A structure, and what it was made of.
+struct Bottom {
+    AccelerationStructure structure;
+    BottomInput input;
+
+    BottomRef ref() const;
+};
+struct Top {
+    AccelerationStructure structure;
+    TopInput input;
+    std::vector<BottomRef> bottoms;  // that the instances refer to
+};
+struct DriverScene {
+    std::vector<Bottom> bottoms;
+    Top top;
+};
+
+// How rays are traced.
+enum class Way : std::uint8_t { query, pipeline };
+constexpr const char* name_of(Way way) { return way == Way::query ? "hw" : "hw-pipeline"; }
+
+class Driver {
+  public:
+    // Throws Error where the device has no such way.
+    explicit Driver(Context& context, Way way = Way::query);
+
+    // From now on; none is how the driver is.
+    void behave_as(Misdeed misdeed) { misdeed_ = misdeed; }
+
+    Context& context() const { return context_; }
+    Way way() const { return pipeline_ ? Way::pipeline : Way::query; }
+    bool can_cull_primitives() const { return context_.properties().primitive_culling; }
+
+    Bottom build(const BottomInput& input);
+    // All by one command.
+    std::vector<Bottom> build_together(std::span<const BottomInput> inputs);
+    Top build(const TopInput& input, std::span<const Bottom> bottoms);
+    Top build(const TopInput& input, const std::vector<BottomRef>& bottoms);
+    DriverScene build(const SceneInput& scene);
+    // Into the memory of another build, which took as many primitives or more.
+    void rebuild(Bottom& bottom, const BottomInput& input);
+    // In place.
+    void update(Bottom& bottom, const BottomInput& input);
+    void update(Top& top, const TopInput& input);
+    // Into another structure; the source stays as it was.
+    Bottom updated(const Bottom& source, const BottomInput& input);
+
+    Bottom clone(const Bottom& source);
+    Top clone(const Top& source);
+    Bottom compacted(const Bottom& source);
+    Top compacted(const Top& source);
+
+    std::uint64_t serialized_bytes(const AccelerationStructure& structure);
+    Serialized serialize(const AccelerationStructure& structure);
+    bool is_compatible(const Serialized& file);
+    Bottom deserialize(const Serialized& file, const BottomInput& input);
+    Top deserialize(const Serialized& file, const TopInput& input, const std::vector<BottomRef>& bottoms);
+
+    // `slots`: how many candidates of each shot are told.
+    Traced trace(const Top& top, std::span<const Shot> shots, uint slots = 0);
+
+  private:
+    enum class Copy : std::uint8_t { clone, compact };
+    // As the driver is to get it: a pipeline's instances choose their hit record.
+    TopInput told(const TopInput& input, const std::vector<BottomRef>& bottoms) const;
+    AccelerationStructure new_structure(const char* name, const BuildInput& input);
+    void record_build(Commands& commands, std::span<const BuildInput> inputs,
+                      std::span<const AccelerationStructure* const> targets,
+                      const AccelerationStructure* updated_from = nullptr);
+    Bottom copied(const Bottom& source, Copy mode);
+    Top copied(const Top& source, Copy mode);
+    // What Misdeed::copies_in_part makes.
+    Bottom shortened(BottomInput input);
+    Top shortened(TopInput input, const std::vector<BottomRef>& bottoms);
+    AccelerationStructure copy(const AccelerationStructure& source, VkAccelerationStructureTypeKHR type, Copy mode);
+    AccelerationStructure deserialize(const Serialized& file, VkAccelerationStructureTypeKHR type);
+    std::uint64_t property(const AccelerationStructure& structure, VkQueryType type);
+
+    Context& context_;
+    Misdeed misdeed_ = Misdeed::none;
+    std::size_t traces_ = 0;
+    std::unique_ptr<Kernel<QueryArgs>> query_;  // one of these
+    std::unique_ptr<PipelineQuery> pipeline_;
+};
+
+}  // namespace twinray::conformance

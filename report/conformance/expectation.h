@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// What a ray meets, by brute force in float64: every primitive with how certain it is in float32.
+#pragma once
+
+#include <vector>
+
+#include "report/conformance/query.h"
+#include "report/conformance/scene_input.h"
+#include "validation/reference/error_bounds.h"
+
+namespace twinray::conformance {
+
+// A primitive that a driver must or may offer to a ray.
+struct Candidate {
+    uint instance = 0, geometry = 0, primitive = 0;
+    bool is_box = false;
+    bool is_sure = false;  // no rounding of float32 excuses its absence
+    bool is_front = false;
+    bool is_opaque = false;
+    bool is_offered_once = false;  // VK_GEOMETRY_NO_DUPLICATE_ANY_HIT_INVOCATION_BIT_KHR
+    double t_low = 0, t_high = 0;  // of triangles: where a driver finds it; of boxes: from one side to the other
+
+    uint name() const { return candidate_name(is_box, instance, geometry, primitive); }
+};
+
+// A scene in float64. Immutable, so threads may share it.
+class Expectation {
+  public:
+    // Copies what it needs. Transforms of geometries are to be such that their product with the instance's is exact.
+    explicit Expectation(const SceneInput& scene);
+
+    // All that masks, flags and the interval leave, by instance, geometry and primitive. A driver may offer any box, so
+    // all are there.
+    std::vector<Candidate> candidates(const Shot& shot) const;
+
+    // Whether u and v name a point that lies within rounding of the ray.
+    bool is_on_ray(const Shot& shot, const Candidate& candidate, vec2 uv) const;
+    // Whether the ray in the instance's space, as a driver told it, is right up to rounding.
+    bool is_object_ray(const Shot& shot, uint instance, vec3 origin, vec3 direction) const;
+    const InstanceInput& instance(uint index) const { return instances_[index]; }
+
+  private:
+    struct Triangle {
+        uint primitive;
+        Triangle64 vertices;
+        dvec3 center;
+        double radius;
+    };
+    struct PlacedGeometry {
+        VkGeometryFlagsKHR flags;
+        Placement64 placement;
+        bool is_mirrored;  // by its own transform, which a build applies: the front is that of the moved triangle
+        std::vector<Triangle> triangles;
+        std::vector<Bounds> boxes;
+    };
+    static PlacedGeometry placed(const GeometryInput& geometry, const Transform& to_world);
+    void add_triangles(const Shot& shot, Candidate candidate, const PlacedGeometry& geometry,
+                       std::vector<Candidate>& found) const;
+    void add_boxes(const Shot& shot, Candidate candidate, const PlacedGeometry& geometry,
+                   std::vector<Candidate>& found) const;
+
+    std::vector<InstanceInput> instances_;
+    std::vector<std::vector<PlacedGeometry>> geometries_;  // of each instance
+    std::vector<Placement64> placements_;
+};
+
+}  // namespace twinray::conformance

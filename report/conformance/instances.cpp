@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+// Instances: what they are called, masks, flags, transforms.
+#include <algorithm>
+
+#include "report/conformance/case_run.h"
+#include "report/conformance/rules.h"
+#include "report/conformance/suite.h"
+
+namespace twinray::conformance {
+namespace {
+
+constexpr uint instanced_triangles = 12;
+constexpr uint largest_index = (1u << 24) - 1;
+
+// Of one or two bottom levels, each instance somewhere else.
+SceneInput many_instances(CaseRun& run, uint count) {
+    SceneInput scene;
+    scene.bottoms.push_back({{random_triangles(run.draws(), instanced_triangles)}});
+    scene.bottoms.push_back({{random_triangles(run.draws(), instanced_triangles), random_triangles(run.draws(), 4)}});
+    for (uint i = 0; i < count; ++i) {
+        InstanceInput& instance = scene.top.instances.emplace_back();
+        instance.bottom = run.draws().below(2);
+        instance.to_world = random_instance_transform(run.draws());
+    }
+    return scene;
+}
+
+void ids(CaseRun& run) {
+    SceneInput scene = many_instances(run, 6);
+    for (InstanceInput& instance : scene.top.instances) {
+        instance.custom_index = run.draws().below(largest_index + 1);
+        instance.sbt_offset = run.draws().below(largest_index + 1);
+    }
+    scene.top.instances[0].custom_index = scene.top.instances[1].sbt_offset = largest_index;
+    scene.top.instances[2].custom_index = scene.top.instances[3].sbt_offset = 0;
+    run.check_hits(scene, random_shots(run.draws(), run.rays()));
+}
+
+SceneInput masked_instances(CaseRun& run) {
+    SceneInput scene = many_instances(run, 6);
+    for (InstanceInput& instance : scene.top.instances) instance.mask = run.draws().below(256);
+    scene.top.instances[0].mask = 0;
+    scene.top.instances[1].mask = 0xff;
+    return scene;
+}
+
+void masks(CaseRun& run) {
+    std::vector<Shot> shots = random_shots(run.draws(), run.rays());
+    for (Shot& shot : shots) shot.cull_mask = run.draws().chance(0.1) ? 0 : run.draws().below(256);
+    run.check_hits(masked_instances(run), shots);
+}
+
+void single_bits(CaseRun& run) {
+    std::vector<Shot> shots = random_shots(run.draws(), run.rays());
+    for (Shot& shot : shots) shot.cull_mask = 1u << run.draws().below(8);
+    run.check_hits(masked_instances(run), shots);
+}
+
+void mask_above_8_bits(CaseRun& run) {
+    std::vector<Shot> shots = random_shots(run.draws(), run.rays());
+    for (Shot& shot : shots) shot.cull_mask = run.draws().below(1u << 16) << 8 | 1u << run.draws().below(8);
+    run.check_hits(masked_instances(run), shots);
+}
+
+// Half of the instances have the flags, half of the rays cull each side.
+void check_facing(CaseRun& run, VkGeometryInstanceFlagsKHR flags) {
+    SceneInput scene = many_instances(run, 5);
+    for (InstanceInput& instance : scene.top.instances) instance.flags = run.draws().chance(0.5) ? flags : 0;
+    scene.top.instances[0].flags = flags;
+    std::vector<Shot> shots = random_shots(run.draws(), run.rays());
+    for (Shot& shot : shots) shot.flags = run.draws().chance(0.5) ? ray_culls_back : ray_culls_front;
+    run.check_hits(scene, shots);
+}
+
+void cull_disable(CaseRun& run) { check_facing(run, VK_GEOMETRY_INSTANCE_TRIANGLE_FACING_CULL_DISABLE_BIT_KHR); }
+void flip_facing(CaseRun& run) { check_facing(run, VK_GEOMETRY_INSTANCE_TRIANGLE_FLIP_FACING_BIT_KHR); }
+void both_facing(CaseRun& run) {
+    check_facing(run, VK_GEOMETRY_INSTANCE_TRIANGLE_FLIP_FACING_BIT_KHR |
+                          VK_GEOMETRY_INSTANCE_TRIANGLE_FACING_CULL_DISABLE_BIT_KHR);
+}
+
+// Opaque geometries and others, instances with the flag and without; random refusals show which is which.
+void check_opacity(CaseRun& run, VkGeometryInstanceFlagsKHR flags) {
+    SceneInput scene = many_instances(run, 5);
+    scene.bottoms[1].geometries[0].flags = 0;
+    for (InstanceInput& instance : scene.top.instances) instance.flags = run.draws().chance(0.5) ? flags : 0;
+    for (uint i = 0; i < 2; ++i) scene.top.instances[i].flags = flags;
+    scene.top.instances[0].bottom = 0;
+    scene.top.instances[1].bottom = 1;
+    std::vector<Shot> shots = random_shots(run.draws(), run.rays() / 2 + 1);
+    for (Shot& shot : shots) shot.refused = run.draws().below(1u << instanced_triangles);
+    run.check_hits(scene, shots);
+    run.check_candidates(scene, shots);
+}
+
+void force_opaque(CaseRun& run) { check_opacity(run, VK_GEOMETRY_INSTANCE_FORCE_OPAQUE_BIT_KHR); }
+void force_no_opaque(CaseRun& run) { check_opacity(run, VK_GEOMETRY_INSTANCE_FORCE_NO_OPAQUE_BIT_KHR); }
+
+void transforms(CaseRun& run) { run.check_hits(many_instances(run, 4), random_shots(run.draws(), run.rays())); }
+
+// Facing is that of the object's space, which a mirror does not change.
+void mirrors(CaseRun& run) {
+    SceneInput scene = many_instances(run, 3);
+    for (InstanceInput& instance : scene.top.instances)
+        instance.to_world = instance.to_world * Transform::scaling(vec3(run.draws().chance(0.5) ? -1 : 1, -1, 1));
+    std::vector<Shot> shots = random_shots(run.draws(), run.rays());
+    for (Shot& shot : shots) shot.flags = run.draws().chance(0.5) ? ray_culls_back : ray_culls_front;
+    run.check_hits(scene, shots);
+}
+
+void many(CaseRun& run) {
+    SceneInput scene = scene_of(random_triangles(run.draws(), 2));
+    scene.top.instances.resize(48);
+    for (InstanceInput& instance : scene.top.instances)
+        instance.to_world = Transform::translation(run.draws().point(3)) * random_instance_transform(run.draws());
+    run.check_hits(scene, random_shots(run.draws(), run.rays(), 3));
+}
+
+}  // namespace
+
+std::vector<Case> instance_cases() {
+    using enum Misdeed;
+    constexpr Topic topic = Topic::instances;
+    const std::string same = "hits are those of float64";
+    return {
+        {"K34", topic, "custom indices and record offsets of 24 bits", "VK-GL-CTS instance ids, slang-rhi instances",
+         "as they were given", Demand::must, forgets_instance_ids, ids},
+        {"K35", topic, "masks of instances, 0 and 0xff too", "VK-GL-CTS masks, slang-rhi masks",
+         "instances that share no bit are not hit", Demand::must, forgets_instance_masks, masks},
+        {"K36", topic, "masks of rays of a single bit", "VK-GL-CTS masks", "instances without it are not hit",
+         Demand::must, forgets_ray_masks, single_bits},
+        {"K37", topic, "masks of rays with bits above the eighth", "VK-GL-CTS masks", "those do not count",
+         Demand::must, forgets_ray_masks, mask_above_8_bits},
+        {"K38", topic, "FACING_CULL_DISABLE against rays that cull", "VK-GL-CTS instance flags, culling",
+         "nothing is culled there", Demand::must, forgets_instance_flags, cull_disable},
+        {"K39", topic, "FLIP_FACING against rays that cull", "VK-GL-CTS instance flags, culling",
+         "front and back change places", Demand::must, forgets_instance_flags, flip_facing},
+        {"K40", topic, "both of these", "VK-GL-CTS instance flags, culling", "nothing is culled, facing is told turned",
+         Demand::must, forgets_instance_flags, both_facing},
+        {"K41", topic, "FORCE_OPAQUE", "VK-GL-CTS instance flags, opacity", "nothing is offered there", Demand::must,
+         forgets_instance_flags, force_opaque},
+        {"K42", topic, "FORCE_NO_OPAQUE", "VK-GL-CTS instance flags, opacity", "all is offered there", Demand::must,
+         forgets_instance_flags, force_no_opaque},
+        {"K43", topic, "rotation, scale and shear", "VK-GL-CTS transforms, slang-rhi transforms",
+         same + ", the object's ray and map too", Demand::must, forgets_transforms, transforms},
+        {"K44", topic, "mirrors, against rays that cull", "VK-GL-CTS culling under transforms",
+         "facing is that of the object's space", Demand::must, forgets_transforms, mirrors},
+        {"K45", topic, "48 instances of one bottom level", "VK-GL-CTS many instances", same, Demand::must,
+         forgets_transforms, many},
+    };
+}
+
+}  // namespace twinray::conformance

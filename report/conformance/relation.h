@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// Scenes and rays changed in ways that must not change what is hit, and answers brought back.
+#pragma once
+
+#include <functional>
+
+#include "report/conformance/expectation.h"
+#include "report/conformance/verdict.h"
+
+namespace twinray::conformance {
+
+// A scene and its rays, and what an answer there means for the scene it came of: ids and t. Facing, barycentrics and
+// the object's ray are not brought back.
+struct Changed {
+    SceneInput scene;
+    std::vector<Shot> shots;
+    std::function<void(Answer&)> bring_back = [](Answer&) {};
+};
+
+// Coordinates are multiples of 2^-10 of some units (draws.h), so that all of these are exact.
+Changed translated(const SceneInput& scene, std::span<const Shot> shots, vec3 offset);
+Changed turned(const SceneInput& scene, std::span<const Shot> shots, int axis);  // by 90 degrees
+Changed scaled(const SceneInput& scene, std::span<const Shot> shots, float power_of_two);
+Changed faster(const SceneInput& scene, std::span<const Shot> shots, float power_of_two);  // directions
+// Triangle order[i] of the first geometry becomes triangle i.
+Changed permuted(const SceneInput& scene, std::span<const Shot> shots, std::span<const uint> order);
+// The first geometry becomes two, those before `at` and the others; or two bottom levels in two instances.
+Changed split_geometry(const SceneInput& scene, std::span<const Shot> shots, uint at);
+Changed split_instance(const SceneInput& scene, std::span<const Shot> shots, uint at);
+// Vertices are moved by the inverse, instances back again.
+Changed by_instance(const SceneInput& scene, std::span<const Shot> shots, vec3 offset, float power_of_two);
+// The ray from its end at `t` back to its origin.
+Shot reversed(const Shot& shot, float t);
+
+// Whether two answers to a shot say the same. They may name different triangles where rounding decides: an edge, a tie,
+// an end of the interval.
+Finding compare_hits(const Expectation& expectation, const Shot& shot, const Answer& first, const Answer& second);
+// Whether two lists name the same candidates, whatever the order. Those that are in one alone must be uncertain.
+Finding compare_candidates(const Expectation& expectation, const Shot& shot, std::span<const uint> first,
+                           std::span<const uint> second);
+
+}  // namespace twinray::conformance

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: MIT
+#include "report/conformance/suite.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <deque>
+
+#include "engine/core/error.h"
+#include "engine/core/statistics.h"
+#include "report/conformance/case_run.h"
+#include "validation/records/progress.h"
+
+namespace twinray::conformance {
+namespace {
+
+// Rays of a case in the quick suite, and of a control; so many rays are traced through one scene.
+constexpr std::size_t quick_rays = 2048, quick_round = 512, full_round = 1u << 14, control_rays = 512;
+
+constexpr std::array<std::string_view, topic_count> topics = {"builds",    "updates",   "copies",      "serialisation",
+                                                              "instances", "ray flags", "any hit",     "boxes",
+                                                              "limits",    "edges",     "determinism", "relations"};
+
+Record blank(const Case& row, Way way, const Settings& settings) {
+    Record record;
+    record.case_id = row.id;
+    record.backend = name_of(way);
+    record.reference = row.topic == Topic::relations || row.topic == Topic::determinism ? "invariance" : "f64";
+    record.seed = settings.seed;
+    record.criterion = row.demanded;
+    record.results = {{"topic", std::string(name_of(row.topic))},
+                      {"demand", std::string(name_of(row.demand))},
+                      {"what", row.what},
+                      {"kind", row.kind}};
+    return record;
+}
+
+std::string control_variant(const Case& row) { return text("control: a driver that ", name_of(row.control)); }
+
+void fill(Record& record, const Tally& tally, double seconds) {
+    record.n = tally.n;
+    record.faults = tally.faults;
+    record.bound95 = upper_bound_95(tally.faults, tally.n);
+    record.counts = tally.counts;
+    record.example = tally.example;
+    record.results.insert(tally.results.begin(), tally.results.end());
+    record.results.insert_or_assign("seconds", seconds);
+}
+
+std::string reason_of(const Tally& tally) {
+    if (!tally.what.empty()) return tally.what;
+    return text(tally.faults, " of ", tally.n, " are not as they should be");
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+std::uint64_t seed_of(const Case& row, std::uint64_t seed, std::uint64_t round) {
+    std::uint64_t mixed = seed;
+    for (const char letter : row.id) mixed = mixed * 0x9e3779b97f4a7c15u + static_cast<std::uint64_t>(letter);
+    return mixed + round;
+}
+
+Tally rounds_of(const Case& row, Driver& driver, std::uint64_t seed, std::uint64_t rays, std::size_t round,
+                Progress& progress) {
+    Tally tally;
+    for (std::uint64_t done = 0, i = 0; done < rays; done += round, ++i) {
+        const std::size_t now = static_cast<std::size_t>(std::min<std::uint64_t>(round, rays - done));
+        CaseRun here(driver, seed_of(row, seed, i), now, tally);
+        row.run(here);
+        progress.advance(now);
+    }
+    return tally;
+}
+
+class Runner {
+  public:
+    Runner(Context& context, Way way, const Settings& settings, Recorder& recorder,
+           const std::function<void(const Record&)>& on_record, std::uint64_t rays_of_case, Progress& progress)
+        : context_(context),
+          way_(way),
+          settings_(settings),
+          recorder_(recorder),
+          on_record_(on_record),
+          rays_(rays_of_case),
+          progress_(progress) {}
+
+    // Throws DeviceLost, after recording it.
+    void run(const Case& row) {
+        progress_.rename(text("conformance ", row.id));
+        const std::string missing = why_not(row);
+        if (!missing.empty()) return leave_out(row, missing);
+        Record record = blank(row, way_, settings_);
+        guarded(record, [&] { run_case(row, record); });
+        Record control = blank(row, way_, settings_);
+        control.variant = control_variant(row);
+        control.criterion = "control: must show faults, which proves that the case sees them";
+        guarded(control, [&] { run_control(row, control); });
+    }
+
+    void leave_out(const Case& row, const std::string& reason) {
+        Record record = blank(row, way_, settings_);
+        record.was_run = false;
+        record.reason = reason;
+        add(record);
+        progress_.advance(rays_);
+    }
+
+  private:
+    std::string why_not(const Case& row) const {
+        const DeviceProperties& device = context_.properties();
+        if (way_ == Way::query && !device.ray_query) return "needs ray queries (VK_KHR_ray_query)";
+        if (way_ == Way::pipeline && !device.ray_tracing_pipeline)
+            return "needs ray tracing pipelines (VK_KHR_ray_tracing_pipeline)";
+        if (way_ == Way::pipeline && !row.not_by_pipeline.empty()) return row.not_by_pipeline;
+        if (row.culls_primitives && !device.primitive_culling) return "needs rayTraversalPrimitiveCulling";
+        return "";
+    }
+    void run_case(const Case& row, Record& record) {
+        const auto start = std::chrono::steady_clock::now();
+        driver().behave_as(Misdeed::none);
+        const Tally tally = rounds_of(row, driver(), settings_.seed, rays_, round(), progress_);
+        fill(record, tally, seconds_since(start));
+        record.pass = tally.faults == 0;
+        if (*record.pass) return;
+        record.fault_of = "driver";
+        record.reason = reason_of(tally);
+    }
+    void run_control(const Case& row, Record& record) {
+        const auto start = std::chrono::steady_clock::now();
+        Progress silent("control", control_rays, true);
+        driver().behave_as(row.control);
+        const Tally tally = rounds_of(row, driver(), settings_.seed, control_rays, control_rays, silent);
+        fill(record, tally, seconds_since(start));
+        record.pass = tally.faults > 0;
+        if (*record.pass) return;
+        record.fault_of = "twinray";
+        record.reason = "the control shows no fault";
+    }
+    template <class Work>
+    void guarded(Record& record, const Work& work) {
+        const auto fail_by = [&](const std::exception& error, const char* fault_of) {
+            record.pass = false;
+            record.fault_of = fault_of;
+            record.reason = error.what();
+            add(record);
+        };
+        try {
+            work();
+        } catch (const DeviceLost& lost) {
+            fail_by(lost, "driver");
+            throw;
+        } catch (const std::exception& error) {
+            fail_by(error, "twinray");
+            return;
+        }
+        add(record);
+    }
+    void add(const Record& record) {
+        recorder_.add(record);
+        if (on_record_) on_record_(recorder_.records().back());
+    }
+    Driver& driver() {
+        if (!driver_) driver_ = std::make_unique<Driver>(context_, way_);
+        return *driver_;
+    }
+    std::size_t round() const { return settings_.is_full ? full_round : quick_round; }
+
+    Context& context_;
+    Way way_;
+    const Settings& settings_;
+    Recorder& recorder_;
+    const std::function<void(const Record&)>& on_record_;
+    std::uint64_t rays_;
+    Progress& progress_;
+    std::unique_ptr<Driver> driver_;
+};
+
+}  // namespace
+
+std::string_view name_of(Topic topic) { return topics[static_cast<std::size_t>(topic)]; }
+
+std::vector<Case> catalogue() {
+    std::vector<Case> all;
+    for (const auto& part : {build_cases, format_cases, update_cases, copy_cases, instance_cases, ray_flag_cases,
+                             any_hit_cases, box_cases, limit_cases, edge_cases, relation_cases})
+        for (Case& row : part()) all.push_back(std::move(row));
+    return all;
+}
+
+void run(Context& context, const Settings& settings, Recorder& recorder, bool quiet,
+         const std::function<void(const Record&)>& on_record) {
+    std::vector<Case> cases = catalogue();
+    constexpr std::array ways = {Way::query, Way::pipeline};
+    const std::uint64_t all = ways.size() * cases.size();  // so that a case takes as many whichever others run
+    const std::uint64_t rays = settings.is_full ? (settings.full_rays + all - 1) / all : quick_rays;
+    if (settings.is_wanted) std::erase_if(cases, [&](const Case& row) { return !settings.is_wanted(row); });
+    Progress progress("conformance", ways.size() * cases.size() * rays, quiet);
+    std::string lost;  // where it was
+    std::deque<Runner> runners;
+    for (const Way way : ways) runners.emplace_back(context, way, settings, recorder, on_record, rays, progress);
+    for (const Case& row : cases)
+        for (Runner& runner : runners) {
+            if (!lost.empty()) {
+                runner.leave_out(row, lost);
+                continue;
+            }
+            try {
+                runner.run(row);
+            } catch (const DeviceLost&) {
+                lost = text("the device was lost in ", row.id);
+            }
+        }
+}
+
+std::vector<Record> records_of_ended(const Case& row, std::span<const Record> finished, const Settings& settings,
+                                     const std::string& how) {
+    std::vector<Record> records;
+    for (const Way way : {Way::query, Way::pipeline}) {
+        const auto has = [&](const auto& wanted) {
+            return std::ranges::any_of(finished, [&](const Record& record) {
+                return record.case_id == row.id && record.backend == name_of(way) && wanted(record);
+            });
+        };
+        if (has([](const Record& record) { return is_control(record) || !record.was_run; })) continue;
+        Record record = blank(row, way, settings);
+        if (has([](const Record&) { return true; })) record.variant = control_variant(row);
+        record.reason = how;
+        record.was_run = records.empty();
+        if (record.was_run) {
+            record.pass = false;
+            record.fault_of = "driver";
+        }
+        records.push_back(record);
+    }
+    return records;
+}
+
+bool fails_demands(std::span<const Record> records) {
+    return std::ranges::any_of(records, [](const Record& record) {
+        return record.pass == false && record.fault_of == "driver" && !is_control(record) &&
+               record.results.at("demand") == Value("must");
+    });
+}
+
+bool has_fault_of_ours(std::span<const Record> records) {
+    return std::ranges::any_of(records, [](const Record& record) { return record.fault_of == "twinray"; });
+}
+
+}  // namespace twinray::conformance

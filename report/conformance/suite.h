@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+// Whether a driver's own acceleration structures do what Vulkan says: cases by kind, each with a negative control.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "report/conformance/misdeed.h"
+#include "validation/records/recorder.h"
+
+namespace twinray::conformance {
+
+enum class Topic : std::uint8_t {
+    builds,
+    updates,
+    copies,
+    serialization,
+    instances,
+    ray_flags,
+    any_hit,
+    boxes,
+    limits,
+    edges,
+    determinism,
+    relations,
+};
+inline constexpr std::size_t topic_count = 12;
+std::string_view name_of(Topic topic);
+
+// What Vulkan says of it.
+enum class Demand : std::uint8_t {
+    must,    // "must", or what a command is defined to do
+    should,  // "should", or what users count on and Vulkan leaves open
+};
+constexpr std::string_view name_of(Demand demand) { return demand == Demand::must ? "must" : "should"; }
+
+class CaseRun;
+
+struct Case {
+    std::string id;  // "K01"
+    Topic topic;
+    std::string what;
+    std::string kind;      // public conformance suites that ask the like, or the relation's name
+    std::string demanded;  // when it passes
+    Demand demand = Demand::must;
+    Misdeed control = Misdeed::none;  // that must show faults here
+    std::function<void(CaseRun&)> run;
+    bool culls_primitives = false;     // needs rayTraversalPrimitiveCulling
+    std::string not_by_pipeline = {};  // why only ray queries can tell; "" = both can
+};
+
+// The catalogue, a function and a file for each topic.
+std::vector<Case> build_cases();
+std::vector<Case> format_cases();
+std::vector<Case> update_cases();
+std::vector<Case> copy_cases();
+std::vector<Case> instance_cases();
+std::vector<Case> ray_flag_cases();
+std::vector<Case> any_hit_cases();
+std::vector<Case> box_cases();
+std::vector<Case> limit_cases();
+std::vector<Case> edge_cases();
+std::vector<Case> relation_cases();
+std::vector<Case> catalogue();  // all of them
+
+inline bool is_control(const Record& record) { return record.variant.starts_with("control"); }
+
+struct Settings {
+    bool is_full = false;
+    std::uint64_t full_rays = 100'000'000;  // of all cases by both ways together, where is_full
+    std::uint64_t seed = 1;
+    std::function<bool(const Case&)> is_wanted = {};  // of the catalogue; empty: all
+};
+
+// Runs all cases and the control of each, by ray query (backend "hw") and by ray tracing pipeline ("hw-pipeline"). A
+// record a case, each case by both ways before the next, and one with the variant "control: ..." for its control, which
+// passes where it shows faults. Of records that did not pass, fault_of is the driver's, or ours where a control shows
+// nothing or a case could not be carried out. results has "topic", "demand", "what" and "kind". On a device without one
+// of the ways its cases are recorded as not run. `on_record` follows each. A case in which the device is lost or hangs
+// (see ContextDesc::most_wait_seconds) is the driver's fault, and the cases after it are not run: nothing of the
+// context is.
+void run(Context& context, const Settings& settings, Recorder& recorder, bool quiet,
+         const std::function<void(const Record&)>& on_record = {});
+
+// Records of a case that was begun in a process which the driver ended, beside those that it left: the first that is
+// missing is a fault of the driver, `how` it ended, and the others were not run for it. None where `finished` has all
+// of the case: of each way one that was not run, or its control.
+std::vector<Record> records_of_ended(const Case& row, std::span<const Record> finished, const Settings& settings,
+                                     const std::string& how);
+
+// Of records of a run: whether the driver fails what Vulkan demands; whether the suite itself does.
+bool fails_demands(std::span<const Record> records);
+bool has_fault_of_ours(std::span<const Record> records);
+
+}  // namespace twinray::conformance

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: MIT
+#include "report/page/compare.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <random>
+#include <set>
+
+#include "engine/core/error.h"
+#include "report/page/significance.h"
+#include "report/page/wording.h"
+
+namespace twinray::report {
+namespace {
+
+constexpr std::uint64_t few = 100;       // items, of which a rate says little
+constexpr std::size_t fewest_cases = 5;  // of which the bootstrap draws
+constexpr std::size_t draws = 10'000;
+
+using Pair = std::pair<const Record*, const Record*>;  // before and now
+
+std::string name_of(const Record& record) {
+    std::string name = record.case_id;
+    for (const std::string& part : {record.backend, record.level, record.variant})
+        if (!part.empty()) name += ' ' + part;
+    const std::string settings = settings_text(record);
+    return settings.empty() ? name : name + " {" + settings + '}';
+}
+
+std::string group_of(const Record& record) { return record.backend + ' ' + record.level; }
+
+// Whether they are of one case, accelerator and level, whatever their settings.
+bool asks_of_one(const Record& a, const Record& b) {
+    return a.case_id == b.case_id && a.backend == b.backend && a.level == b.level;
+}
+
+// Something that may have changed, with the probability of what was seen if it did not.
+struct Suspicion {
+    Change change;
+    double p = 1;
+};
+
+// So many of n, before and now.
+struct Counted {
+    std::uint64_t before = 0, n_before = 0, now = 0, n_now = 0;
+    // Of the rate: above 0 where it rose.
+    double rise() const {
+        return static_cast<double>(now) * static_cast<double>(n_before) -
+               static_cast<double>(before) * static_cast<double>(n_now);
+    }
+    std::string text_of(const std::string& kind) const {
+        return kind + ' ' + rate_text(before, n_before) + " -> " + rate_text(now, n_now);
+    }
+    Counted& operator+=(const Counted& other) {
+        before += other.before, n_before += other.n_before;
+        now += other.now, n_now += other.n_now;
+        return *this;
+    }
+};
+
+Suspicion suspicion_of(const std::string& what, const std::string& kind, const Counted& counted) {
+    return {{counted.rise() > 0 ? Change::Kind::worse : Change::Kind::better, what, counted.text_of(kind)},
+            fisher_exact(counted.before, counted.n_before, counted.now, counted.n_now)};
+}
+
+// Of whole cases, each of which counts as one: its rays share a scene that is random, too.
+Suspicion suspicion_of_cases(const std::string& what, const std::string& kind,
+                             const std::map<std::string, Counted>& cases) {
+    Counted sum;
+    std::size_t rose = 0, fell = 0;
+    for (const auto& [id, counted] : cases) {
+        sum += counted;
+        rose += counted.rise() > 0;
+        fell += counted.rise() < 0;
+    }
+    const bool is_worse = rose > fell;
+    return {{is_worse ? Change::Kind::worse : Change::Kind::better, what,
+             sum.text_of(kind) +
+                 text(is_worse ? ", more in " : ", less in ", std::max(rose, fell), " cases of ", cases.size())},
+            sign_test(rose, fell)};
+}
+
+// Any answer that Vulkan and rounding allow.
+bool is_right(std::string_view kind) {
+    for (const char* right : {"AGREE", "TIE", "BOUNDARY", "BOUNDARY_HW_MISS", "UNSPECIFIED"})
+        if (kind == right) return true;
+    return false;
+}
+
+// Whether its counts are those of classes, one for each item.
+bool has_classes(const Record& record) {
+    std::uint64_t sum = 0;
+    for (const auto& [kind, count] : record.counts) sum += count;
+    return !record.counts.empty() && sum == record.n;
+}
+
+// By class; where a record has no classes, its faults.
+std::map<std::string, Counted> counts_of(const Record& before, const Record& now) {
+    std::map<std::string, Counted> counts;
+    for (const auto& [record, is_now] : {std::pair{&before, false}, std::pair{&now, true}}) {
+        if (!has_classes(*record)) (is_now ? counts["faults"].now : counts["faults"].before) += record->faults;
+        if (!has_classes(*record)) continue;
+        for (const auto& [kind, count] : record->counts)
+            if (!is_right(kind)) (is_now ? counts[kind].now : counts[kind].before) += count;
+    }
+    for (auto& [kind, counted] : counts) counted.n_before = before.n, counted.n_now = now.n;
+    return counts;
+}
+
+class Comparing {
+  public:
+    Comparing(std::span<const Record> before, std::span<const Record> now) {
+        std::map<std::string, const Record*> known;
+        for (const Record& record : before) known[name_of(record)] = &record;
+        std::vector<const Record*> only_now;
+        for (const Record& record : now) {
+            const auto found = known.find(name_of(record));
+            if (found == known.end()) {
+                only_now.push_back(&record);
+                continue;
+            }
+            pairs_.emplace_back(found->second, &record);
+            result_.has_one_seed &= found->second->seed == record.seed;
+            known.erase(found);
+        }
+        result_.compared = pairs_.size();
+        result_.only_before = known.size();
+        result_.only_now = only_now.size();
+        // What is not run has no settings, so that it corresponds to nothing that has.
+        for (const Record* record : only_now)
+            if (!record->was_run && std::ranges::any_of(known, [&](const auto& was) {
+                    return was.second->was_run && asks_of_one(*was.second, *record);
+                }))
+                add_lost(*record);
+    }
+
+    Comparison result() {
+        for (const Pair& pair : pairs_) look_at(pair);
+        for (const auto& [what, kinds] : by_case_)
+            for (const auto& [kind, cases] : kinds) suspicions_.push_back(suspicion_over(what, kind, cases));
+        compare_times();
+        std::vector<double> p;
+        for (const Suspicion& suspicion : suspicions_) p.push_back(suspicion.p);
+        const std::vector<bool> is_sure = holm(p, false_alarms);
+        for (std::size_t i = 0; i < p.size(); ++i)
+            if (is_sure[i]) result_.changes.push_back(suspicions_[i].change);
+        result_.tests = p.size();
+        return result_;
+    }
+
+  private:
+    Suspicion suspicion_over(const std::string& what, const std::string& kind,
+                             const std::map<std::string, Counted>& cases) const {
+        if (!result_.has_one_seed) return suspicion_of_cases(what, kind, cases);
+        Counted sum;
+        for (const auto& [id, counted] : cases) sum += counted;
+        return suspicion_of(what, kind, sum);
+    }
+
+    void add_lost(const Record& record) { add(Change::Kind::worse, record, "was run, and is not: " + record.reason); }
+
+    void add(Change::Kind kind, const Record& record, const std::string& how) {
+        result_.changes.push_back({kind, name_of(record), how});
+    }
+
+    void look_at(const Pair& pair) {
+        const auto& [before, now] = pair;
+        if (before->was_run != now->was_run) {
+            if (!now->was_run) add_lost(*now);
+            return;
+        }
+        if (!now->was_run) return;
+        const bool was_fault_of_ours = before->fault_of == "twinray", is_fault_of_ours = now->fault_of == "twinray";
+        const bool asks_the_same = before->seed == now->seed && before->n == now->n;
+        if (is_fault_of_ours && !was_fault_of_ours) {
+            add(Change::Kind::worse, *now, "a fault of twinray: " + now->reason + now->example);
+        } else if (asks_the_same && now->n < few && before->pass != now->pass && before->pass && now->pass) {
+            add(*now->pass ? Change::Kind::better : Change::Kind::worse, *now,
+                *now->pass ? "did not pass, and does" : "passed, and does not: " + now->reason + now->example);
+        } else if (is_users_kernel(*now)) {
+            for (const auto& [kind, counted] : counts_of(*before, *now)) {
+                if (counted.before + counted.now == 0) continue;
+                if (result_.has_one_seed) suspicions_.push_back(suspicion_of(name_of(*now), kind, counted));
+                // Cases of other amounts would change the sum of all without a change in any.
+                if (now->level == "fast" || (result_.has_one_seed && !asks_the_same)) continue;
+                by_case_[group_of(*now) + " over all cases"][kind][now->case_id] += counted;
+            }
+        }
+    }
+
+    // Log of the ratio of both medians, by case.
+    using CaseRatios = std::map<std::string, std::vector<double>>;
+
+    void compare_times() {
+        std::map<std::pair<std::string, std::string>, CaseRatios> groups;
+        std::vector<double> all;
+        for (const auto& [before, now] : pairs_) {
+            if (!before->time || !now->time || before->time->metric != now->time->metric || before->n != now->n)
+                continue;
+            if (!(before->time->median > 0 && now->time->median > 0) || !is_users_kernel(*now)) continue;
+            all.push_back(std::log(now->time->median / before->time->median));
+            groups[{now->backend, now->level}][now->case_id].push_back(all.back());
+        }
+        if (all.empty()) return;
+        const double drift = median(all);
+        result_.drift = std::exp(drift);
+        for (auto& [key, cases] : groups) {
+            if (cases.size() < fewest_cases) continue;
+            for (auto& [id, ratios] : cases)
+                for (double& ratio : ratios) ratio -= drift;
+            compare_group(key.first, key.second, cases);
+        }
+    }
+
+    void compare_group(const std::string& backend, const std::string& level, const CaseRatios& cases) {
+        std::vector<double> means;  // each case counts once: what it measures has the machine's state in common
+        std::size_t measurements = 0;
+        for (const auto& [id, ratios] : cases) {
+            means.push_back(median(ratios));
+            measurements += ratios.size();
+        }
+        const double mean = median(means);
+        std::mt19937_64 random(1);
+        std::vector<double> drawn(draws), items(means.size());
+        for (double& value : drawn) {
+            for (double& item : items) item = means[random() % means.size()];
+            value = median(items);
+        }
+        std::sort(drawn.begin(), drawn.end());
+        const TimeRatio ratio{backend,
+                              level,
+                              std::exp(mean),
+                              {std::exp(quantile(drawn, 0.025)), std::exp(quantile(drawn, 0.975))},
+                              measurements};
+        result_.times.push_back(ratio);
+        const double margin = std::log(tolerated_ratio);
+        const auto within = static_cast<double>(std::count_if(
+            drawn.begin(), drawn.end(), [&](double value) { return mean > 0 ? value < margin : value > -margin; }));
+        suspicions_.push_back(
+            {{mean > 0 ? Change::Kind::slower : Change::Kind::faster,
+              "times of " + backend + (level.empty() ? "" : ' ' + level),
+              with_interval(ratio.ratio, ratio.ratio_95, 3) + " times as long, beside all times together"},
+             (1 + within) / (1 + static_cast<double>(draws))});
+    }
+
+    std::vector<Pair> pairs_;
+    // What: the kinds, each by case.
+    std::map<std::string, std::map<std::string, std::map<std::string, Counted>>> by_case_;
+    std::vector<Suspicion> suspicions_;
+    Comparison result_ = {};
+};
+
+}  // namespace
+
+bool Comparison::is_worse() const {
+    return std::any_of(changes.begin(), changes.end(), [](const Change& change) {
+        return change.kind == Change::Kind::worse || change.kind == Change::Kind::slower;
+    });
+}
+
+Comparison compare(std::span<const Record> before, std::span<const Record> now) {
+    return Comparing(before, now).result();
+}
+
+}  // namespace twinray::report

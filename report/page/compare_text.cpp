@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+#include "report/page/compare_text.h"
+
+#include <algorithm>
+#include <iomanip>
+#include <set>
+
+#include "engine/core/error.h"
+#include "validation/records/recorder.h"
+#include "report/page/verdict.h"
+#include "report/page/wording.h"
+
+namespace twinray::report {
+namespace {
+
+std::string_view word_of(Change::Kind kind) {
+    switch (kind) {
+        case Change::Kind::worse: return "worse";
+        case Change::Kind::better: return "better";
+        case Change::Kind::slower: return "slower";
+        case Change::Kind::faster: return "faster";
+    }
+    return "";
+}
+
+std::string listed(const std::set<std::string>& ids) {
+    return text(ids.size(), ids.empty() ? "" : " (" + joined({ids.begin(), ids.end()}) + ')');
+}
+
+// One for SwTlas, one for each way of the driver.
+void print_rows(std::ostream& out, std::span<const Record> records) {
+    const std::vector<Finding> findings = findings_of(records);
+    const std::vector<Speed> speeds = speeds_of(records);
+    const CaseResults own = results_of(records, "K");
+    for (const std::string_view backend : {"sw", "hw", "hw-pipeline"}) {
+        std::set<std::string> cases;
+        for (const Record& record : records)
+            if (record.was_run && record.backend == backend && is_users_kernel(record)) cases.insert(record.case_id);
+        if (cases.empty()) continue;
+        out << "| " << records.front().device.name << ", " << records.front().device.driver << " | "
+            << answerer(backend) << " | " << cases.size() << " |";
+        for (const Mistake mistake : all_mistakes) {
+            const auto found = std::ranges::find_if(findings, [&](const Finding& finding) {
+                return finding.backend == backend && finding.mistake == mistake;
+            });
+            out << ' ' << (found == findings.end() ? "" : text_of(*found)) << " |";
+        }
+        const auto speed = std::ranges::find_if(
+            speeds, [&](const Speed& one) { return one.backend == backend && one.level == "watertight"; });
+        out << ' '
+            << (backend == "sw" || own.run.empty() ? ""
+                                                   : listed(own.failed_by_driver) + "; " + listed(own.not_as_advised))
+            << " | "
+            << (speed == speeds.end()
+                    ? ""
+                    : with_interval(speed->ratio, speed->ratio_95) + (speed->is_disturbed ? " (disturbed)" : ""))
+            << " |\n";
+    }
+}
+
+}  // namespace
+
+NamedReport read_report(const std::filesystem::path& path) {
+    const std::filesystem::path file = std::filesystem::is_directory(path) ? path / "report.jsonl" : path;
+    NamedReport report{path.string(), read_json_lines(file).records};
+    if (report.records.empty()) fail("report '", file.string(), "' has no record of `twinray report`");
+    return report;
+}
+
+void print_side_by_side(std::ostream& out, std::span<const NamedReport> reports) {
+    for (const NamedReport& report : reports) {
+        const Record& first = report.records.front();
+        out << report.name << ": " << first.device.name << ", " << first.device.driver << "; twinray " << first.git
+            << ", " << first.run << "\n  " << verdict_of(report.records).headline << '\n';
+    }
+    out << "\n| driver | answers | cases |";
+    for (const Mistake mistake : all_mistakes) out << ' ' << name_of(mistake) << " |";
+    out << " own structures: fail what Vulkan demands; advises | time over SwTlas |\n|---|---|---|";
+    for (std::size_t i = 0; i < all_mistakes.size(); ++i) out << "---|";
+    out << "---|---|\n";
+    for (const NamedReport& report : reports) print_rows(out, report.records);
+    out << '\n';
+}
+
+void print_comparison(std::ostream& out, const Comparison& comparison) {
+    for (const Change& change : comparison.changes)
+        out << "  " << word_of(change.kind) << ": " << change.what << ": " << change.how << '\n';
+    for (const TimeRatio& time : comparison.times)
+        out << "  times of " << std::left << std::setw(24) << time.backend + ' ' + time.level
+            << with_interval(time.ratio, time.ratio_95, 3) << " over " << time.measurements << " measurements\n";
+    out << "  all times together: " << number(comparison.drift, 3)
+        << " times as long, which is taken out of those above\n  " << comparison.compared << " measurements compared, "
+        << comparison.only_before << " only before, " << comparison.only_now << " only now; " << comparison.tests
+        << " tests, which report a change where there is none in " << number(100 * false_alarms)
+        << " % of comparisons at most\n  "
+        << (comparison.has_one_seed
+                ? ""
+                : "their seeds differ, and so do their scenes: rates are compared over all cases together\n  ")
+        << (comparison.is_worse()        ? "verdict: worse"
+            : comparison.changes.empty() ? "verdict: no change beyond noise"
+                                         : "verdict: changed, and nothing is worse")
+        << '\n';
+}
+
+}  // namespace twinray::report

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// The page of a report: verdict first, then the plots that matter, then everything else, folded.
+#pragma once
+
+#include <filesystem>
+#include <utility>
+
+#include "report/page/compare.h"
+#include "report/page/figure.h"
+#include "report/suite/suite.h"
+
+namespace twinray::report {
+
+struct PageInput {
+    std::string suite;   // "quick"
+    double seconds = 0;  // that it took
+    std::span<const suite::SuiteCase> catalogue;
+    std::span<const Record> records;
+    std::string baseline = {};             // file that was compared to; "" = none
+    std::span<const Change> changes = {};  // since then
+    // Drawn, each as an <svg> element; "" where there is no gnuplot.
+    std::vector<std::pair<Figure, std::string>> figures = {};
+    std::vector<std::string> reproducers = {};  // classes of faults, each with a folder in reproducers/
+};
+
+// One page of HTML that is XML, too, needs no script, and refers to nothing but the files beside it that it links.
+std::string page(const PageInput& input);
+// Throws Error naming the file.
+void write_page(const std::filesystem::path& file, const PageInput& input);
+
+}  // namespace twinray::report

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// What SwTlas computes on the way to one triangle, beside what is true: the arithmetic of the shaders run on the CPU.
+#pragma once
+
+#include <iosfwd>
+
+#include "validation/exact/exact_reference.h"
+#include "report/suite/cpu_reference.h"
+
+namespace twinray::replay {
+
+class Explainer {
+  public:
+    // The scene is only read here; the reference must outlive it.
+    Explainer(const Scene& scene, const ReferenceScene& reference, const Ray& ray, Level level);
+
+    // The triangle test: vertices as the ray sees them, edge functions in float32 and exactly, and what each decides.
+    void print_test(std::ostream& out, exact::TriangleId triangle) const;
+    // The boxes of SwTlas's trees that lead to it, and whether the ray enters them with the padding and without.
+    void print_boxes(std::ostream& out, exact::TriangleId triangle) const;
+
+  private:
+    RaySpace object_space(uint instance) const;
+
+    const ReferenceScene& reference_;
+    Ray ray_;       // as given
+    Ray searched_;  // as the level searches with it
+    std::unique_ptr<reference::Scene> on_cpu_;
+};
+
+}  // namespace twinray::replay

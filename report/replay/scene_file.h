@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// Scenes as files that keep every float, so that a ray can be traced through the same scene again.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include <twinray/scene.h>
+
+#include "validation/reference/reference_scene.h"
+#include "report/replay/replay.h"
+
+namespace twinray::replay {
+
+// What a reference was made of: meshes in the order of its instances, triangles by the same numbers; those that cannot
+// be hit have all vertices at 0. Masks and culling are left out.
+Scene scene_of(const ReferenceScene& reference);
+
+// Binary glTF of positions and transforms alone, relative to the scene's origin: load_scene(file, dvec3(0)) gives the
+// same floats, triangles and instances. Throws Error where the file cannot be written.
+void write_glb(const std::filesystem::path& file, const Scene& scene);
+
+// 16 hexadecimal digits over all positions, triangles and transforms (FNV-1a).
+std::string hash_of(const Scene& scene);
+
+// The scene that a replay of this file names. One of a user's was loaded as it is here; one that write_glb() made has
+// the floats that were traced. Throws Error where it is not the one that was traced, by its hash.
+Scene load_traced_scene(const std::filesystem::path& file, const Replay& replay);
+
+}  // namespace twinray::replay

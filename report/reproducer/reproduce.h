@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// A faulty ray of the driver in as small a scene as shows it.
+#pragma once
+
+#include "report/reproducer/right_answers.h"
+#include "report/suite/devices.h"
+
+namespace twinray::reproducer {
+
+struct Reproduction {
+    Scene scene;
+    Ray ray{};
+    suite::Backend backend{};
+    HitClass kind{};
+    Hit answer{};  // of the driver
+    RightAnswers right;
+    std::size_t triangles_before = 0;
+    std::size_t questions = 0;   // to the driver
+    bool was_cut_short = false;  // by the limit of time: it may be smaller yet
+};
+
+// Traces the ray and, where the answer is a fault, makes the scene smaller and its numbers shorter for at most so many
+// seconds. Throws Error where the driver's own answer, before anything refines it, is not a fault. Apart from the limit
+// the result depends on the arguments and the driver alone.
+Reproduction reproduce(suite::Devices& devices, suite::Backend backend, const Scene& scene, const Ray& ray,
+                       double seconds);
+
+}  // namespace twinray::reproducer

@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: MIT
+#include "report/reproducer/simplify.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <set>
+#include <span>
+#include <utility>
+
+#include "engine/accel/geometry.h"
+#include "report/reproducer/ddmin.h"
+#include "report/reproducer/short_numbers.h"
+
+namespace twinray::reproducer {
+namespace {
+
+// Takes the change where the fault stays.
+bool accept(FaultCase& fault, FaultCase changed, const CaseTest& shows_fault) {
+    if (!shows_fault(changed)) return false;
+    fault = std::move(changed);
+    return true;
+}
+
+FaultCase with_triangles(const FaultCase& fault, const Indices& kept) {
+    FaultCase fewer{fault.transforms, {}, fault.ray};
+    for (const std::size_t i : kept) fewer.triangles.push_back(fault.triangles[i]);
+    return fewer;
+}
+
+FaultCase with_instances(const FaultCase& fault, const Indices& kept) {
+    FaultCase fewer = fault;
+    std::erase_if(fewer.triangles,
+                  [&](const CaseTriangle& triangle) { return !std::ranges::binary_search(kept, triangle.instance); });
+    return fewer;
+}
+
+bool is_point_or_line(const CaseTriangle& t) {
+    return t.vertices[0] == t.vertices[1] || t.vertices[1] == t.vertices[2] || t.vertices[2] == t.vertices[0];
+}
+
+// The ends of an edge, of each instance, both ways.
+struct Edge {
+    std::size_t instance;
+    vec3 from, to;
+};
+
+std::vector<Edge> edges_of(const FaultCase& fault) {
+    std::vector<Edge> edges;
+    for (const CaseTriangle& triangle : fault.triangles)
+        for (std::size_t i = 0; i < 3; ++i)
+            for (const std::size_t j : {(i + 1) % 3, (i + 2) % 3})
+                edges.push_back({triangle.instance, triangle.vertices[i], triangle.vertices[j]});
+    return edges;
+}
+
+// A vertex as a key, of an instance.
+using Vertex = std::pair<std::size_t, std::array<float, 3>>;
+Vertex key_of(std::size_t instance, const vec3& p) { return {instance, {p.x, p.y, p.z}}; }
+
+// Each edge's first end moved to its second; triangles that become lines are gone.
+FaultCase with_joined(const FaultCase& fault, std::span<const Edge> edges) {
+    std::map<Vertex, vec3> moves;
+    for (const Edge& edge : edges) moves.try_emplace(key_of(edge.instance, edge.from), edge.to);
+    FaultCase joined = fault;
+    for (CaseTriangle& triangle : joined.triangles)
+        for (vec3& vertex : triangle.vertices)
+            if (const auto move = moves.find(key_of(triangle.instance, vertex)); move != moves.end())
+                vertex = move->second;
+    std::erase_if(joined.triangles, is_point_or_line);
+    return joined;
+}
+
+// Edges that share no vertex, as many as are found at once.
+std::vector<Edge> separate_edges(const FaultCase& fault) {
+    std::vector<Edge> separate;
+    std::set<Vertex> used;
+    for (const Edge& edge : edges_of(fault)) {
+        const Vertex from = key_of(edge.instance, edge.from), to = key_of(edge.instance, edge.to);
+        if (used.contains(from) || used.contains(to)) continue;
+        used.insert({from, to});
+        separate.push_back(edge);
+    }
+    return separate;
+}
+
+// From so many triangles on, which may all close around one vertex, leaving out or joining one by one takes long.
+constexpr std::size_t many = 24;
+
+// Many edges at once: all of them, half of them, a quarter.
+bool join_many(FaultCase& fault, const CaseTest& shows_fault) {
+    const std::vector<Edge> edges = separate_edges(fault);
+    for (const std::size_t parts : {1u, 2u, 4u})
+        for (std::size_t part = 0; part < parts; ++part) {
+            const std::size_t begin = part * edges.size() / parts, end = (part + 1) * edges.size() / parts;
+            if (end > begin &&
+                accept(fault, with_joined(fault, std::span(edges).subspan(begin, end - begin)), shows_fault))
+                return true;
+        }
+    return false;
+}
+
+// Coordinates that are equal in one axis, of one instance, and so stay equal.
+struct Coordinate {
+    std::size_t instance;
+    int axis;
+    float value;
+    auto operator<=>(const Coordinate&) const = default;
+};
+std::set<Coordinate> coordinates_of(const FaultCase& fault) {
+    std::set<Coordinate> coordinates;
+    for (const CaseTriangle& triangle : fault.triangles)
+        for (const vec3& vertex : triangle.vertices)
+            for (int axis = 0; axis < 3; ++axis) coordinates.insert({triangle.instance, axis, vertex[axis]});
+    return coordinates;
+}
+
+FaultCase with_coordinate(const FaultCase& fault, const Coordinate& coordinate, float value) {
+    FaultCase changed = fault;
+    for (CaseTriangle& triangle : changed.triangles)
+        for (vec3& vertex : triangle.vertices)
+            if (triangle.instance == coordinate.instance && vertex[coordinate.axis] == coordinate.value)
+                vertex[coordinate.axis] = value;
+    return changed;
+}
+
+// Everything moved so that `center` is the origin; float32 rounds.
+FaultCase moved(const FaultCase& fault, const vec3& center) {
+    FaultCase changed = fault;
+    for (CaseTriangle& triangle : changed.triangles)
+        for (vec3& vertex : triangle.vertices) vertex -= center;
+    changed.ray.origin -= center;
+    return changed;
+}
+
+// Everything, ray and all, in units of a power of two near the largest coordinate: as_built() leaves it then.
+FaultCase in_units_of_largest(const FaultCase& fault) {
+    std::vector<vec3> vertices;
+    for (const CaseTriangle& triangle : fault.triangles)
+        vertices.insert(vertices.end(), triangle.vertices.begin(), triangle.vertices.end());
+    const float factor = 1 / Geometry::near_unit(vertices);
+    FaultCase changed = fault;
+    for (CaseTriangle& triangle : changed.triangles)
+        for (vec3& vertex : triangle.vertices) vertex *= factor;
+    for (Transform& transform : changed.transforms)
+        for (vec4& row : transform.rows) row.w *= factor;
+    changed.ray.origin *= factor;
+    changed.ray.direction *= factor;
+    return changed;
+}
+
+int total_length(const FaultCase& fault) {
+    int length = 0;
+    const auto add = [&](const vec3& v) { length += length_of(v.x) + length_of(v.y) + length_of(v.z); };
+    for (const CaseTriangle& triangle : fault.triangles) std::ranges::for_each(triangle.vertices, add);
+    add(fault.ray.origin);
+    add(fault.ray.direction);
+    return length;
+}
+
+// Those without a transform become one.
+bool join_instances(FaultCase& fault, const CaseTest& shows_fault) {
+    const auto stands_in_world = [&](const CaseTriangle& t) { return fault.transforms[t.instance] == Transform{}; };
+    const auto first = std::ranges::find_if(fault.triangles, stands_in_world);
+    if (first == fault.triangles.end()) return false;
+    FaultCase joined = fault;
+    for (CaseTriangle& triangle : joined.triangles)
+        if (stands_in_world(triangle)) triangle.instance = first->instance;
+    return joined.triangles != fault.triangles && accept(fault, std::move(joined), shows_fault);
+}
+
+bool shorten_coordinates(FaultCase& fault, const CaseTest& shows_fault) {
+    bool has_changed = false;
+    for (const Coordinate& coordinate : coordinates_of(fault))
+        for (const float shorter : shorter_numbers(coordinate.value))
+            if (accept(fault, with_coordinate(fault, coordinate, shorter), shows_fault)) {
+                has_changed = true;
+                break;
+            }
+    return has_changed;
+}
+
+bool shorten_ray(FaultCase& fault, const CaseTest& shows_fault) {
+    bool has_changed = false;
+    FaultCase endless = fault;
+    endless.ray.t_min = 0;
+    endless.ray.t_max = std::numeric_limits<float>::infinity();
+    if (fault.ray.t_min != 0 || fault.ray.t_max != endless.ray.t_max)
+        has_changed = accept(fault, std::move(endless), shows_fault);
+    for (int axis = 0; axis < 3; ++axis)
+        for (const bool is_origin : {true, false}) {
+            const auto member = [&](Ray& ray) -> float& { return (is_origin ? ray.origin : ray.direction)[axis]; };
+            for (const float shorter : shorter_numbers(member(fault.ray)))
+                if (FaultCase changed = fault; member(changed.ray) = shorter, accept(fault, changed, shows_fault)) {
+                    has_changed = true;
+                    break;
+                }
+        }
+    return has_changed;
+}
+
+// One vertex at the origin, where that makes the numbers shorter.
+bool move_to_origin(FaultCase& fault, const CaseTest& shows_fault) {
+    for (const CaseTriangle& triangle : fault.triangles)
+        if (fault.transforms[triangle.instance] != Transform{}) return false;
+    for (const CaseTriangle& triangle : fault.triangles)
+        for (const vec3& vertex : triangle.vertices)
+            if (FaultCase changed = moved(fault, vertex);
+                total_length(changed) < total_length(fault) && shows_fault(changed)) {
+                fault = std::move(changed);
+                return true;
+            }
+    return false;
+}
+
+}  // namespace
+
+bool leave_out_instances(FaultCase& fault, const CaseTest& shows_fault) {
+    const std::size_t before = fault.triangles.size();
+    fault = with_instances(fault, ddmin(fault.transforms.size(),
+                                        [&](const Indices& kept) { return shows_fault(with_instances(fault, kept)); }));
+    return fault.triangles.size() < before;
+}
+
+bool leave_out_triangles(FaultCase& fault, const CaseTest& shows_fault) {
+    const std::size_t before = fault.triangles.size();
+    fault = with_triangles(
+        fault, ddmin(before, [&](const Indices& kept) { return shows_fault(with_triangles(fault, kept)); }));
+    return fault.triangles.size() < before;
+}
+
+bool bake_transforms(FaultCase& fault, const CaseTest& shows_fault) {
+    const auto bake = [&](const auto& is_wanted) {
+        FaultCase baked = fault;
+        bool is_other = false;
+        for (CaseTriangle& triangle : baked.triangles)
+            if (const Transform& transform = fault.transforms[triangle.instance];
+                transform != Transform{} && is_wanted(triangle.instance)) {
+                for (vec3& vertex : triangle.vertices) vertex = transform_point(transform, vertex);
+                is_other = true;
+            }
+        for (std::size_t i = 0; i < baked.transforms.size(); ++i)
+            if (is_wanted(i)) baked.transforms[i] = Transform{};
+        return is_other && accept(fault, std::move(baked), shows_fault);
+    };
+    bool has_changed = bake([](std::size_t) { return true; });
+    for (std::size_t i = 0; !has_changed && i < fault.transforms.size(); ++i)
+        has_changed = bake([&](std::size_t instance) { return instance == i; });
+    return join_instances(fault, shows_fault) || has_changed;
+}
+
+bool join_vertices(FaultCase& fault, const CaseTest& shows_fault) {
+    bool has_changed = false;
+    while (fault.triangles.size() > many && join_many(fault, shows_fault)) has_changed = true;
+    for (bool is_again = true; is_again;) {
+        is_again = false;
+        for (const Edge& edge : edges_of(fault))
+            if (accept(fault, with_joined(fault, std::span(&edge, 1)), shows_fault)) {
+                is_again = has_changed = true;
+                break;
+            }
+    }
+    return has_changed;
+}
+
+bool shorten_numbers(FaultCase& fault, const CaseTest& shows_fault) {
+    bool has_changed = move_to_origin(fault, shows_fault);
+    has_changed |= shorten_ray(fault, shows_fault);
+    return shorten_coordinates(fault, shows_fault) || has_changed;
+}
+
+FaultCase simplified(FaultCase fault, const CaseTest& shows_fault) {
+    leave_out_instances(fault, shows_fault);
+    while (fault.triangles.size() > many && join_many(fault, shows_fault)) {}
+    leave_out_triangles(fault, shows_fault);
+    // Each may open the way for the others.
+    constexpr int most_rounds = 8;
+    for (int round = 0; round < most_rounds; ++round) {
+        bool has_changed = bake_transforms(fault, shows_fault);
+        has_changed |= join_vertices(fault, shows_fault);
+        has_changed |= leave_out_triangles(fault, shows_fault);
+        has_changed |= shorten_numbers(fault, shows_fault);
+        if (!has_changed) break;
+    }
+    accept(fault, in_units_of_largest(fault), shows_fault);
+    return fault;
+}
+
+}  // namespace twinray::reproducer

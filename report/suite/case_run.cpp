@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: MIT
+#include "report/suite/case_run.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/replay/replay.h"
+#include "report/replay/scene_file.h"
+#include "engine/core/error.h"
+
+namespace twinray::suite {
+namespace {
+
+constexpr std::size_t least_reps = 3, full_reps = 15;
+
+// A record of what must show faults.
+void set_control(Record& record, const std::string& what) {
+    record.variant = "control: " + what;
+    record.criterion = record.variant + " must show faults, which proves that the case sees them";
+    record.pass = record.faults > 0;
+    record.fault_of = *record.pass ? "" : "twinray";
+}
+
+// Sets pass and whose fault it is where it is false.
+void decide(Record& record, const Configuration& configuration, const Measurement& measurement) {
+    if (const auto& control = measurement.control) {
+        record.variant = control->code.name;
+        if (!control->must_show) return;
+        record.pass = static_cast<double>(record.faults) > control->least_rate * static_cast<double>(record.n);
+        record.fault_of = *record.pass ? "" : "twinray";
+        return;
+    }
+    if (is_ours(configuration.backend) && configuration.level == Level::fast) {
+        if (!measurement.fast_is_control) {
+            record.criterion = "none: fast promises nothing at edges";
+            return;
+        }
+        set_control(record, "fast");
+        return;
+    }
+    record.pass = record.faults == 0;
+    if (!*record.pass) record.fault_of = is_ours(configuration.backend) ? "twinray" : "driver";
+}
+
+}  // namespace
+
+std::size_t CaseRun::amount(std::size_t least, std::size_t full) {
+    depends_on_effort_ = true;
+    if (least == 0) return settings_.effort < 1 ? least : full;
+    const double ratio = static_cast<double>(full) / static_cast<double>(least);
+    return static_cast<std::size_t>(std::llround(static_cast<double>(least) * std::pow(ratio, settings_.effort)));
+}
+
+Record CaseRun::blank() const {
+    Record record;
+    record.case_id = row_.id;
+    record.criterion = row_.criterion;
+    record.seed = settings_.seed;
+    return record;
+}
+
+namespace {
+
+// How the trees differ from the default ones.
+std::string variant_of(const AccelOptions& trees) {
+    const AccelOptions usual;
+    std::vector<std::string> parts;
+    if (trees.layout != usual.layout) parts.push_back(text("layout ", name_of(trees.layout)));
+    if (trees.build_quality != usual.build_quality)
+        parts.push_back(text("build quality ", name_of(trees.build_quality)));
+    return joined(parts);
+}
+
+}  // namespace
+
+Record CaseRun::record(const Configuration& configuration) const {
+    Record record = blank();
+    record.backend = name_of(configuration.backend);
+    record.level = name_of(configuration.level);
+    if (is_ours(configuration.backend)) record.variant = variant_of(devices_.trees());
+    return record;
+}
+
+void CaseRun::add(Record record) {
+    if (record.time) {
+        constexpr double least_seconds = 0.5;  // under which the system's clock ticks are too few
+        const MachineLoad& load = load_.seconds() > least_seconds ? load_ : recorder_.load();
+        record.time->others = load.of_others().value_or(0);
+    }
+    recorder_.add(std::move(record));
+}
+
+void CaseRun::check_claim(Subject subject) const {
+    if (!is_about(row_.id, subject)) fail("case ", row_.id, " asks what report/suite/claims.cpp does not say of it");
+}
+
+std::vector<Configuration> CaseRun::configurations() {
+    std::vector<Configuration> able;
+    for (const Backend backend : settings_.backends)
+        for (const Level level : settings_.levels) {
+            const Configuration configuration{backend, level};
+            if (!is_ours(backend) && level == Level::fast) continue;
+            const std::string reason = devices_.why_not(configuration);
+            if (reason.empty()) {
+                able.push_back(configuration);
+            } else if (!has_told_) {
+                add_not_run(reason, &configuration);
+            }
+        }
+    has_told_ = true;
+    return able;
+}
+
+std::vector<Configuration> CaseRun::one_configuration_each() {
+    std::vector<Configuration> chosen;
+    for (const Configuration& configuration : configurations())
+        if (configuration.level != Level::fast && (chosen.empty() || chosen.back().backend != configuration.backend))
+            chosen.push_back(configuration);
+    return chosen;
+}
+
+std::vector<Configuration> CaseRun::control_configuration() {
+    const Configuration software{Backend::software, Level::watertight};
+    const auto& wanted = settings_.backends;
+    if (std::find(wanted.begin(), wanted.end(), Backend::software) == wanted.end()) return {};
+    return {software};
+}
+
+std::string CaseRun::write_replay(const World& world, std::span<const Ray> rays, const Traced& traced,
+                                  const CheckResult& checked) const {
+    if (settings_.replays_in.empty() || !checked.first_fault) return {};
+    const std::filesystem::path folder = settings_.replays_in / "replays";
+    std::filesystem::create_directories(folder);
+    const Scene scene = replay::scene_of(world.reference);
+    const std::string hash = replay::hash_of(scene);
+    const std::filesystem::path scene_file = "scene-" + hash + ".glb";
+    if (!std::filesystem::exists(folder / scene_file)) replay::write_glb(folder / scene_file, scene);
+
+    const std::size_t at = *checked.first_fault;
+    const std::string backend(name_of(traced.configuration.backend)), level(name_of(traced.configuration.level));
+    const Recorder::Run& run = recorder_.run();
+    const std::string file = text(row_.id, '-', recorder_.records().size() + 1, '-', backend, '-', level, ".json");
+    replay::write(folder / file, {scene_file, hash, backend, level,
+                                  checked.example.substr(0, checked.example.find(' ')), rays[at], traced.hits[at],
+                                  world.reference.closest_hit(rays[at]), run.device.name, run.device.driver, run.git});
+    return "replays/" + file;
+}
+
+Measured CaseRun::measure(const World& world, std::span<const Ray> rays, const Measurement& measurement) {
+    if (!measurement.control) check_claim(Subject::hits);
+    const std::vector<Configuration> able = measurement.control ? control_configuration() : configurations();
+    if (able.empty() || rays.empty()) return {};
+    const std::size_t reps = !settings_.takes_times ? 0
+                             : measurement.reps     ? measurement.reps
+                                                    : amount(least_reps, full_reps);
+    std::vector<Traced> traces =
+        trace(devices_, able, world,
+              {.rays = rays, .reps = reps, .control = measurement.control ? &*measurement.control : nullptr});
+    std::vector<ReferenceHit> references = references_of(world.reference, rays);
+    for (const Traced& traced : traces) {
+        Record result = record(traced.configuration);
+        result.params = measurement.params;
+        result.results = measurement.results;
+        result.reference = "f64";
+        const CheckResult checked = check(world.reference, rays, traced.hits, traced.configuration.backend);
+        set_check_result(result, checked);
+        result.error = t_error(references, traced.hits);
+        if (reps > 0) result.time = time_figures(traced);
+        decide(result, traced.configuration, measurement);
+        if (!result.pass.value_or(true)) result.replay = write_replay(world, rays, traced, checked);
+        add(result);
+    }
+    return {std::move(traces), std::move(references)};
+}
+
+std::vector<Configuration> CaseRun::crossing_configurations() {
+    std::vector<Configuration> able = configurations();
+    std::erase_if(able, [](const Configuration& configuration) { return configuration.backend == Backend::pipeline; });
+    return able;
+}
+
+void CaseRun::count_crossings(const World& world, std::span<const Ray> rays, const RightCount& right,
+                              const Measurement& measurement) {
+    check_claim(Subject::crossings);
+    for (const Configuration& configuration : crossing_configurations()) {
+        AbstractAccel& accel = devices_.empty_accel(configuration);
+        world.fill(accel);
+        accel.sync();
+        const std::vector<uint> counts = devices_.crossing_counter(configuration).count(accel, rays);
+        Record result = record(configuration);
+        result.params = measurement.params;
+        result.params.emplace("counted", "crossings");
+        result.reference = "analytic";
+        result.n = rays.size();
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            const bool is_right = right(rays[i], counts[i]);
+            ++result.counts[is_right ? "AGREE" : counts[i] < 8 ? text("CROSSED_", counts[i]) : "CROSSED_OFTEN"];
+            if (is_right || result.faults++ > 0) continue;
+            result.example = text("crossed ", counts[i], " times ", hexadecimal(rays[i]));
+        }
+        result.bound95 = upper_bound_95(result.faults, result.n);
+        decide(result, configuration, measurement);
+        add(result);
+    }
+}
+
+void CaseRun::add_checked(const Configuration& configuration, const CheckResult& checked,
+                          const Measurement& measurement) {
+    check_claim(Subject::hits);
+    Record result = record(configuration);
+    result.params = measurement.params;
+    result.results = measurement.results;
+    result.reference = "f64";
+    set_check_result(result, checked);
+    decide(result, configuration, measurement);
+    add(result);
+}
+
+void CaseRun::expect(const Configuration& configuration, const Outcome& outcome) {
+    Record result = record(configuration);
+    result.params = outcome.params;
+    result.results = outcome.results;
+    result.reference = outcome.reference;
+    result.n = outcome.n;
+    result.faults = outcome.faults;
+    result.bound95 = upper_bound_95(outcome.faults, outcome.n);
+    result.time = outcome.time;
+    if (!outcome.control.empty()) {
+        set_control(result, outcome.control);
+        add(result);
+        return;
+    }
+    if (!outcome.only_measured.empty()) {
+        result.criterion = "none: " + outcome.only_measured;
+        add(result);
+        return;
+    }
+    result.pass = outcome.faults == 0;
+    if (!*result.pass) {
+        result.reason = outcome.what;
+        result.fault_of = !outcome.fault_of.empty()        ? outcome.fault_of
+                          : is_ours(configuration.backend) ? "twinray"
+                                                           : "driver";
+    }
+    add(result);
+}
+
+void CaseRun::add_not_run(const std::string& reason, const Configuration* configuration) {
+    Record result = configuration ? record(*configuration) : blank();
+    result.was_run = false;
+    result.reason = reason;
+    add(result);
+}
+
+void CaseRun::add_computed(Record record) {
+    const bool is_of_hardware =
+        record.backend == name_of(Backend::ray_query) || record.backend == name_of(Backend::pipeline);
+    const auto is_right_by_software = [&](const Record& other) {
+        return other.case_id == record.case_id && other.backend == name_of(Backend::software) && other.pass == true &&
+               other.params == record.params && other.variant == record.variant;
+    };
+    if (record.pass == false)
+        record.fault_of = is_of_hardware && std::ranges::any_of(earlier(), is_right_by_software) ? "driver" : "twinray";
+    add(record);
+}
+
+void CaseRun::add_failure(const std::string& what) {
+    Record result = blank();
+    result.pass = false;
+    result.fault_of = "twinray";
+    result.reason = what;
+    add(result);
+}
+
+}  // namespace twinray::suite

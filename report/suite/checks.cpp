@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#include "report/suite/checks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "engine/core/parallel.h"
+
+namespace twinray::suite {
+namespace {
+
+double ulp_of(double value) {
+    const auto rounded = static_cast<float>(std::abs(value));
+    if (!std::isfinite(rounded)) return std::numeric_limits<double>::infinity();
+    return static_cast<double>(std::nextafter(rounded, std::numeric_limits<float>::infinity())) - double{rounded};
+}
+
+bool is_fault(HitClass kind) {
+    return is_fault_of_ours(kind) || is_fault_of_hardware(kind) || kind == HitClass::invalid_input;
+}
+
+using Vector = Vec<3, long double>;
+
+// t of the triangle's plane, from its vertices in world space. The reference's t is a mean of the vertices' depths,
+// which loses 3 units in the last place of float32 where these are 1e10 times as far as the hit; here it keeps 2^-64.
+std::optional<double> t_of_plane(const ReferenceScene& reference, const Ray& ray, const ReferenceHit& hit) {
+    const Placement64& placement = reference.placement(hit.instance);
+    std::array<Vector, 3> vertices;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Vector vertex(reference.geometry(hit.instance).find(hit.primitive)->vertices[i]);
+        vertices[i] =
+            glm::mat<3, 3, long double>(placement.to_world) * vertex + Vector(placement.offset) - Vector(ray.origin);
+    }
+    const Vector normal = cross(vertices[1] - vertices[0], vertices[2] - vertices[0]);
+    const Vector& nearest = *std::min_element(vertices.begin(), vertices.end(),
+                                              [](const Vector& a, const Vector& b) { return dot(a, a) < dot(b, b); });
+    const long double t = dot(normal, nearest) / dot(normal, Vector(ray.direction));
+    return std::isfinite(t) ? std::optional(static_cast<double>(t)) : std::nullopt;
+}
+
+}  // namespace
+
+std::vector<ReferenceHit> references_of(const ReferenceScene& reference, std::span<const Ray> rays) {
+    std::vector<ReferenceHit> references(rays.size());
+    parallel_for(rays.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            references[i] = reference.closest_hit(rays[i]);
+            if (references[i].hit)
+                references[i].t = t_of_plane(reference, rays[i], references[i]).value_or(references[i].t);
+        }
+    });
+    return references;
+}
+
+std::optional<double> t_ulps(const ReferenceHit& reference, const Hit& hit) {
+    const bool is_same = hit.hit && reference.hit && hit.instance_index == reference.instance &&
+                         hit.primitive_index == reference.primitive;
+    if (!is_same) return std::nullopt;
+    return std::abs(double{hit.t} - reference.t) / ulp_of(reference.t);
+}
+
+std::optional<ErrorFigures> t_error(std::span<const ReferenceHit> references, std::span<const Hit> hits) {
+    std::vector<double> errors;
+    for (std::size_t i = 0; i < hits.size(); ++i)
+        if (const auto ulps = t_ulps(references[i], hits[i])) errors.push_back(*ulps);
+    if (errors.empty()) return std::nullopt;
+    std::sort(errors.begin(), errors.end());
+    return ErrorFigures{
+        "t_ulp", quantile(errors, 0.5), quantile(errors, 0.99), quantile_interval_95(errors, 0.99), errors.back(), 0.5};
+}
+
+CheckResult check(const ReferenceScene& reference, std::span<const Ray> rays, std::span<const Hit> hits,
+                  Backend backend) {
+    const std::vector<RayResult> ray_results =
+        is_ours(backend) ? classify_all(reference, rays, hits, {}) : classify_all(reference, rays, {}, hits);
+    CheckResult checked;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const HitClass kind = is_ours(backend) ? *ray_results[i].software : *ray_results[i].hardware;
+        checked.classes.add(kind);
+        if (!is_fault(kind)) continue;
+        if (checked.faults++ > 0) continue;
+        checked.example = std::string(name_of(kind)) + ' ' + hexadecimal(rays[i]);
+        checked.first_fault = i;
+    }
+    return checked;
+}
+
+void set_check_result(Record& record, const CheckResult& checked) {
+    record.n = checked.classes.total();
+    record.faults = checked.faults;
+    record.bound95 = upper_bound_95(record.faults, record.n);
+    record.example = checked.example;
+    for (std::size_t kind = 0; kind < hit_class_count; ++kind)
+        if (const std::uint64_t count = checked.classes.counts[kind])
+            record.counts[std::string(name_of(static_cast<HitClass>(kind)))] = count;
+}
+
+std::string hexadecimal(const Ray& ray) {
+    std::ostringstream out;
+    out << std::hexfloat;
+    for (const float value : {ray.origin.x, ray.origin.y, ray.origin.z, ray.t_min, ray.direction.x, ray.direction.y,
+                              ray.direction.z, ray.t_max})
+        out << (out.tellp() > 0 ? " " : "") << value;
+    return out.str();
+}
+
+}  // namespace twinray::suite

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// From answers to the figures of a record; nothing here runs on a device.
+#pragma once
+
+#include "report/suite/suite.h"
+#include "validation/reference/classify.h"
+
+namespace twinray::suite {
+
+// The reference's answers to all rays, on all cores, with t of the triangle's plane in long double.
+std::vector<ReferenceHit> references_of(const ReferenceScene& reference, std::span<const Ray> rays);
+
+// |t - reference| in units of the reference's last place in float32; nothing unless the hit names the reference's
+// primitive.
+std::optional<double> t_ulps(const ReferenceHit& reference, const Hit& hit);
+
+// The figures of t_ulps; nothing where there is none. The floor is the half unit of rounding t itself.
+std::optional<ErrorFigures> t_error(std::span<const ReferenceHit> references, std::span<const Hit> hits);
+
+// What one accelerator's answers are worth.
+struct CheckResult {
+    HitClassCounts classes;
+    std::uint64_t faults = 0;  // of ours, or of the driver's; hits of rays that nobody may trace among them
+    std::string example;       // see Record::example
+    std::optional<std::size_t> first_fault = {};  // its ray
+};
+CheckResult check(const ReferenceScene& reference, std::span<const Ray> rays, std::span<const Hit> hits,
+                  Backend backend);
+
+// Writes them to `record`: counts, faults, bound and example.
+void set_check_result(Record& record, const CheckResult& checked);
+
+// A ray as Record::example shows it.
+std::string hexadecimal(const Ray& ray);
+
+}  // namespace twinray::suite

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+// View factors by each estimator, timed one by one, for cases that know the truth.
+#pragma once
+
+#include <twinray/analysis.h>
+
+#include "report/suite/case_run.h"
+
+namespace twinray::suite {
+
+// What is estimated: a view factor between two meshes of a scene.
+struct FactorQuestion {
+    Scene scene;
+    double value;   // the truth
+    uint from = 0;  // mesh
+    uint to = 1;
+    bool of_open = false;  // instead: what of `from` meets nothing, 1 - F where there is nothing else
+    Values params = {};    // by which the question is told from others of the case
+    Values results = {};   // to be told beside
+};
+
+struct EstimatorMethod {
+    PairEstimator estimator;
+    Sequence sequence = Sequence::sobol;
+};
+// "hits, sobol", "contour".
+std::string name(const EstimatorMethod& method);
+std::vector<EstimatorMethod> methods_of(std::span<const PairEstimator> estimators);
+
+// Measures each method on software and on hardware, by ray query where it can, else by pipeline: over ray counts and
+// seeds, of each the error against the truth, how many intervals hold it and the time; with the most rays also the
+// slope of the error over rays. Contours are measured once. A fault is an estimate that misses the truth by more than
+// three times half of its interval, which one in 10^5 does. A measurement fails, too, if fewer intervals hold the truth
+// than 95 % of all could explain.
+void measure_factor(CaseRun& run, const FactorQuestion& question, std::span<const EstimatorMethod> methods);
+
+// One estimate, with its 95 % interval.
+struct Estimate {
+    double value = 0, low = 0, high = 0;
+    double ms = 0;
+    std::uint64_t rays = 0;
+};
+// Measures an estimator over ascending amounts of work, each with several seeds: as measure_factor does, a record each
+// that is like `base` with the amount as parameter `amount_name`. The last has the slope of the error over rays, and
+// what an error of 1 % and of 0.1 % costs by the law of error over time.
+void measure_estimates(CaseRun& run, const Record& base, double truth, const char* amount_name,
+                       std::span<const std::uint64_t> amounts,
+                       const std::function<Estimate(std::uint64_t amount, std::uint64_t seed)>& estimate);
+
+// The configurations of these cases: software, and hardware once.
+std::vector<Configuration> analysis_configurations(CaseRun& run);
+
+// In float64, where nothing is between the meshes.
+double contour_value(const Scene& scene, uint from, uint to);
+
+// Of errors that are not negative, at least one.
+ErrorFigures error_figures(const std::string& metric, std::vector<double> errors);
+
+}  // namespace twinray::suite

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+// Light and centroids that are known in closed form.
+#include <twinray/analysis.h>
+#include <twinray/geometry.h>
+
+#include <cmath>
+
+#include "report/suite/estimators.h"
+#include "report/suite/factor_scenes.h"
+
+namespace twinray::suite {
+namespace {
+
+constexpr std::array<std::uint64_t, 4> grid_sides = {32, 64, 128, 256}, sky_samples = {64, 256, 1024, 4096};
+
+constexpr float shade = 0.3f;
+constexpr double lit = 1 - double{shade} * double{shade};
+
+// A unit square at z = 0 that looks up, and one of shade^2 above its corner.
+Scene shaded_square(float size = 1) {
+    Mesh roof = make_quad(vec3(0, 0, size), vec3(shade * size, 0, 0), vec3(0, shade * size, 0));
+    return scene_of({make_quad(vec3(0), vec3(size, 0, 0), vec3(0, size, 0)), std::move(roof)});
+}
+
+struct Stage {
+    Stage(CaseRun& run, const Configuration& configuration, const Scene& scene)
+        : accel(run.devices().empty_accel(configuration)), faces(accel.context(), scene) {
+        push_scene(accel, scene);
+        accel.sync();
+    }
+    AbstractAccel& accel;
+    Faces faces;
+};
+
+// Area of the first mesh that light reaches, seen along the light.
+Estimate lit_area(Stage& stage, const Scene& scene, const dvec3& direction, std::uint64_t side, std::uint64_t seed) {
+    const auto start = Clock::now();
+    const Illumination light = illuminate(
+        stage.accel, scene, stage.faces,
+        {.grid = {.direction = direction, .side = static_cast<uint>(side), .seed = seed}, .by = FaceGrouping::mesh});
+    const LitArea& found = light.groups[0];
+    const double rounding = 1 + 0x1p-50;
+    return {found.area, found.interval.low / rounding, found.interval.high * rounding, ms_since(start),
+            light.ray_count};
+}
+
+// On all configurations: `estimate` takes the stage, the amount and a seed.
+template <class Of>
+void measure_light(CaseRun& run, const Scene& scene, const Values& params, double truth, const char* amount_name,
+                   std::span<const std::uint64_t> amounts, const Of& estimate) {
+    for (const Configuration& configuration : analysis_configurations(run)) {
+        Stage stage(run, configuration, scene);
+        Record record = run.record(configuration);
+        record.params = params;
+        measure_estimates(run, record, truth, amount_name, amounts,
+                          [&](std::uint64_t amount, std::uint64_t seed) { return estimate(stage, amount, seed); });
+    }
+}
+
+void measure_lit_area(CaseRun& run, const Scene& scene, const dvec3& direction, double truth, const Values& params) {
+    measure_light(run, scene, params, truth, "side", grid_sides,
+                  [&](Stage& stage, std::uint64_t side, std::uint64_t seed) {
+                      return lit_area(stage, scene, direction, side, seed);
+                  });
+}
+
+void shadows(CaseRun& run) {
+    // The shadow of the roof, along (1, 0, -2), lies half its height aside.
+    measure_lit_area(run, shaded_square(), {0, 0, -1}, lit, {{"light", "from above"}});
+    measure_lit_area(run, shaded_square(), {1, 0, -2}, lit * 2 / std::sqrt(5.0), {{"light", "aslant"}});
+}
+
+void grazing_light(CaseRun& run) {
+    // The front of a block, half as high as long, and its top.
+    const Scene scene = scene_of({make_quad(vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)),
+                                  make_quad(vec3(0, 0, -0.5f), vec3(0, 0, 0.5f), vec3(0, 1, 0))});
+    for (const double slope : {0x1p-10, 0x1p-20, 0x1p-30, 0x1p-40})  // which rays in float32 have, too
+        measure_lit_area(run, scene, {1, 0, -slope}, slope / std::sqrt(1 + slope * slope), {{"slope", slope}});
+}
+
+void light_on_all_sizes(CaseRun& run) {
+    for (const float size : {1e-18f, 1e-6f, 1e6f, 1e18f})
+        measure_lit_area(run, shaded_square(size), {0, 0, -1}, lit * double{size} * double{size}, {{"size", size}});
+}
+
+// The mean of the first two faces: triangles of one area, which are the square. `light` computes the SkyLight.
+template <class Light>
+Estimate of_square(const Light& light, std::uint64_t samples, std::uint64_t seed) {
+    const auto start = Clock::now();
+    const SkyLight found =
+        light(SkyRaysDesc{.samples = static_cast<uint>(samples), .sides = Sides::front, .seed = seed});
+    const double ms = ms_since(start);
+    const Received &a = found.faces[0], &b = found.faces[1];
+    return {(a.value + b.value) / 2, (a.interval.low + b.interval.low) / 2, (a.interval.high + b.interval.high) / 2, ms,
+            found.ray_count};
+}
+
+// 1 minus the view factor of parallel squares (Howell C-11), one of which hides the sky from the other.
+void hidden_sky(CaseRun& run) {
+    constexpr double hidden = 0.199824895698387383;
+    const Scene scene = scene_of({square(0, true), square(1, false)});
+    measure_light(run, scene, {}, 1 - hidden, "samples", sky_samples,
+                  [&](Stage& stage, std::uint64_t samples, std::uint64_t seed) {
+                      const auto light = [&](const SkyRaysDesc& desc) {
+                          return sky_light(stage.accel, scene, stage.faces, {0, 0, 1}, desc);
+                      };
+                      return of_square(light, samples, seed);
+                  });
+}
+
+// The sun above for an hour, then aslant for two: as much of the square is lit each time.
+void hours_of_sun(CaseRun& run) {
+    const Scene scene = shaded_square();
+    const std::array<SunPosition, 2> positions = {SunPosition{{0, 0, -1}, 1}, SunPosition{{1, 0, -2}, 2}};
+    measure_light(run, scene, {}, 3 * lit, "samples", sky_samples,
+                  [&](Stage& stage, std::uint64_t samples, std::uint64_t seed) {
+                      const auto light = [&](const SkyRaysDesc& desc) {
+                          return sun_hours(stage.accel, scene, stage.faces, positions, desc);
+                      };
+                      return of_square(light, samples, seed);
+                  });
+}
+
+// The roof is seen at height 1, and around it the square at 0.
+void mean_height(CaseRun& run) {
+    const Scene scene = shaded_square();
+    measure_light(run, scene, {}, 1 - lit, "side", grid_sides,
+                  [&](Stage& stage, std::uint64_t side, std::uint64_t seed) {
+                      const auto start = Clock::now();
+                      const Centroid found =
+                          centroid(stage.accel, scene, {.grid = {.side = static_cast<uint>(side), .seed = seed}});
+                      const double ms = ms_since(start), half = 1.96 * found.standard_error->z;
+                      return Estimate{found.mean->z, found.mean->z - half, found.mean->z + half, ms, found.ray_count};
+                  });
+}
+
+}  // namespace
+
+std::vector<SuiteCase> light_cases() {
+    const std::string measures = "relative error over rays and seeds, time, how many 95 % intervals hold the truth";
+    const std::string criterion = "no estimate is wrong by more than 3 times half of its interval";
+    return {
+        {"G01", "parallel light on a square, a part of it in shadow", measures, criterion, shadows},
+        {"G02", "parallel light that grazes the top of a block at slopes of 2^-10 to 2^-40", measures, criterion,
+         grazing_light},
+        {"G03", "the same as G01 on squares of 1e-18 to 1e18", measures, criterion, light_on_all_sizes},
+        {"G04", "light of the sky on a square below another", measures, criterion, hidden_sky},
+        {"G05", "hours of sun on a square, a part of it in shadow", measures, criterion, hours_of_sun},
+        {"G06", "the mean height of a square and a smaller one above it, seen from above", measures, criterion,
+         mean_height},
+    };
+}
+
+}  // namespace twinray::suite

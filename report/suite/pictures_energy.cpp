@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: MIT
+// Pictures whose light is known: furnaces, lights over a floor, light that is scaled.
+#include <cmath>
+#include <numbers>
+
+#include <twinray/scene.h>
+
+#include "report/suite/estimators.h"
+#include "report/suite/pictures.h"
+#include <twinray/geometry.h>
+#include "renderer/camera.h"
+
+namespace twinray::suite {
+namespace {
+
+using path_tracer::STRATEGY_BSDF;
+using path_tracer::STRATEGY_LIGHTS;
+using path_tracer::STRATEGY_MIS;
+
+Mesh flat_sphere(uint subdivisions, float radius = 1) {
+    Mesh mesh = make_icosphere(subdivisions, radius);
+    mesh.normals.clear();
+    return mesh;
+}
+
+// Seen from above, where nothing is in the way, a point of it per picture.
+void add_floor(Scene& scene, float y = 0) { add(scene, make_quad({-5, y, -5}, {0, 0, 10}, {10, 0, 0}), lambert(1)); }
+
+void white_furnace(CaseRun& run) {
+    for (const Configuration& configuration : run.one_configuration_each())
+        for (const uint depth : {1u, 8u}) {
+            FlatQuestion question{.value = 1, .params = {{"depth", depth}}, .is_swept = false};
+            add(question.desc.scene, flat_sphere(2), lambert(1));
+            question.desc.sky = 1;
+            question.desc.settings.max_depth = depth;
+            question.desc.settings.camera = look({0, 0, 4}, vec3(0), 0.2f);
+            question.spp = {static_cast<uint>(run.amount(4, 64))};
+            question.seeds = run.amount(2, 32);
+            measure_flat(run, configuration, question);
+        }
+}
+
+// From inside a sphere that emits 1 everywhere; of each bounce one more is left out of what depth bounds.
+FlatQuestion closed_furnace(double albedo, uint depth) {
+    FlatQuestion question{.value = (1 - std::pow(albedo, depth + 1)) / (1 - albedo), .params = {{"albedo", albedo}}};
+    Material wall = lambert(static_cast<float>(albedo));
+    wall.emission = vec3(1);
+    wall.double_sided = true;
+    add(question.desc.scene, flat_sphere(2), wall);
+    question.desc.settings.max_depth = depth;
+    question.desc.settings.strategy = STRATEGY_BSDF;
+    question.desc.settings.camera = look({0.1f, 0, 0}, {1, 0.2f, 0.3f}, 0.5f);
+    return question;
+}
+
+void set_side(FlatQuestion& question, std::size_t pixels) {
+    question.desc.settings.width = question.desc.settings.height = static_cast<uint>(pixels);
+}
+
+void closed_furnaces(CaseRun& run) {
+    for (const Configuration& configuration : analysis_configurations(run))
+        for (const double albedo : {0.5, 0.9, 0.99}) {
+            FlatQuestion question = closed_furnace(albedo, static_cast<uint>(run.amount(200, 2'000)));
+            question.spp = albedo < 0.95 ? std::vector<uint>{1, 4} : std::vector<uint>{1, 2};
+            if (run.amount(0, 1)) question.spp.push_back(albedo < 0.95 ? 16 : 4);
+            set_side(question, run.amount(8, 16));
+            question.seeds = run.amount(2, 16);
+            measure_flat(run, configuration, question);
+        }
+}
+
+void deep_paths(CaseRun& run) {
+    for (const Configuration& configuration : analysis_configurations(run)) {
+        const std::size_t depth = run.amount(500, 10'000);
+        FlatQuestion question = closed_furnace(0.999, static_cast<uint>(depth));
+        question.params.emplace("depth", depth);
+        question.spp = {1};
+        set_side(question, run.amount(8, 16));
+        question.seeds = run.amount(2, 16);
+        question.is_swept = false;
+        measure_flat(run, configuration, question);
+    }
+}
+
+// A light one above the middle of a floor: its form factor is the answer (numbers from Lambert's polygon sum).
+void lights_over_a_floor(CaseRun& run) {
+    Mesh triangle;
+    triangle.positions = {{1, 1, 0}, {0, 1, 1}, {-1, 2, -1}};
+    triangle.triangles = {{0, 1, 2}};
+    const struct {
+        const char* name;
+        Mesh mesh;
+        double value;
+    } lights[] = {
+        {"rectangle", make_quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}), 0.554126423979571987},
+        {"triangle", triangle, 0.6876173887350159 / std::numbers::pi},
+    };
+    const std::size_t count = run.amount(1, std::size(lights));
+    for (const Configuration& configuration : analysis_configurations(run))
+        for (const auto& light : std::span(lights).first(count))
+            for (const uint strategy : all_strategies) {
+                FlatQuestion question{.value = light.value, .params = {{"light", light.name}}};
+                add_floor(question.desc.scene);
+                Material two_sided = lamp(1);
+                two_sided.double_sided = true;
+                add(question.desc.scene, light.mesh, two_sided);
+                question.desc.settings.max_depth = 1;
+                question.desc.settings.strategy = strategy;
+                question.desc.settings.camera = look({0, 0.5f, 0}, vec3(0), 1e-4f);
+                question.spp = {1, 4, 16};
+                if (run.amount(0, 1)) question.spp.insert(question.spp.end(), {64, 256});
+                question.seeds = run.amount(2, 16);
+                question.variant = name_of_strategy(strategy);
+                measure_flat(run, configuration, question);
+            }
+}
+
+// What a small mesh so far above the origin sends there, over pi: the areas it shows, in float64.
+double seen_over_pi(const Mesh& mesh, double height) {
+    double sum = 0;
+    for (const uvec3& triangle : mesh.triangles) {
+        const dvec3 up(0, height, 0), a = up + dvec3(mesh.positions[triangle.x]),
+                                      b = up + dvec3(mesh.positions[triangle.y]),
+                                      c = up + dvec3(mesh.positions[triangle.z]);
+        const dvec3 middle = (a + b + c) / 3.0, area = cross(b - a, c - a) / 2.0;
+        sum += std::max(-dot(area, middle), 0.0) * middle.y / std::pow(length(middle), 4);
+    }
+    return sum / std::numbers::pi;
+}
+
+// The floor moves to where the light is the origin: there floats are finest.
+void tiny_lights(CaseRun& run) {
+    const struct {
+        const char* name;
+        Mesh mesh;
+        float distance;
+    } lights[] = {{"square, area 1e-8", make_quad({-5e-5f, 0, -5e-5f}, {1e-4f, 0, 0}, {0, 0, 1e-4f}), 1},
+                  {"sphere, radius 1e-6", flat_sphere(2, 1e-6f), 1e3f}};
+    for (const Configuration& configuration : analysis_configurations(run))
+        for (const auto& light : lights)
+            for (const uint strategy : {STRATEGY_MIS, STRATEGY_LIGHTS}) {
+                const double seen = seen_over_pi(light.mesh, double{light.distance});
+                const auto radiance = static_cast<float>(1 / seen);
+                FlatQuestion question{.value = double{radiance} * seen,
+                                      .params = {{"light", light.name}, {"distance", light.distance}}};
+                add_floor(question.desc.scene, -light.distance);
+                add(question.desc.scene, light.mesh, lamp(radiance));
+                question.desc.settings.max_depth = 1;
+                question.desc.settings.strategy = strategy;
+                question.desc.settings.camera = look({0, 0.5f - light.distance, 0}, {0, -light.distance, 0}, 1e-4f);
+                question.spp = {16};
+                question.seeds = run.amount(2, 16);
+                question.variant = name_of_strategy(strategy);
+                question.is_swept = false;
+                measure_flat(run, configuration, question);
+            }
+}
+
+RenderDesc lit_box(float scale) {
+    RenderDesc desc{.scene = cornell_box_scene()};
+    for (Material& material : desc.scene.materials) material.emission *= scale;
+    desc.settings.camera = path_tracer::camera_rays(desc.scene.cameras[0], 1);
+    return desc;
+}
+
+void scaled_light(CaseRun& run) {
+    for (const Configuration& configuration : analysis_configurations(run)) {
+        const Exposure plain = RenderFixture(run, configuration, lit_box(1)).expose(run.seed(), 2);
+        const auto powers = run.amount(0, 1) ? std::vector{-100, -20, 20, 100} : std::vector{-100, 100};
+        for (const int power : powers) {
+            RenderFixture fixture(run, configuration, lit_box(std::ldexp(1.0f, power)));
+            const Exposure scaled = fixture.expose(run.seed(), 2);
+            Record record = run.record(configuration);
+            record.params = {{"power_of_two", power}};
+            record.reference = "invariance";
+            record.n = plain.picture.rgb.size();
+            for (std::size_t i = 0; i < plain.picture.rgb.size(); ++i)
+                record.faults += plain.picture.rgb[i] * std::ldexp(1.0f, power) != scaled.picture.rgb[i];
+            record.bound95 = upper_bound_95(record.faults, record.n);
+            record.time = time_figures("ms_per_picture", {scaled.ms});
+            fixture.census().add_to(record);
+            record.pass = record.faults == 0;
+            if (!*record.pass) record.reason = "pixels are not scaled exactly";
+            run.add_computed(record);
+        }
+    }
+}
+
+}  // namespace
+
+std::vector<SuiteCase> picture_energy_cases() {
+    const char* within = "a mean of all pixels within 6 standard errors";
+    return {
+        {"P01", "white furnace: a white convex object under a white sky", "error of pixels, which are 1", within,
+         white_furnace},
+        {"P02", "closed furnace: inside a sphere that emits and reflects 0.5 to 0.99",
+         "error of pixels, which are 1 / (1 - albedo)", within, closed_furnaces},
+        {"P03", "a rectangle and a triangle shine on a floor, found by lights, by surfaces and by both",
+         "error of pixels by samples, efficiency", within, lights_over_a_floor},
+        {"P07", "tiny lights: a square of area 10^-8, a sphere of radius 10^-6 at 1000", "error of pixels", within,
+         tiny_lights},
+        {"P08", "light scaled by 2^-100 to 2^100", "pixels that are not scaled exactly", "none", scaled_light},
+        {"P09", "paths of up to 10,000 bounces at albedo 0.999", "error of pixels", within, deep_paths},
+    };
+}
+
+}  // namespace twinray::suite

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+// For cases in which no accelerator takes part: the GPU answers, and the host where it is in doubt.
+#pragma once
+
+#include <functional>
+
+#include "report/suite/case_run.h"
+
+namespace twinray::suite {
+
+// The device that answers. Throws NotRun where it has no float64.
+Context& query_context(CaseRun& run);
+
+// A record without a backend and a level.
+Record query_record(CaseRun& run, const std::string& reference, const std::string& variant = {});
+// With the ray_result: any fault is ours, and `what` it was.
+void add_checked(CaseRun& run, Record record, std::uint64_t faults, const std::string& what);
+
+double seconds_of(const std::function<void()>& work);
+
+}  // namespace twinray::suite

@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: MIT
+// Triangle shape: thin, degenerate and huge. The order of hits is in shapes_order.cpp, rays in planes and along edges
+// are in shapes_planes.cpp.
+#include "report/suite/shapes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include <twinray/scene.h>
+
+#include "report/suite/builds.h"
+#include "report/suite/demands.h"
+#include "report/suite/scenes.h"
+#include "engine/core/error.h"
+#include <twinray/geometry.h>
+#include "validation/reference/aimed_rays.h"
+
+namespace twinray::suite {
+namespace {
+
+// Each ray with the primitive that it hits by construction.
+struct AimedRays {
+    std::vector<Ray> rays;
+    std::vector<uint> targets;
+};
+
+// excuse: why nothing is demanded of hardware; "" = it is.
+void expect_targets(CaseRun& run, const Mesh& mesh, const AimedRays& aimed, Values params,
+                    const std::string& excuse = {}) {
+    const Measured measured = run.measure(world_of(mesh), aimed.rays, {.params = params});
+    params.insert_or_assign("measured", "triangles");
+    for (const Traced& traced : measured.traces) {
+        CaseRun::Outcome outcome = ask_each(traced, aimed.rays, [&](std::size_t i, const Hit& hit) -> std::string {
+            if (!hit.hit) return "missed";
+            return hit.primitive_index == aimed.targets[i] ? "" : text("hit triangle ", hit.primitive_index);
+        });
+        outcome.params = params;
+        outcome.reference = "exact";
+        if (!is_ours(traced.configuration.backend) && !excuse.empty()) outcome.only_measured = excuse;
+        run.expect(traced.configuration, outcome);
+    }
+}
+
+// Slivers of length 1 in three planes, as high as `height`, with rays that stay at one height above the long edge: the
+// differences that decide are exact.
+void slivers(CaseRun& run, float height) {
+    Mesh mesh;
+    for (int axis = 0; axis < 3; ++axis)
+        add_triangle(mesh, vec3(0), turned(vec3(1, 0, 0), axis), turned(vec3(0.75f, height, 0), axis));
+    Random random(run.seed());
+    AimedRays aimed;
+    for (std::size_t i = 0; i < run.amount(512, 50'000); ++i) {
+        const dvec3 weights = random.weights(0.05);
+        const auto x = static_cast<float>(weights.y + 0.75 * weights.z), y = static_cast<float>(weights.z) * height;
+        const float slope = i % 2 ? random.between(0, 0.5f) : 0;
+        const int axis = static_cast<int>(i % 3);
+        aimed.rays.push_back(
+            {turned(vec3(x + 0.5f * slope, y, 0.5f), axis), 0, turned(vec3(-slope, 0, -1), axis), inf});
+        aimed.targets.push_back(static_cast<uint>(axis));
+    }
+    expect_targets(run, mesh, aimed, {{"aspect", 1 / height}});
+}
+
+// Turned slivers of random places, aimed at points inside; rounding moves rays out of the thinner ones.
+void turned_slivers(CaseRun& run, float height) {
+    Random random(run.seed());
+    Mesh mesh;
+    for (int i = 0; i < 64; ++i) {
+        const vec3 a = random.in_box(1), along = random.direction(), across = random.direction();
+        add_triangle(mesh, a, a + along, a + 0.75f * along + height * across);
+    }
+    std::vector<Ray> rays;
+    for (std::size_t i = 0; i < run.amount(1'024, 100'000); ++i) {
+        const uint first = static_cast<uint>(3 * (i % 64));
+        const dvec3 weights = random.weights(0.01);
+        dvec3 target(0);
+        for (uint k = 0; k < 3; ++k) target += weights[static_cast<int>(k)] * dvec3(mesh.positions[first + k]);
+        rays.push_back(ray_to(target, target + 2.0 * dvec3(random.direction())));
+    }
+    run.measure(world_of(mesh), rays, {.params = {{"aspect", 1 / height}, {"turned", true}}});
+}
+
+void thin_triangles(CaseRun& run) {
+    for (const float height : {1e-2f, 1e-4f, 1e-8f, 1e-16f, 1e-30f}) slivers(run, height);
+    for (const float height : {1e-2f, 1e-4f, 1e-6f}) turned_slivers(run, height);
+}
+
+// A shallow cone of needles, aimed at the hub and less than a float's spacing beside it.
+void fan_of_needles(CaseRun& run) {
+    const std::size_t needles = run.amount(1'000, 100'000);
+    const vec3 hub(0.1f, 0.3f, -0.2f);
+    Mesh fan;
+    fan.positions.push_back(hub);
+    for (std::size_t i = 0; i < needles; ++i) {
+        const double angle = 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(needles);
+        fan.positions.push_back(vec3(std::cos(angle), 0, std::sin(angle)));
+        fan.triangles.push_back({0, static_cast<uint>(1 + i), static_cast<uint>(1 + (i + 1) % needles)});
+    }
+    Random random(run.seed());
+    std::vector<Ray> rays;
+    for (std::size_t i = 0; i < run.amount(512, 2'000); ++i) {
+        vec3 from = random.direction();
+        from.y = std::max(0.5f, std::abs(from.y));
+        const vec3 target = hub + random.in_box(i % 2 ? 1e-8f : 0);
+        rays.push_back(ray_to(dvec3(target), dvec3(hub + random.between(0.5f, 4) * from)));
+    }
+    run.measure(world_of(fan), rays, {.params = {{"needles", needles}}, .fast_is_control = true});
+}
+
+// Points, lines, two equal vertices, two equal indices, among the triangles of a sphere; aimed at all of them.
+void degenerate_triangles(CaseRun& run) {
+    Mesh mesh = make_icosphere(3);
+    Random random(run.seed());
+    const std::size_t sound = mesh.triangles.size();
+    for (std::size_t i = 0; i < run.amount(200, 20'000); ++i) {
+        // On a lattice, so that the points of a line are exactly on it.
+        const vec3 a = round(random.in_box(32)) / 64.0f, step = round(random.in_box(8)) / 64.0f;
+        if (i % 4 == 0) add_triangle(mesh, a, a, a);
+        if (i % 4 == 1) add_triangle(mesh, a, a + step, a + 3.0f * step);
+        if (i % 4 == 2) add_triangle(mesh, a, a + step, a);
+        if (i % 4 == 3) mesh.triangles.push_back(uvec3(static_cast<uint>(i), static_cast<uint>(i), 0));
+    }
+    std::vector<Ray> rays;
+    for (std::size_t i = 0; i < run.amount(1'024, 100'000); ++i) {
+        const uvec3& triangle = mesh.triangles[sound + i % (mesh.triangles.size() - sound)];
+        const vec3 a = mesh.positions[triangle.x], b = mesh.positions[triangle.y];
+        rays.push_back(ray_to(dvec3(a * 0.25f + b * 0.75f), dvec3(random.in_box(i % 2 ? 0.4f : 3))));
+    }
+    // Those of the sphere come last, so that indices are seen to stay.
+    std::reverse(mesh.triangles.begin(), mesh.triangles.end());
+    run.measure(world_of(mesh), rays);
+    expect_sound_tree(run, mesh, {});
+}
+
+struct LatticeVector {
+    std::int64_t x, y;
+};
+
+// (x, y) with a.x y - a.y x = 1 and 0 <= x < a.x, for coprime a: the next point of the lattice beside the line to a.
+LatticeVector next_to(const LatticeVector& a) {
+    std::int64_t r0 = a.x, r1 = a.y, s0 = 0, s1 = 1;  // r = s a.y modulo a.x
+    while (r1 != 0) {
+        const std::int64_t quotient = r0 / r1;
+        r0 = std::exchange(r1, r0 - quotient * r1);
+        s0 = std::exchange(s1, s0 - quotient * s1);
+    }
+    // s0 a.y = 1 modulo a.x, so x = -s0.
+    const std::int64_t x = ((-s0) % a.x + a.x) % a.x;
+    return {x, (1 + a.y * x) / a.x};
+}
+
+// Triangles between the origin and two points of the lattice of integers with a determinant of 1: their doubled area is
+// 1e-13 of the square of their length, and the products that decide about a ray through a point of the lattice of
+// quarters are equal when rounded. Each lies in a plane of its own, and its ray ends before the next.
+void lattice_needles(CaseRun& run) {
+    Mesh mesh;
+    AimedRays aimed;
+    Random random(run.seed());
+    const auto coordinate = [&] { return static_cast<std::int64_t>(random.between(0x1p21f, 0x1p22f)); };
+    while (mesh.triangles.size() < run.amount(512, 20'000)) {
+        const LatticeVector a{coordinate(), coordinate()};
+        if (std::gcd(a.x, a.y) != 1) continue;
+        const LatticeVector b = next_to(a);
+        const auto z = static_cast<float>(2 * mesh.triangles.size());
+        const auto vertex = [&](const LatticeVector& v) {
+            return vec3(static_cast<float>(v.x), static_cast<float>(v.y), z);
+        };
+        const vec3 middle(static_cast<float>(a.x + b.x) / 4, static_cast<float>(a.y + b.y) / 4, z + 0.5f);
+        aimed.rays.push_back({middle, 0, vec3(0, 0, -1), 1});
+        aimed.targets.push_back(static_cast<uint>(mesh.triangles.size()));
+        const bool is_turned = random.between(0, 1) < 0.5f;
+        add_triangle(mesh, vec3(0, 0, z), vertex(is_turned ? a : b), vertex(is_turned ? b : a));
+    }
+    expect_targets(run, mesh, aimed, {{"area", "1e-13"}});
+}
+
+// As the slivers of T01, of a doubled area of 1e-40 of the square of their length.
+void nearly_degenerate(CaseRun& run) {
+    lattice_needles(run);
+    constexpr float length = 0x1p33f, height = 0x1p-100f;
+    Mesh mesh;
+    add_triangle(mesh, vec3(0), vec3(length, 0, 0), vec3(0.75f * length, height, 0));
+    Random random(run.seed());
+    AimedRays aimed;
+    for (std::size_t i = 0; i < run.amount(512, 50'000); ++i) {
+        // On a lattice, so that heights keep their bits where a unit makes them denormal.
+        const float up = std::ceil(random.between(0, 63)) / 64,
+                    along = 0.75f * up + (1 - up) * random.between(0.05f, 0.95f);
+        aimed.rays.push_back({vec3(along * length, up * height, length), 0, vec3(0, 0, -1), inf});
+        aimed.targets.push_back(0);
+    }
+    expect_targets(run, mesh, aimed, {{"area", "1e-40"}},
+                   "in the unit that hardware meshes are built in, the heights are denormal");
+}
+
+// Three triangles of 1e18 across the axes, with a small sphere between them, in one mesh or in two. Rays meet them
+// along their axes, nearly: those that meet them aslant are beyond what float64 knows of t, 1e18 * 2^-53.
+void huge_triangles(CaseRun& run) {
+    constexpr float size = 1e18f;
+    Mesh large;
+    add_triangle(large, vec3(-size, -size, -1.25f), vec3(size, -size, -1.25f), vec3(0, size, -1.25f));
+    const Mesh sphere = make_icosphere(2);
+    Scene two;
+    two.meshes = {sphere, large};
+    two.instances = {{"", 0, {}}, {"", 1, {}}};
+    Random random(run.seed());
+    std::vector<Ray> rays;
+    for (std::size_t i = 0; i < run.amount(1'024, 100'000); ++i) {
+        const float x = random.between(-0.1f, 0.1f), y = random.between(-0.1f, 0.1f);
+        rays.push_back({random.in_box(1), 0, vec3(x, y, -1), inf});
+    }
+    Mesh one = sphere;
+    append(one, large);
+    const auto measure = [&](const World& world, int meshes) {
+        const Measured measured = run.measure(world, rays, {.params = {{"meshes", meshes}}});
+        expect_refined_t(run, measured, rays, 2, {{"meshes", meshes}});
+    };
+    measure(world_of(two), 2);
+    measure(world_of(one), 1);
+}
+
+}  // namespace
+
+std::vector<SuiteCase> shape_cases() {
+    return {
+        {"T01", "slivers of aspect 1e2 to 1e30, aimed inside", "hits",
+         "each ray hits its sliver; turned ones: 0 SW_LEAK, SW_FALSE, T_ERR", thin_triangles},
+        {"T02", "needles around a hub, aimed at it", "leaks", "0 SW_LEAK, SW_FALSE, T_ERR", fan_of_needles},
+        {"T03", "a plane met at cosines of 1e-1 to 1e-8", "hits, t",
+         "0 SW_LEAK, SW_FALSE, T_ERR; refined t within 1 ulp", grazing},
+        {"T04", "rays in the plane of a triangle", "hits", "0; in x = y, where the device divides as IEEE 754 does",
+         in_the_plane},
+        {"T05", "rays in the planes of a box's faces, through its edges", "crossings", "an even number",
+         in_the_plane_of_a_face},
+        {"T06", "points, lines, two equal vertices, two equal indices among triangles", "hits, tree",
+         "0 hits of them; 0 faults; the tree is sound", degenerate_triangles},
+        {"T07", "triangles of an area of 1e-13 and 1e-40 of the square of their length", "hits",
+         "each ray hits its triangle", nearly_degenerate},
+        {"T08", "2, 4 and many copies of triangles", "which of them is hit",
+         "the lowest, and the same again; with hardware the driver chooses", duplicates},
+        {"T09", "two tessellations of one plane", "t, which of them is hit",
+         "refined t within 1 ulp; watertight: the smaller t, then the lower id", coplanar_tessellations},
+        {"T10", "8 shells that are 1 ulp apart, seen from distances of 1 and 10", "order of hits",
+         "certified: the nearest, or one at the same float", shells},
+        {"T11", "two height fields 1e-7 of their distance apart", "order of hits", "certified: 0 of the farther one",
+         fighting_sheets},
+        {"T12", "a triangle of 1e18 beside a unit sphere", "hits, t",
+         "0 SW_LEAK, SW_FALSE, T_ERR; refined t within 2 ulp", huge_triangles},
+        {"T13", "rays of |dx| = |dy| = |dz|, and of two equal ones, at vertices and edges of a lattice", "leaks",
+         "0 SW_LEAK, SW_FALSE, T_ERR", tied_axes},
+        {"T14", "rays from a cube's vertices along its edges and diagonals, inward and outward", "hits",
+         "outward: none; the diagonal of the cube: t = 1; else t = 1 or none", along_edges},
+        {"T15", "all hits of rays through 4 to 256 layers", "hits, t, time of a hit", "every layer once, from below",
+         all_hits_through_layers},
+        {"T16", "all hits of rays through thousands of copies of a triangle", "hits", "every copy once, in order",
+         all_hits_through_copies},
+        {"T17", "rays that begin in the plane of a triangle, and 2^-4 off it, t_min = 0", "hits, closest and any",
+         "exactly those of which t > 0, at all levels but fast", from_the_plane},
+    };
+}
+
+}  // namespace twinray::suite

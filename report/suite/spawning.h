@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// Cases about points of surfaces and rays that leave them: rows F01 to F05, I10 and I15.
+#pragma once
+
+#include "report/suite/case_run.h"
+#include "report/suite/spawned_rays.h"
+
+namespace twinray::suite {
+
+void leave_a_sphere(CaseRun& run);
+void leave_triangles_of_all_kinds(CaseRun& run);
+void leave_cancelled_offsets(CaseRun& run);
+void leave_between_plates(CaseRun& run);
+void leave_a_concave_corner(CaseRun& run);
+// scaled_surfaces.cpp
+void surfaces_of_scaled_instances(CaseRun& run);
+
+// What came of a ray that left a surface.
+enum class SpawnOutcome : std::uint8_t {
+    right,
+    false_hit,  // of its own triangle, or of nothing that lies there
+    leak,       // past what it had to meet
+    flagged,    // a leak past what lies within twice the point's offset, as the offset says
+};
+
+struct Departures {
+    Mesh mesh = {};
+    Transform transform = {};
+    std::vector<SpawnItem> items = {};  // of instance 0
+    Values params = {};
+    std::function<SpawnOutcome(std::size_t item, const Hit& hit, const SpawnPrice& price)> outcome_of = {};
+    // Negative control: without an offset there have to be faults on software, or the case sees nothing.
+    bool must_show = true;
+    std::string fault_of = "twinray";  // "" = by the backend
+};
+
+// Spawns every item by every method, traces the closest hits on each backend and records what came of them: by the
+// public function there have to be no faults; those of the other methods are results.
+void measure_departures(CaseRun& run, const Spawner& spawner, const Departures& departures);
+
+// Linear part of a transform and, for normals, its inverse transposed; in float64.
+glm::dmat3 linear_of(const Transform& transform);
+glm::dmat3 normals_of(const Transform& transform);
+
+}  // namespace twinray::suite

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+// The suite of stiff and extreme cases: what there is to run, on what, and how much of it.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/accel/trace_desc.h"
+#include "validation/records/recorder.h"
+#include "report/suite/suite_state.h"
+
+namespace twinray::suite {
+
+// Who answers: SwTlas, HwTlas by ray query, HwTlas by ray tracing pipeline.
+enum class Backend : std::uint8_t { software, ray_query, pipeline };
+inline constexpr std::array all_backends = {Backend::software, Backend::ray_query, Backend::pipeline};
+
+std::string_view name_of(Backend backend);  // "sw", "hw", "hw-pipeline"
+constexpr bool is_ours(Backend backend) { return backend == Backend::software; }
+
+// An accelerator at a level: a curve of the plots.
+struct Configuration {
+    Backend backend = Backend::software;
+    Level level = Level::watertight;
+
+    bool operator==(const Configuration&) const = default;
+};
+// False of Level::fast, which promises nothing at edges.
+constexpr bool is_robust(const Configuration& configuration) { return configuration.level != Level::fast; }
+
+struct Settings {
+    double effort = 0;  // of each case, from its least (0) to its full amount (1)
+    std::vector<Backend> backends = {all_backends.begin(), all_backends.end()};
+    std::vector<Level> levels = {all_levels.begin(), all_levels.end()};
+    std::vector<std::string> only = {};  // patterns of case ids with * and ?; empty: all
+    std::uint64_t seed = 1;
+    // Every case runs with this effort, however long it takes; what is left of these seconds goes to the least certain.
+    double seconds = 0;
+    bool is_whole = false;    // the full suite: set by run()
+    bool takes_times = true;  // false: answers are checked, and nothing is repeated to be timed
+    // Folder of the report, into whose folder "replays" the first faulty ray of each record goes; "": none is written.
+    std::filesystem::path replays_in = {};
+};
+
+class CaseRun;
+
+// A row of the catalogue.
+struct SuiteCase {
+    std::string id;         // "W04"
+    std::string title;      // how it is made
+    std::string measures;   // what is counted
+    std::string criterion;  // when it passes
+    std::function<void(CaseRun&)> run;
+};
+
+// The catalogue, a function and a file for each section.
+std::vector<SuiteCase> edge_cases();         // W: edges, vertices, watertightness
+std::vector<SuiteCase> scale_cases();        // S: scale and position
+std::vector<SuiteCase> shape_cases();        // T: triangle shape
+std::vector<SuiteCase> input_cases();        // N: invalid and special input
+std::vector<SuiteCase> instance_cases();     // I: instances
+std::vector<SuiteCase> build_cases();        // B: structure, build and refit
+std::vector<SuiteCase> arithmetic_cases();   // F: self-intersection, arithmetic
+std::vector<SuiteCase> price_cases();        // L: what levels cost
+std::vector<SuiteCase> view_factor_cases();  // V: view factors
+std::vector<SuiteCase> hidden_factor_cases();
+std::vector<SuiteCase> radiosity_cases();  // R: radiosity
+std::vector<SuiteCase> light_cases();      // G: light and centroids
+std::vector<SuiteCase> collision_cases();  // C: collisions
+std::vector<SuiteCase> distance_cases();   // D: distances
+std::vector<SuiteCase> picture_cases();    // P: pictures
+std::vector<SuiteCase> catalogue();        // all of them
+// The same as L for scenes of the user's, from L11 on.
+std::vector<SuiteCase> scene_cases(std::span<const std::filesystem::path> files);
+// The section of a case id, by its letter: "edges, vertices, watertightness". K are those of validation/conformance.
+std::string_view section_of(std::string_view id);
+
+// Whether `text` fits a pattern with * (any characters) and ? (one).
+bool matches(std::string_view text, std::string_view pattern);
+
+class Devices;
+// Runs the cases that settings.only names and `state` does not have yet, the first of each section first; one that
+// throws is recorded as our fault, and the rest goes on. With the seconds that are left, those whose rate of faults is
+// least certain run again with more effort: their new records take the place of the old ones. Returns the case in which
+// the device was lost, or hung (see ContextDesc::most_wait_seconds), after which none is run; "" where it was not.
+std::string run(std::span<const SuiteCase> cases, const Settings& settings, Devices& devices, Recorder& recorder,
+                SuiteState& state, bool quiet);
+
+}  // namespace twinray::suite

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+#include "report/reproducer/simplify.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <twinray/geometry.h>
+
+namespace twinray::reproducer {
+namespace {
+
+Scene grids(std::size_t instances) {
+    Scene scene;
+    scene.meshes = {make_grid(6, 6)};
+    for (std::size_t i = 0; i < instances; ++i)
+        scene.instances.push_back({"", 0, Transform::translation(vec3(0.1f, static_cast<float>(i), 0.3f))});
+    return scene;
+}
+
+const Ray some_ray{vec3(0.123f, 9.7f, 0.377f), 0.1f, vec3(0.001f, -0.998f, 0.003f), 55.5f};
+
+bool spans(const CaseTriangle& triangle, const FaultCase& fault, const vec3& point) {
+    Bounds box;
+    for (const vec3& vertex : triangle.vertices)
+        box.include(transform_point(fault.transforms[triangle.instance], vertex));
+    return box.lo.x <= point.x && point.x <= box.hi.x && box.lo.y <= point.y && point.y <= box.hi.y &&
+           box.lo.z <= point.z && point.z <= box.hi.z;
+}
+
+// Each edge from this vertex is of two triangles, of which there are three or more.
+bool closes_around(const FaultCase& fault, const vec3& hub) {
+    std::vector<vec3> rim;
+    for (const CaseTriangle& t : fault.triangles)
+        if (std::ranges::count(t.vertices, hub) == 1)
+            std::ranges::copy_if(t.vertices, std::back_inserter(rim), [&](const vec3& v) { return v != hub; });
+    return rim.size() >= 6 && std::ranges::all_of(rim, [&](const vec3& v) { return std::ranges::count(rim, v) == 2; });
+}
+
+TEST(FaultCase, IsTheSceneThatItWasMadeOf) {
+    const Scene scene = grids(2);
+    for (const bool reorders : {false, true}) {
+        const FaultCase fault = case_of(scene, some_ray, reorders);
+        EXPECT_EQ(fault.triangles.size(), 2 * scene.meshes[0].triangles.size());
+        const Scene again = scene_of(fault);
+        ASSERT_EQ(again.instances.size(), 2u);
+        EXPECT_EQ(again.instances[1].transform, scene.instances[1].transform);
+        EXPECT_EQ(again.meshes[1].positions.size(), scene.meshes[0].positions.size()) << "vertices are shared";
+        EXPECT_EQ(count_triangles(again), count_triangles(scene));
+    }
+}
+
+TEST(FaultCase, NearTheRayIsWhatItMeetsAndTheTriangleAskedFor) {
+    const FaultCase fault = case_of(grids(3), some_ray, false);
+    const FaultCase near = near_the_ray(fault, 2, 71);
+    EXPECT_LT(near.triangles.size(), fault.triangles.size() / 4);
+    EXPECT_EQ(near.triangles.back(), fault.triangles.back()) << "the last one was asked for";
+    for (const CaseTriangle& triangle : fault.triangles) {
+        const float height = transform_point(fault.transforms[triangle.instance], vec3(0)).y;
+        const bool is_met = spans(triangle, fault, {0.123f, height, 0.377f});
+        EXPECT_TRUE(!is_met || std::ranges::count(near.triangles, triangle) == 1);
+    }
+}
+
+TEST(FaultCase, AsBuiltIsTheSameWorldInOtherUnits) {
+    FaultCase fault = case_of(grids(2), some_ray, false);
+    for (CaseTriangle& triangle : fault.triangles)
+        for (vec3& vertex : triangle.vertices) vertex *= triangle.instance == 0 ? 24.0f : 1.0f;
+    const FaultCase built = as_built(fault);
+    EXPECT_EQ(built.transforms[0].rows[0], vec4(16, 0, 0, 0.1f));
+    EXPECT_EQ(built.transforms[1], fault.transforms[1]);
+    for (std::size_t i = 0; i < fault.triangles.size(); ++i)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const CaseTriangle &a = built.triangles[i], &b = fault.triangles[i];
+            EXPECT_EQ(transform_point(built.transforms[a.instance], a.vertices[k]),
+                      transform_point(fault.transforms[b.instance], b.vertices[k]));
+        }
+    EXPECT_EQ(as_built(built).triangles, built.triangles);
+}
+
+TEST(Simplify, KeepsWhatTheFaultNeedsInTheWorldAndAlone) {
+    // Some triangle over the point.
+    const auto shows_fault = [](const FaultCase& fault) {
+        return std::ranges::any_of(fault.triangles, [&](const CaseTriangle& triangle) {
+            return spans(triangle, fault, {0.5f, 1, 0.7f});
+        });
+    };
+    const FaultCase least = simplified(case_of(grids(3), some_ray, false), shows_fault);
+    ASSERT_TRUE(shows_fault(least));
+    EXPECT_EQ(least.triangles.size(), 1u);
+    EXPECT_EQ(least.transforms[least.triangles[0].instance], Transform{});
+    EXPECT_EQ(least.ray.t_min, 0);
+    EXPECT_EQ(least.ray.t_max, std::numeric_limits<float>::infinity());
+    EXPECT_EQ(least.ray.direction, vec3(0));
+    EXPECT_EQ(least.ray.origin, vec3(0));
+    for (const vec3& vertex : least.triangles[0].vertices) EXPECT_EQ(2.0f * vertex, round(2.0f * vertex));
+}
+
+TEST(Simplify, JoinsTheSixTrianglesAroundAVertexToThree) {
+    const vec3 hub(0.5f, 0, 0.5f);
+    const auto closes = [&](const FaultCase& fault) { return closes_around(fault, hub); };
+    Scene scene;
+    scene.meshes = {make_grid(6, 6)};
+    scene.instances = {{"", 0, Transform{}}};
+    FaultCase fault = case_of(scene, some_ray, false);
+    ASSERT_TRUE(closes(fault));
+    leave_out_triangles(fault, closes);
+    EXPECT_EQ(fault.triangles.size(), 6u);
+    EXPECT_TRUE(join_vertices(fault, closes));
+    EXPECT_EQ(fault.triangles.size(), 3u);
+    EXPECT_TRUE(closes(fault));
+}
+
+TEST(Simplify, AFanOfAThousandTrianglesTakesFewQuestions) {
+    // Closed around the origin.
+    FaultCase fault{{Transform{}}, {}, some_ray};
+    const auto rim = [](int i) {
+        const float angle = 6.2831853f * static_cast<float>(i % 1000) / 1000;
+        return vec3(std::cos(angle), 0, std::sin(angle));
+    };
+    for (int i = 0; i < 1000; ++i) fault.triangles.push_back({0, {vec3(0), rim(i), rim(i + 1)}});
+    std::size_t questions = 0;
+    const auto closes = [&](const FaultCase& smaller) {
+        ++questions;
+        return closes_around(smaller, vec3(0));
+    };
+    ASSERT_TRUE(closes(fault));
+    EXPECT_EQ(simplified(fault, closes).triangles.size(), 3u);
+    EXPECT_LT(questions, 1000u);
+}
+
+TEST(Simplify, WhatCannotBeChangedStaysAndEveryRunIsAlike) {
+    const FaultCase fault = case_of(grids(2), some_ray, false);
+    std::size_t questions = 0;
+    const auto same = [&](const FaultCase& other) {
+        ++questions;
+        return other.triangles == fault.triangles && other.transforms == fault.transforms &&
+               other.ray.origin == fault.ray.origin && other.ray.direction == fault.ray.direction &&
+               other.ray.t_max == fault.ray.t_max;
+    };
+    EXPECT_EQ(simplified(fault, same).triangles, fault.triangles);
+    const std::size_t first = std::exchange(questions, 0);
+    EXPECT_EQ(simplified(fault, same).triangles, fault.triangles);
+    EXPECT_EQ(questions, first);
+}
+
+}  // namespace
+}  // namespace twinray::reproducer

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// A scene whose faces have colours, as a camera sees it.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <twinray/abstract_accel.h>
+#include "viewer/picture/raster.h"
+#include <twinray/scene.h>
+
+namespace twinray {
+
+// Of faces of which nothing is said.
+inline constexpr Rgb plain_color = {205, 208, 213};
+
+// The number of each instance's first face; faces are counted by instance, then by triangle.
+std::vector<std::size_t> first_faces(const Scene& scene);
+
+struct FacePictureDesc {
+    uint width = 1000, height = 800;  // pixels
+    Camera camera;
+    Cull cull = Cull::none;  // faces that are left out; back: rooms are seen from outside
+};
+
+struct FacePicture {
+    Raster raster;
+    std::vector<float> depths;  // of what the centre of each pixel shows, along the camera's axis; infinity: nothing
+    ImagePlane plane;
+};
+
+// Light comes from where the camera is, and faces turned away from it are darker, down to half. Pixels that differ from
+// one beside them get more rays. `colors`: of each face. Throws Error unless
+// push_scene() has filled the accelerator from a scene of as many instances, and for a wrong number of colours.
+FacePicture draw_faces(AbstractAccel& accel, const Scene& scene, std::span<const Rgb> colors,
+                       const FacePictureDesc& desc);
+
+}  // namespace twinray

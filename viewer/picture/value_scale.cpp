@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/picture/value_scale.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "engine/core/error.h"
+
+namespace twinray {
+namespace {
+
+// The least of 1, 2, 5 and 10 times a power of ten that is not below.
+double nice_step(double least) {
+    const double power = std::pow(10.0, std::floor(std::log10(least)));
+    for (const double factor : {1.0, 2.0, 5.0})
+        if (factor * power >= least) return factor * power;
+    return 10 * power;
+}
+
+std::string printed(const char* format, int digits, double value) {
+    std::array<char, 64> buffer{};
+    const int size = std::snprintf(buffer.data(), buffer.size(), format, digits, value);
+    return {buffer.data(), static_cast<std::size_t>(size)};
+}
+
+// "1e-05" -> "1e-5", "2e+06" -> "2e6".
+std::string short_exponent(const std::string& number) {
+    const std::size_t e = number.find('e');
+    if (e == std::string::npos) return number;
+    const int exponent = std::stoi(number.substr(e + 1));
+    return number.substr(0, e) + "e" + std::to_string(exponent);
+}
+
+}  // namespace
+
+std::string label_of(double value, double step) {
+    const double largest = std::max(std::abs(value), step);
+    const int places = static_cast<int>(-std::floor(std::log10(step)));
+    if (value == 0) return "0";
+    if (largest < 1e6 && places <= 4) return printed("%.*f", std::max(places, 0), value);
+    // As many digits as tell it from its neighbours.
+    const int digits = static_cast<int>(std::floor(std::log10(largest))) + places;
+    return short_exponent(printed("%.*e", std::clamp(digits, 0, 16), value));
+}
+
+ValueScale ValueScale::linear(double lo, double hi) {
+    if (!(lo < hi) || !std::isfinite(lo) || !std::isfinite(hi) || !std::isfinite(hi - lo))
+        fail("scale of values: from ", lo, " to ", hi, "; the first must be less, and both finite");
+    return {lo, hi, false};
+}
+
+ValueScale ValueScale::logarithmic(double lo, double hi) {
+    if (!(0 < lo && lo < hi) || !std::isfinite(hi))
+        fail("logarithmic scale of values: from ", lo, " to ", hi, "; the first must be less and above 0, both finite");
+    return {lo, hi, true};
+}
+
+ValueScale ValueScale::linear_for(std::span<const double> values) {
+    double lo = 0, hi = 0;
+    for (const double value : values)
+        if (std::isfinite(value)) lo = std::min(lo, value), hi = std::max(hi, value);
+    if (lo < 0) hi = std::max(hi, -lo);
+    if (hi == 0) return linear(0, 1);
+    const double step = nice_step(hi / 10), end = std::ceil(hi / step) * step;
+    return linear(lo < 0 ? -end : 0, end);
+}
+
+ValueScale ValueScale::logarithmic_for(std::span<const double> values) {
+    double lo = INFINITY, hi = 0;
+    for (const double value : values)
+        if (std::isfinite(value) && value > 0) lo = std::min(lo, value), hi = std::max(hi, value);
+    if (hi == 0) return logarithmic(0.1, 1);
+    lo = std::max(lo, hi / 1e6);
+    return logarithmic(lo < hi ? lo : hi / 10, hi);
+}
+
+double ValueScale::position(double value) const {
+    const double place = is_logarithmic_ ? std::log(value / lo_) / std::log(hi_ / lo_) : (value - lo_) / (hi_ - lo_);
+    return std::clamp(place, 0.0, 1.0);
+}
+
+Rgb ValueScale::color(double value) const {
+    if (std::isnan(value) || (is_logarithmic_ && value <= 0)) return no_value_color;
+    const bool is_diverging = !is_logarithmic_ && lo_ < 0 && hi_ > 0;
+    return color_at(is_diverging ? ColorMap::diverging : ColorMap::magnitude, position(value));
+}
+
+std::vector<Tick> ValueScale::ticks(std::size_t most) const {
+    if (is_logarithmic_)
+        if (std::vector<Tick> ticks = decade_ticks(most); ticks.size() > 1) return ticks;
+    return linear_ticks(most);
+}
+
+std::vector<Tick> ValueScale::linear_ticks(std::size_t most) const {
+    const double step = nice_step((hi_ - lo_) / static_cast<double>(std::max<std::size_t>(most, 2) - 1));
+    std::vector<Tick> ticks;
+    // Counted from 0: where lo and hi are neighbours, multiples of the step are too large for ++ to change them.
+    const double first = std::ceil(lo_ / step), last = std::floor(hi_ / step) - first;
+    for (double index = 0; index <= last; ++index) {
+        const double value = (first + index) * step;
+        ticks.push_back({position(value), label_of(value, step)});
+    }
+    return ticks;
+}
+
+// Powers of ten, every second or third one of them where they are many; with twice and five times them where few.
+std::vector<Tick> ValueScale::decade_ticks(std::size_t most) const {
+    const double first = std::ceil(std::log10(lo_)), last = std::floor(std::log10(hi_));
+    const double stride = std::ceil((last - first + 1) / static_cast<double>(std::max<std::size_t>(most, 1)));
+    const bool has_room = std::log10(hi_ / lo_) * 3 < static_cast<double>(most);
+    std::vector<Tick> ticks;
+    for (double exponent = has_room ? first - 1 : first; exponent <= last; exponent += std::max(stride, 1.0))
+        for (const double factor : {1.0, 2.0, 5.0}) {
+            const double value = factor * std::pow(10.0, exponent);
+            if (value < lo_ || value > hi_ || (factor > 1 && !has_room)) continue;
+            ticks.push_back({position(value), label_of(value, std::pow(10.0, exponent))});
+        }
+    return ticks;
+}
+
+}  // namespace twinray

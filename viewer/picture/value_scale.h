@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// From values to places along a colour bar: pure functions.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "viewer/picture/color_map.h"
+
+namespace twinray {
+
+struct Tick {
+    double position;  // along the scale, from 0 to 1
+    std::string label;
+};
+
+class ValueScale {
+  public:
+    // Throws Error unless lo < hi, both finite.
+    static ValueScale linear(double lo, double hi);
+    // Throws Error unless 0 < lo < hi, both finite.
+    static ValueScale logarithmic(double lo, double hi);
+    // From 0 to a round number that is not below the largest; with values below 0 as far to either side. Values that
+    // are not finite do not count.
+    static ValueScale linear_for(std::span<const double> values);
+    // From the smallest above 0 to the largest, but over no more than 10^6.
+    static ValueScale logarithmic_for(std::span<const double> values);
+
+    double lo() const { return lo_; }
+    double hi() const { return hi_; }
+    bool is_logarithmic() const { return is_logarithmic_; }
+    // From 0 to 1; the nearest end for values beyond.
+    double position(double value) const;
+    // Diverging where 0 is inside of a linear scale. `no_value_color` for NaN and, on a logarithmic scale, for 0 and
+    // below.
+    Rgb color(double value) const;
+    // At most `most` round numbers (Heckbert, "Nice numbers for graph labels", 1990): 1, 2 or 5 times powers of ten.
+    std::vector<Tick> ticks(std::size_t most) const;
+
+  private:
+    ValueScale(double lo, double hi, bool is_logarithmic) : lo_(lo), hi_(hi), is_logarithmic_(is_logarithmic) {}
+    std::vector<Tick> linear_ticks(std::size_t most) const;
+    std::vector<Tick> decade_ticks(std::size_t most) const;
+
+    double lo_, hi_;
+    bool is_logarithmic_;
+};
+
+// A number in few characters: digits after the point as many as multiples of `step` need.
+std::string label_of(double value, double step);
+
+}  // namespace twinray
