@@ -13,8 +13,7 @@ VALIDATION = ["validation/" + room for room in ("reference", "leaks", "records",
 REPORT = ["report/" + room for room in "conformance faults page replay reproducer suite".split()]
 CHECKS = VALIDATION + ["validation/exact"] + REPORT
 # See include alone.
-AS_HOSTS = ["samples", "samples/support", "renderer", "bindings", "shaders/path_tracer", "shaders/embed_renderer",
-            "shaders/particles"]
+AS_HOSTS = ["samples", "samples/support", "renderer", "bindings", "shaders/path_tracer", "shaders/particles"]
 # Built alone, too: a header lies beside what includes it. One shows the structs of the engine.
 TUTORIALS, INSIDE = "samples/tutorials/", "samples/tutorials/10_inside_the_builder/"
 SEES = {  # besides itself, include and, unless AS_HOSTS, shaders/shared
@@ -35,11 +34,11 @@ SEES = {  # besides itself, include and, unless AS_HOSTS, shaders/shared
     "viewer": PRODUCT + CHECKS + ["viewer/picture", "renderer"], "viewer/picture": BASE,
     "cli": PRODUCT + CHECKS + ["bench", "viewer", "viewer/picture", "renderer", "shaders/path_tracer"],
     "bindings": [],
-    "samples": ["shaders/path_tracer", "shaders/embed_renderer", "shaders/particles", "renderer", "samples/support"],
+    "samples": ["shaders/path_tracer", "shaders/particles", "renderer", "samples/support"],
     "bench": PRODUCT + VALIDATION,
     "tests": PRODUCT + CHECKS + ["shaders/scene", "cli", "samples", "samples/support", "renderer", "bench", "viewer",
                                  "viewer/picture"],
-    "shaders/path_tracer": [], "shaders/particles": [], "shaders/embed_renderer": ["shaders/path_tracer"],
+    "shaders/path_tracer": [], "shaders/particles": [],
     "shaders/points": ["shaders/collide", "shaders/engine"],
     # Each other folder of shaders, but shaders/shared, which sees nothing else.
     "shaders": ["shaders/engine", "shaders/scene"],

@@ -45,7 +45,6 @@ const Family families[] = {
     {"path_tracer_"},
     {"iso_surface_"},
     {"particles_"},
-    {"embed_renderer_"},
     {"suite_"},
     {"reproducer_query", {Of::ray_queries}},
     {"reproducer_trace_r", {Of::ray_pipelines}},

@@ -19,7 +19,7 @@ except ModuleNotFoundError as error:
 import code_blocks
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-PROGRAMS = ("twinray", "path_tracer", "particles", "embed_renderer")
+PROGRAMS = ("twinray", "path_tracer", "particles")
 OF_OTHERS = {"--fix", "--eliminate-dead-branches", "--freeze-spec-const", "--merge-return"}  # tools/lint.sh, spirv-opt
 FOLDERS_OF_TYPES = "include engine swtlas hwtlas validation report renderer samples cli viewer bench".split()
 SOURCES = {".h", ".cpp"}

@@ -94,6 +94,7 @@ void Device::create_device(RayTracing ray_tracing) {
     auto supported = twinray::query_device_properties(vkGetInstanceProcAddr, instance_, physical_);
     if (ray_tracing == RayTracing::off)
         supported.acceleration_structure = supported.ray_query = supported.ray_tracing_pipeline = false;
+    if (ray_tracing == RayTracing::pipelines) supported.ray_query = false;
     twinray::DeviceRequirements needs(supported);
     needs.add_to(info);
     require(vkCreateDevice(physical_, &info, nullptr, &device_), "create a device");

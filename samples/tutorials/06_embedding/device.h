@@ -10,8 +10,8 @@
 
 namespace renderer {
 
-// off: as on a device that has none.
-enum class RayTracing { if_there, off };
+// off: as on a device that has none. pipelines: as on one that has no ray queries.
+enum class RayTracing { if_there, pipelines, off };
 
 class Device {
   public:
