@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The driver's acceleration structures: objects, sizes, builds.
+// The driver's acceleration structures: objects, sizes, builds, and copies into the memory that they turn out to need.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -63,5 +64,30 @@ void record_builds(Commands& commands, const std::string& pass_name, std::span<c
 // Creates the structures and builds them, in batches whose scratch fits into `budget`.
 std::vector<AccelerationStructure> build_structures(Commands& commands, const std::string& pass_name,
                                                     std::span<const StructureBuild> builds, std::uint64_t budget);
+
+// How many bytes structures of one build need at least, asked of the GPU when they were built.
+class CompactedSizes {
+  public:
+    // Records the question in a pass of its own. The builds allowed compaction and are in earlier passes.
+    CompactedSizes(Commands& commands, std::span<const AccelerationStructure* const> structures);
+    ~CompactedSizes();
+    CompactedSizes(const CompactedSizes&) = delete;
+    CompactedSizes& operator=(const CompactedSizes&) = delete;
+
+    // Of the structure at `index`; nothing while the GPU has not reached `built`, at which the commands are done.
+    std::optional<std::uint64_t> of(std::size_t index, SyncPoint built);
+    // The same once it has been told.
+    std::uint64_t bytes_of(std::size_t index) const;
+
+  private:
+    Context& context_;
+    Buffer bytes_;  // a word each, copied by the GPU: some drivers let vkGetQueryPoolResults wait for the whole queue
+    VkQueryPool queries_ = VK_NULL_HANDLE;
+    bool is_told_ = false;
+};
+
+// Records a copy of `bytes` bytes, in the caller's pass.
+AccelerationStructure record_compaction(Commands& commands, const std::string& name,
+                                        const AccelerationStructure& structure, std::uint64_t bytes);
 
 }  // namespace twinray

@@ -3,13 +3,31 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "engine/accel/geometry.h"
 #include <twinray/abstract_accel.h>
-#include "hwtlas/compaction.h"
+#include "hwtlas/acceleration_structure.h"
 #include "hwtlas/hw_tlas_header.h"
 
 namespace twinray {
+
+// What the driver is given for a mesh: finite positions alone, and one triangle for each triangle of the mesh. One that
+// is not active (a non-finite vertex, no area) keeps its index but is collapsed to a point. Vulkan has no word for an
+// infinite vertex, and a driver may let a NaN leak into the boxes of the triangles beside it, or hit triangles without
+// area.
+struct BlasInput {
+    std::vector<vec3> positions;
+    std::vector<uvec3> triangles;
+    std::vector<Bounds> boxes;   // instead of both
+    Bounds bounds;               // of the active primitives
+    std::vector<uint> original;  // index in `triangles` or `boxes` -> the user's index; empty: not reordered
+
+    bool is_empty() const { return bounds.is_empty(); }  // there is nothing that could be hit
+};
+
+// A pure function. reorder: along a Morton curve.
+BlasInput blas_input(const Geometry& geometry, bool reorder);
 
 // The built form of one geometry. Without a structure when it has nothing that could be hit: Vulkan takes an instance
 // of address 0 as inactive.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "hwtlas/blas_input.h"
+#include "hwtlas/blas.h"
 
 #include <gtest/gtest.h>
 
