@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/accel/accel_backend.h"
+#include "engine/accel/geometry.h"
 #include "engine/accel/trace_program.h"
 #include "engine/core/error.h"
 #include "hwtlas/moving_blas.h"

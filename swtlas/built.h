@@ -2,6 +2,7 @@
 // What SwTlas keeps of what it has built.
 #pragma once
 
+#include "engine/accel/geometry.h"
 #include "swtlas/plan.h"
 #include "swtlas/sw_backend.h"
 

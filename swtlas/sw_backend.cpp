@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: MIT
+#include "engine/accel/geometry.h"
+#include "engine/accel/trace_program.h"
+#include "engine/accel/world_bound.h"
 #include "swtlas/sw_backend.h"
 
 #include <algorithm>

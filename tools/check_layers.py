@@ -44,7 +44,7 @@ SEES = {  # besides itself, include and, unless AS_HOSTS, shaders/shared
     "shaders": ["shaders/engine", "shaders/scene"],
 }
 MOST_HEADERS = {  # of this project behind a header, directly or not; lower them whenever they fall
-    "include/twinray/tlas.h": 12, "engine/accel/accel_backend.h": 75,
+    "include/twinray/tlas.h": 12, "engine/accel/accel_backend.h": 39,
 }
 MOST_PUBLIC = {"headers": 15, "lines": 3660}  # of include/twinray, its GLSL apart
 MOST_LINES = {"include/twinray/abstract_accel.h": 270}

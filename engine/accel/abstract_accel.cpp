@@ -5,8 +5,6 @@
 
 namespace twinray {
 
-SpecializationConstant AccelView::features_constant() const { return {FEATURES_CONSTANT, features}; }
-
 AbstractAccel::AbstractAccel(std::unique_ptr<AccelBackend> backend) : backend_(std::move(backend)) {}
 AbstractAccel::~AbstractAccel() = default;
 AccelHandle AbstractAccel::push(const MeshView& mesh, const Transform& transform, const InstanceOptions& options) {

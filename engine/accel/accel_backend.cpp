@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: MIT
-#include "engine/accel/accel_backend.h"
+#include "engine/accel/features_of.h"
+#include "engine/accel/held_geometry.h"
 
 #include <algorithm>
 #include <atomic>
 #include <unordered_set>
 #include <utility>
 
+#include "engine/accel/pipeline_variants.h"
 #include "engine/accel/ray_sort.h"
+#include "engine/accel/refinement.h"
 #include "engine/accel/surface_kernels.h"
+#include "engine/accel/world_bound.h"
 #include "engine/core/error.h"
 
 namespace twinray {
@@ -31,10 +35,11 @@ AccelBackend::AccelBackend(Context& context, std::string name, const AccelOption
       name_(std::move(name)),
       id_(next_accel_id()),
       options_(options),
-      vertices_(context),
+      vertices_(std::make_unique<VertexArrays>(context)),
       instances_(context),
-      bound_(context),
-      scene_costs_(context) {
+      bound_(std::make_unique<WorldBoundKernel>(context)),
+      scene_costs_(context),
+      traits_(std::make_unique<SceneTraits>()) {
     if (options.keeps_surfaces || options.keeps_metadata) surfaces_ = std::make_unique<SurfaceTables>(context);
     if (options.level < Level::refined) return;
     if (!context.properties().shader_float64)
@@ -44,6 +49,9 @@ AccelBackend::AccelBackend(Context& context, std::string name, const AccelOption
 }
 
 AccelBackend::~AccelBackend() = default;
+
+bool AccelBackend::PushedGeometry::is_synced() const { return held->built || instances.first; }
+float AccelBackend::unit_of(std::span<const vec3> positions) const { return Geometry::near_unit(positions); }
 
 AccelHandle AccelBackend::push(const MeshView& mesh, const Transform& transform, const InstanceOptions& options) {
     return push(mesh, std::span(&transform, 1), std::span(&options, 1));
@@ -377,7 +385,7 @@ Geometry AccelBackend::geometry(AccelHandle handle) const {
     check_mesh_is_kept(*pushed.held, "reading it back");
     Geometry geometry = pushed.held->geometry;
     context_.state().check_submitted(synced_);
-    vertices_.download(geometry, pushed.held->vertices);
+    vertices_->download(geometry, pushed.held->vertices);
     return geometry;
 }
 

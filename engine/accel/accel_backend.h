@@ -12,21 +12,25 @@
 
 #include <twinray/abstract_accel.h>
 
-#include "engine/accel/features_of.h"
-#include "engine/accel/geometry.h"
 #include "engine/accel/instance_array.h"
-#include "engine/accel/pipeline_variants.h"
-#include "engine/accel/refinement.h"
-#include "engine/accel/surface_tables.h"
-#include "engine/accel/trace_program.h"
-#include "engine/accel/vertices.h"
-#include "engine/accel/world_bound.h"
+#include "engine/accel/packed_mesh.h"
+#include "engine/accel/surface_area.h"
 #include "engine/core/commands.h"
 
 namespace twinray {
 
+struct AccelTraits;
+class BoundOfSync;
+struct Geometry;
+class PipelineVariants;
 class RaySort;
+class Refinement;
+struct SceneTraits;
 struct SurfaceKernels;
+struct SurfaceSlice;
+class SurfaceTables;
+class VertexArrays;
+class WorldBoundKernel;
 
 // Its public functions are those of AbstractAccel, which says what they do.
 class AccelBackend {
@@ -100,7 +104,7 @@ class AccelBackend {
     std::size_t index_in_handle(const Hit& hit) const;
     uint features_for(const TraceDesc& desc) const;
     void wait_for_programs() const;
-    std::unique_ptr<TraceProgram> make_program(const TraceProgramCode& code, uint features = FEATURES_ALL) const;
+    std::unique_ptr<TraceProgram> make_program(const TraceProgramCode& code, uint features = ~0u) const;
 
     virtual Capability capability(Feature feature) const = 0;
     std::vector<Capability> capabilities() const;
@@ -206,7 +210,7 @@ class AccelBackend {
     const BuiltTlas& built_tlas() const;
 
     // What meshes with these positions are built in units of: a power of two.
-    virtual float unit_of(std::span<const vec3> positions) const { return Geometry::near_unit(positions); }
+    virtual float unit_of(std::span<const vec3> positions) const;
     // Chooses Geometry::leaves and welded of a mesh in host memory.
     virtual void prepare(Geometry&) const {}
     // With `code`, or with the accelerator's own code where the scene needs no program.
@@ -222,48 +226,18 @@ class AccelBackend {
     virtual std::vector<Hit> trace_host(std::span<const Ray> rays, TraceDesc desc);
 
   private:
-    // A geometry, of one handle or more.
-    struct HeldGeometry {
-        Geometry geometry;
-        Buffer block;                          // see GeometryInput
-        std::unique_ptr<BuiltGeometry> built;  // null: `geometry` is not built yet
-        SyncPoint built_at = {};
-        VertexSlice vertices = {};
-        SurfaceSlice surface = {};
-        std::size_t handles = 0;  // alive
-        bool has_source = false;  // the block's GeometrySource is that of `geometry`
-        bool is_listed = false;   // among edited_
-    };
+    struct HeldGeometry;
     // What one push placed.
     struct PushedGeometry {
         std::shared_ptr<HeldGeometry> held;
         InstanceSlice instances = {};
 
-        bool is_synced() const { return held->built || instances.first; }
+        bool is_synced() const;
 
         void add_to(SceneTraits& traits) const;
     };
     struct Work;
-    // What a sync recorded, to be committed once it is certain to run.
-    struct Staged {
-        VertexArrays::Staged vertices;
-        std::vector<HeldGeometry*> sources;  // whose GeometrySource was written
-        std::vector<bool> is_rebuilt;        // by moved item of `vertices`, which come first
-        std::optional<Buffer> refinement;
-        SurfaceTables::Staged surfaces;
-        std::vector<HeldGeometry*> building;
-        std::vector<std::unique_ptr<BuiltGeometry>> built;      // by `building`
-        std::vector<std::shared_ptr<HeldGeometry>> geometries;  // that it looked at
-        std::vector<std::weak_ptr<HeldGeometry>> uncompacted;   // of which the GPU has not told yet
-        std::vector<InstanceSlice*> slices;                     // those that were edited, or all
-        InstanceArray::Staged instances;
-        std::unique_ptr<BuiltTlas> scene;
-        bool has_bound = false;
-        bool is_scene_built = false;  // not refitted
-        bool has_moved = false;
-
-        void add(const Work& work, std::vector<std::unique_ptr<BuiltGeometry>>&& done);
-    };
+    struct Staged;
     // Whose instances the last sync placed, made by the first question after it.
     struct InstanceOwners {
         struct Owner {
@@ -325,7 +299,7 @@ class AccelBackend {
     bool has_degraded(const CostLog& costs) const;
     Compaction compaction_of(const HeldGeometry& held) const;
     std::vector<HeldGeometry*> held_geometries() const;  // each once, in push order
-    AccelTraits accel_traits() const { return {is_software(), options_.layout, reorders()}; }
+    AccelTraits accel_traits() const;
     SceneTraits scene_traits() const;
     void check_movable(const char* action) const;
     void warn_of_unusable_instances();
@@ -340,13 +314,13 @@ class AccelBackend {
     std::string name_;
     std::uint64_t id_;
     AccelOptions options_;
-    VertexArrays vertices_;
+    std::unique_ptr<VertexArrays> vertices_;
     InstanceArray instances_;
     std::unique_ptr<Refinement> refinement_;                   // null below Level::refined
     std::unique_ptr<SurfaceTables> surfaces_;                  // null where nothing of it is kept
     mutable std::unique_ptr<SurfaceKernels> surface_kernels_;  // made by the first host that asks for surfaces
     mutable InstanceOwners owners_;
-    WorldBoundKernel bound_;
+    std::unique_ptr<WorldBoundKernel> bound_;
     mutable SyncPoint bound_at_;           // when that of the last sync is there; null: nobody has asked for it
     mutable bool computes_bound_ = false;  // in each sync: somebody has asked, or transforms may be unusable
     mutable CostLog scene_costs_;          // the first question measures a top level of which nothing has moved
@@ -363,7 +337,7 @@ class AccelBackend {
     bool has_moved_ = false;  // something has moved after a build, so that builds allow refits
     std::uint64_t revision_ = 0;
     std::uint64_t edit_count_ = 0;
-    SceneTraits traits_;                                           // of the scene that was built
+    std::unique_ptr<SceneTraits> traits_;                          // of the scene that was built
     mutable std::unique_ptr<PipelineVariants> pipeline_variants_;  // made by the first trace
     mutable std::unique_ptr<RaySort> ray_sort_;                    // made by the first that sorts
     SyncPoint synced_;

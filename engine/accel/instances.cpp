@@ -2,7 +2,7 @@
 // Transforms and states of instances: what AbstractAccel lets a host change and read of them.
 #include <algorithm>
 
-#include "engine/accel/accel_backend.h"
+#include "engine/accel/held_geometry.h"
 #include "engine/core/error.h"
 
 namespace twinray {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <twinray/abstract_accel.h>
 
-#include "engine/accel/accel_backend.h"
+#include "engine/accel/held_geometry.h"
+#include "engine/accel/refinement.h"
+#include "engine/accel/world_bound.h"
 
 namespace twinray {
 

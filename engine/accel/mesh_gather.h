@@ -9,18 +9,13 @@
 
 #include <twinray/device_mesh.h>
 
+#include "engine/accel/packed_mesh.h"
 #include "engine/core/kernel.h"
 
 namespace twinray {
 #include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/gather_mesh.h"
 #include "twinray/glsl/cpp_end.h"
-
-// A mesh in device memory: 3 floats a vertex, 3 indices a triangle. Null: it is on the host alone.
-struct PackedMesh {
-    Floats positions;
-    Uints indices;
-};
 
 // Throws Error naming the mesh and what of it cannot be: an address, a stride, a count.
 void check_device_mesh(const DeviceMesh& mesh);

@@ -2,7 +2,8 @@
 // How good and how small the structures are, and when that makes a sync rebuild or compact them.
 #include <algorithm>
 
-#include "engine/accel/accel_backend.h"
+#include "engine/accel/held_geometry.h"
+#include "engine/accel/world_bound.h"
 #include "engine/core/commands.h"
 #include "engine/core/error.h"
 
@@ -20,7 +21,7 @@ std::optional<double> AccelBackend::sah() const {
         context_.wait(synced_);
         Commands commands(context_, name_ + " sah");
         const auto records = instances_.buffer().ref<InstanceRecord>();
-        BoundOfSync bound(bound_, commands, records, scene_count_, bound_at_.value != 0);
+        BoundOfSync bound(*bound_, commands, records, scene_count_, bound_at_.value != 0);
         measure_tlas(commands,
                      {.records = records,
                       .count = static_cast<uint>(scene_count_),

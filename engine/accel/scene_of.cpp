@@ -2,7 +2,7 @@
 #include <twinray/scene.h>
 
 #include <twinray/abstract_accel.h>
-#include "engine/accel/accel_backend.h"
+#include "engine/accel/held_geometry.h"
 #include "engine/core/error.h"
 
 namespace twinray {

@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <numeric>
 
-#include "engine/accel/accel_backend.h"
+#include "engine/accel/held_geometry.h"
+#include "engine/accel/refinement.h"
 #include "engine/core/device_list.h"
 #include "engine/core/error.h"
 #include "engine_interpolate.spv.h"

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <utility>
 
-#include "engine/accel/accel_backend.h"
+#include "engine/accel/features_of.h"
+#include "engine/accel/held_geometry.h"
+#include "engine/accel/refinement.h"
 #include "engine/accel/scene_update.h"
+#include "engine/accel/world_bound.h"
 #include "engine/core/error.h"
 
 namespace twinray {
@@ -29,7 +32,7 @@ void AccelBackend::Staged::add(const Work& work, std::vector<std::unique_ptr<Bui
 }
 
 SyncPoint AccelBackend::sync() {
-    vertices_.warn_of_faults(name_);
+    vertices_->warn_of_faults(name_);
     context_.state().check_submitted(synced_);
     if (dirty_ == Dirty::no) return synced_;
     auto commands = std::make_unique<Commands>(context_, name_ + " sync");
@@ -40,7 +43,7 @@ SyncPoint AccelBackend::sync() {
 }
 
 void AccelBackend::sync(Commands& commands) {
-    vertices_.warn_of_faults(name_);
+    vertices_->warn_of_faults(name_);
     if (dirty_ == Dirty::no) return;
     // Commands that come later may ask for the bound before these are submitted.
     constexpr bool wants_bound = true;
@@ -57,7 +60,7 @@ AccelBackend::Staged AccelBackend::stage(Commands& commands, bool wants_bound) {
     stage_geometries(commands, staged);
     staged.instances = dirty_ == Dirty::structure ? instances_.stage(commands, staged.slices)
                                                   : instances_.stage_edits(commands, staged.slices);
-    BoundOfSync bound(bound_, commands, staged.instances.records, staged.instances.count);
+    BoundOfSync bound(*bound_, commands, staged.instances.records, staged.instances.count);
     if (wants_bound) bound.on_device();
     stage_scene(commands, staged, bound);
     staged.has_bound = bound.is_there();
@@ -92,7 +95,7 @@ void AccelBackend::stage_vertices(Commands& commands, Staged& staged) {
         if (held->vertices.edited) items.push_back({&held->geometry, &held->vertices});
     for (const auto& held : staged.geometries)
         if (lacks_mesh(*held)) items.push_back({&held->geometry, &held->vertices});
-    staged.vertices = vertices_.stage(commands, std::move(items));
+    staged.vertices = vertices_->stage(commands, std::move(items));
     stage_sources(commands, staged);
 }
 
@@ -200,7 +203,7 @@ void AccelBackend::commit(Staged&& staged, SyncPoint done) {
         staged.building[i]->built = std::move(staged.built[i]);
         staged.building[i]->built_at = done;
     }
-    const std::vector<VertexSlice*> moved = vertices_.commit(std::move(staged.vertices), done);
+    const std::vector<VertexSlice*> moved = vertices_->commit(std::move(staged.vertices), done);
     for (std::size_t i = 0; i < staged.is_rebuilt.size(); ++i) moved[i]->costs.commit(staged.is_rebuilt[i], done);
     for (HeldGeometry* held : staged.sources) held->has_source = true;
     if (refinement_) refinement_->commit(std::move(staged.refinement));
@@ -213,7 +216,7 @@ void AccelBackend::commit(Staged&& staged, SyncPoint done) {
     has_moved_ = staged.has_moved;
     revision_ += dirty_ == Dirty::structure;
     edit_count_ += dirty_ >= Dirty::moves;
-    if (dirty_ == Dirty::structure) traits_ = scene_traits();
+    if (dirty_ == Dirty::structure) *traits_ = scene_traits();
     if (staged.scene) scene_ = std::move(staged.scene);
     instances_.commit(std::move(staged.instances), staged.slices);
     uncompacted_ = std::move(staged.uncompacted);
@@ -235,7 +238,7 @@ void AccelBackend::commit(Staged&& staged, SyncPoint done) {
 
 void AccelBackend::warn_of_unusable_instances() {
     if (!bound_at_.value || !context_.is_reached(bound_at_)) return;
-    const uint count = bound_.read().unusable_count;
+    const uint count = bound_->read().unusable_count;
     if (count && count != warned_unusable_)
         context_.state().warn(text(name_, ": ", count,
                                    " instances have a transform that is singular or not finite, since kernels wrote "
@@ -248,7 +251,7 @@ void AccelBackend::measure_bound() const {
     computes_bound_ = true;
     if (bound_at_.value || !synced_.value) return;
     Commands commands(context_, name_ + " world bound");
-    bound_.record(commands, instances_.buffer().ref<InstanceRecord>(), static_cast<uint>(scene_count_));
+    bound_->record(commands, instances_.buffer().ref<InstanceRecord>(), static_cast<uint>(scene_count_));
     bound_at_ = commands.submit();
 }
 
@@ -264,13 +267,13 @@ std::optional<Bounds> AccelBackend::world_bound_if_ready() const {
     if (!synced_.value) return Bounds{};
     measure_bound();
     if (!context_.is_reached(bound_at_)) return std::nullopt;
-    const WorldBound bound = bound_.read();
+    const WorldBound bound = bound_->read();
     return Bounds{bound.lo, bound.hi};
 }
 
 Ref<WorldBound> AccelBackend::world_bound_on_device() const {
     measure_bound();
-    return bound_.result();
+    return bound_->result();
 }
 
 std::vector<PassTiming> AccelBackend::build_timings() const {

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Tracing through AccelBackend: what every accelerator checks, and the host's convenience.
-#include "engine/accel/accel_backend.h"
 #include "engine/accel/check_level.h"
+#include "engine/accel/features_of.h"
+#include "engine/accel/held_geometry.h"
+#include "engine/accel/pipeline_variants.h"
 #include "engine/accel/ray_sort.h"
+#include "engine/accel/trace_program.h"
 #include "engine/core/error.h"
 #include "engine/core/pace.h"
 
@@ -29,13 +32,17 @@ TraceDesc part_of(const TraceDesc& desc, std::uint64_t first, std::uint64_t coun
 
 }  // namespace
 
+SpecializationConstant AccelView::features_constant() const { return {FEATURES_CONSTANT, features}; }
+
 void AccelBackend::check_synced(const char* action) const {
     if (dirty_ != Dirty::no) fail(name_, ": ", action, ": edits are pending; call sync() first");
 }
 
+AccelTraits AccelBackend::accel_traits() const { return {is_software(), options_.layout, reorders()}; }
+
 AccelView AccelBackend::view() const {
     check_synced("view");
-    return {scene_->address, id_, revision_, features_of(accel_traits(), traits_, TraceTraits::of_every_kind())};
+    return {scene_->address, id_, revision_, features_of(accel_traits(), *traits_, TraceTraits::of_every_kind())};
 }
 
 void AccelBackend::trace(Commands& commands, const AccelView& view, const TraceDesc& desc) const {
@@ -105,7 +112,7 @@ void AccelBackend::check_desc(const AccelView& view, const TraceDesc& desc) cons
 
 uint AccelBackend::features_for(const TraceDesc& desc) const {
     check_synced("features_for");
-    return features_of(accel_traits(), traits_, TraceTraits::of(desc));
+    return features_of(accel_traits(), *traits_, TraceTraits::of(desc));
 }
 
 const TraceProgram& AccelBackend::variant_for(uint features, const TraceDesc& desc) const {
@@ -124,7 +131,7 @@ void AccelBackend::wait_for_programs() const {
 
 // Boxes that nothing can meet, and hits that nobody decides about, are no answer.
 const TraceProgram& AccelBackend::program_for(const TraceDesc& desc) const {
-    const uint needed = features_of(accel_traits(), traits_, TraceTraits::of(desc));
+    const uint needed = features_of(accel_traits(), *traits_, TraceTraits::of(desc));
     if (const uint of_user = needed & (FEATURE_BOXES | FEATURE_FILTERS); !desc.program && of_user)
         fail(name_, ": trace: the scene has ", words_for(of_user), ", and TraceDesc::program is not set");
     if (!desc.program) return variant_for(needed, desc);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "engine/accel/trace_args.h"
 #include "validation/reference/reference_accel.h"
 
 #include <algorithm>
