@@ -13,7 +13,7 @@ namespace twinray {
 
 static_assert(sizeof(TreeBox) == 32);
 
-// Sorts boxes on the GPU by where their centres lie along a Hilbert curve (shaders/collide/hilbert.h); empty ones come
+// Sorts boxes on the GPU by where their centres lie along a Hilbert curve (shaders/collide/codes.comp); empty ones come
 // first. Its memory grows with the largest count so far and is used again.
 class HilbertOrder {
   public:

@@ -1,13 +1,54 @@
 // SPDX-License-Identifier: MIT
-// Where the boxes' centres lie along a Hilbert curve: the lower 30 bits of the boxes in the order given, then the
-// higher of those in the order that sorting by the former made.
+// The places of the boxes' centres along a Hilbert curve through the 2^20 x 2^20 x 2^20 cells of a cube, 60 bits: the
+// lower 30 of the boxes in the order given, then the higher of those in the order that sorting by the former made.
+// Unlike a Morton curve it never jumps, so that each stretch of it lies in a small box (Kamel and Faloutsos, "Hilbert
+// R-tree", 1994).
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"
 #include "shaders/collide/box_tree.h"
-#include "shaders/collide/hilbert.h"
+#include "shaders/shared/morton.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { HilbertOrderArgs args; };
+
+const uint HILBERT_BITS = 20u; // an axis
+
+// The bits of the index, dealt out to three words from the highest on: Skilling, "Programming the Hilbert curve", 2004.
+uvec3 hilbert_words(uvec3 cell)
+{
+    uvec3 x = cell;
+    for (uint bit = 1u << (HILBERT_BITS - 1u); bit > 1u; bit = bit >> 1u)
+    {
+        uint below = bit - 1u;
+        if ((x.x & bit) != 0u) x.x = x.x ^ below;
+        uint swapped = (x.y & bit) != 0u ? 0u : (x.x ^ x.y) & below;
+        x.x = x.x ^ ((x.y & bit) != 0u ? below : swapped);
+        x.y = x.y ^ swapped;
+        swapped = (x.z & bit) != 0u ? 0u : (x.x ^ x.z) & below;
+        x.x = x.x ^ ((x.z & bit) != 0u ? below : swapped);
+        x.z = x.z ^ swapped;
+    }
+    x.y = x.y ^ x.x;
+    x.z = x.z ^ x.y;
+    uint flips = 0u;
+    for (uint bit = 1u << (HILBERT_BITS - 1u); bit > 1u; bit = bit >> 1u)
+        if ((x.z & bit) != 0u) flips = flips ^ (bit - 1u);
+    return uvec3(x.x ^ flips, x.y ^ flips, x.z ^ flips);
+}
+
+uint interleaved(uvec3 words)
+{
+    return spread_bits(words.x) << 2u | spread_bits(words.y) << 1u | spread_bits(words.z);
+}
+
+// The 30 higher or lower bits of the index of the cell that holds a point of the cube from `low` with sides `size`.
+uint hilbert_code(vec3 point, vec3 low, float size, bool is_higher)
+{
+    uvec3 words = hilbert_words(uvec3(cell_of(point.x, low.x, low.x + size), cell_of(point.y, low.y, low.y + size),
+                                      cell_of(point.z, low.z, low.z + size)));
+    uint shift = is_higher ? 10u : 0u;
+    return interleaved(uvec3((words.x >> shift) & 1023u, (words.y >> shift) & 1023u, (words.z >> shift) & 1023u));
+}
 
 void main()
 {

@@ -98,11 +98,11 @@ BUFFER_OF(BvhTriangle, 8);
 //               w: the first child, count of children << 26, in layout compressed8 and WIDE_BIT
 //            b: lo.x, hi.x, lo.y, hi.y in cells, 8 bits a child      c: lo.z, hi.z
 // second half of a node of layout compressed8, of its last four slots
-//            a.x: see ChildSlots, axes << 16 (see octant_order.h); w: WIDE_BIT      b, c: as in a node
+//            a.x: see ChildSlots, axes << 16 (see encode_node.h); w: WIDE_BIT      b, c: as in a node
 // primitive  a: v0; w: LEAF_BIT | primitive_index      b: v1; w, c: v2
 // two        a.w: LEAF_BIT | PAIR_BIT | index of the first triangle; x: index of the second, with FIRST_ACTIVE and
 // triangles  SECOND_ACTIVE for those that can be hit; y, z: the vertices of the edge that they share
-//            b.x, b.y: the third vertex of the first, of the second; z: see PairCorners
+//            b.x, b.y: the third vertex of the first, of the second; z: see LeafVertices::corners
 // instance   a.w: LEAF_BIT | INSTANCE_BIT | index
 // none       a.w: 0
 struct CompressedRecord

@@ -8,7 +8,7 @@
 // subtrees go first, so that few nodes are nearly empty (see record_count).
 #ifndef TWINRAY_SHARED_COLLAPSE_H
 #define TWINRAY_SHARED_COLLAPSE_H
-#include "shaders/shared/octant_order.h"
+#include "shaders/shared/encode_node.h"
 #include "shaders/shared/surface_area.h"
 
 // An inner node that becomes a node of records.

@@ -2,8 +2,219 @@
 // The children of a node that a ray enters, of any layout: the first one, and the others as an entry of the stack.
 #ifndef TWINRAY_SHARED_ENTERED_CHILDREN_H
 #define TWINRAY_SHARED_ENTERED_CHILDREN_H
-#include "shaders/shared/enter_compressed.h"
-#include "shaders/shared/enter_wide.h"
+#include "shaders/shared/compressed.h"
+#include "shaders/shared/encode_node.h"
+#include "shaders/shared/visit.h"
+
+// The children of a node that a ray has still to visit, in order, as one word, an entry of the stack: where the
+// siblings begin (26 bits), and up to three of them to visit, the next one in the lowest bits (2 bits each, the last
+// one repeated). No siblings begin at the root, so that no group is EMPTY_NODE_GROUP.
+const uint EMPTY_NODE_GROUP = 0u;
+FUNC uint make_node_group(uint siblings, uint second, uint third, uint fourth)
+{
+    return siblings << 6u | fourth << 4u | third << 2u | second;
+}
+FUNC uint next_of(uint group) { return (group >> 6u) + (group & 3u); }
+// Without the next one; EMPTY_NODE_GROUP: there is no other.
+FUNC uint rest_of(uint group)
+{
+    bool is_last = ((group ^ group >> 2u) & 3u) == 0u;
+    return is_last ? EMPTY_NODE_GROUP : (group & 0xfffffff0u) | (group >> 2u & 15u);
+}
+
+// Where the children of a node come in order, the least first (see visit_order), each with its number in the last
+// two bits; NO_ENTRY or more: the ray does not enter it.
+struct ChildKeys
+{
+    uint key0;
+    uint key1;
+    uint key2;
+    uint key3;
+};
+
+FUNC void sort_pair(INOUT(uint) a, INOUT(uint) b)
+{
+    uint less = min(a, b);
+    b = max(a, b);
+    a = less;
+}
+
+FUNC void sort_keys(INOUT(ChildKeys) keys)
+{
+    sort_pair(keys.key0, keys.key1);
+    sort_pair(keys.key2, keys.key3);
+    sort_pair(keys.key0, keys.key2);
+    sort_pair(keys.key1, keys.key3);
+    sort_pair(keys.key1, keys.key2);
+}
+
+// All that are entered but the first, of sorted keys, as a group. `siblings`: where the children begin.
+FUNC uint node_group_of(ChildKeys keys, uint siblings)
+{
+    if (keys.key1 >= NO_ENTRY) return EMPTY_NODE_GROUP;
+    uint third = keys.key2 < NO_ENTRY ? keys.key2 : keys.key1;
+    return make_node_group(siblings, keys.key1 & 3u, third & 3u, (keys.key3 < NO_ENTRY ? keys.key3 : third) & 3u);
+}
+
+FUNC uint key_of(ChildKeys keys, uint child)
+{
+    uint low = child == 0u ? keys.key0 : keys.key1;
+    uint high = child == 2u ? keys.key2 : keys.key3;
+    return child < 2u ? low : high;
+}
+
+// `child` first, and then those that come after it: as a traversal that went on to it left them.
+FUNC uint key_from(uint key, uint first, uint number, uint child)
+{
+    return number == child ? child : (key > first ? key : NO_ENTRY);
+}
+FUNC ChildKeys keys_from(ChildKeys keys, uint child)
+{
+    uint first = key_of(keys, child);
+    keys.key0 = key_from(keys.key0, first, 0u, child);
+    keys.key1 = key_from(keys.key1, first, 1u, child);
+    keys.key2 = key_from(keys.key2, first, 2u, child);
+    keys.key3 = key_from(keys.key3, first, 3u, child);
+    return keys;
+}
+
+// The grid of a node of layout compressed4, or of half a one of compressed8, as a ray sees it: along each axis the
+// distance of a plane is plane * scale + base. The scale is that of near planes for all: it leaves far ones 2^-20 of at
+// most 255 cells nearer, and they are a 256th of a cell farther off than they must be.
+struct SeenGrid
+{
+    vec3 scale;
+    vec3 near_base;
+    vec3 far_base;
+    uvec3 near_planes; // of the four children, 8 bits each
+    uvec3 far_planes;
+};
+
+FUNC void see_planes(INOUT(SeenGrid) grid, CompressedRecord planes, BoxRay ray)
+{
+    bool flip_x = ray.near_inverse.x < 0.0f;
+    bool flip_y = ray.near_inverse.y < 0.0f;
+    bool flip_z = ray.near_inverse.z < 0.0f;
+    grid.near_planes = uvec3(flip_x ? planes.b.y : planes.b.x, flip_y ? planes.b.w : planes.b.z,
+                             flip_z ? planes.c.y : planes.c.x);
+    grid.far_planes = uvec3(flip_x ? planes.b.x : planes.b.y, flip_y ? planes.b.z : planes.b.w,
+                            flip_z ? planes.c.x : planes.c.y);
+}
+
+FUNC SeenGrid grid_of(CompressedRecord node, BoxRay ray)
+{
+    SeenGrid grid;
+    vec3 origin = grid_origin(node);
+    vec3 cell = grid_cell(node);
+    grid.scale = cell * ray.near_inverse;
+    grid.near_base = (origin - ray.near_origin) * ray.near_inverse;
+    grid.far_base = (origin - ray.far_origin) * ray.far_inverse;
+    see_planes(grid, node, ray);
+    return grid;
+}
+
+FUNC float distance_along(uint planes, uint shift, float scale, float base)
+{
+    return FMA(float(planes >> shift & 0xffu), scale, base);
+}
+
+// Where the ray crosses the box of child `shift / 8`, between t_min and t_max in t * ray.t_scale: as cross_box of
+// ray_space.h.
+FUNC vec2 cross_planes(SeenGrid grid, uint shift, float t_min, float t_max)
+{
+    float near_x = distance_along(grid.near_planes.x, shift, grid.scale.x, grid.near_base.x);
+    float near_y = distance_along(grid.near_planes.y, shift, grid.scale.y, grid.near_base.y);
+    float near_z = distance_along(grid.near_planes.z, shift, grid.scale.z, grid.near_base.z);
+    float far_x = distance_along(grid.far_planes.x, shift, grid.scale.x, grid.far_base.x);
+    float far_y = distance_along(grid.far_planes.y, shift, grid.scale.y, grid.far_base.y);
+    float far_z = distance_along(grid.far_planes.z, shift, grid.scale.z, grid.far_base.z);
+    return vec2(latest_of(t_min, near_x, near_y, near_z), earliest_of(t_max, far_x, far_y, far_z));
+}
+FUNC bool crosses_planes(SeenGrid grid, uint shift, float t_min, float t_max)
+{
+    vec2 crossing = cross_planes(grid, shift, t_min, t_max);
+    return !(crossing.y < crossing.x); // true for NaN, too: then the children are looked at
+}
+FUNC uint enter_planes(SeenGrid grid, uint shift, float t_min, float t_max, bool is_there, uint query)
+{
+    vec2 crossing = cross_planes(grid, shift, t_min, t_max);
+    return visit_order(crossing.x, crossing.y, is_there, query);
+}
+
+// The children of a node of layout compressed4, by where the ray enters them.
+FUNC ChildKeys enter_compressed(CompressedRecord node, BoxRay ray, float t_min, float t_max, uint query)
+{
+    SeenGrid grid = grid_of(node, ray);
+    PRECISE float first = t_min * ray.t_scale;
+    PRECISE float last = t_max * ray.t_scale;
+    // All four are computed, then chosen: branches cost more.
+    // Boxes that are not there may be crossed, too: a ray's padding can be wider than the grid.
+    uint children = children_in(node);
+    ChildKeys keys;
+    keys.key0 = enter_planes(grid, 0u, first, last, true, query);
+    keys.key1 = enter_planes(grid, 8u, first, last, true, query) | 1u;
+    keys.key2 = enter_planes(grid, 16u, first, last, children > 2u, query) | 2u;
+    keys.key3 = enter_planes(grid, 24u, first, last, children > 3u, query) | 3u;
+    return keys;
+}
+
+// Layout compressed8: children of a node that wait on the stack, as the first of two words of an entry (the other is
+// where the children begin): in the lowest 8 bits those to visit, in order; then ChildSlots::mask, and the ray's
+// octant.
+FUNC uint make_visits(uint in_order, uint slots, uint octant) { return in_order | slots << 8u | octant << 24u; }
+FUNC uint octant_in(uint visits) { return visits >> 24u; }
+FUNC uint next_slot(uint visits) { return uint(findLSB(visits)) ^ octant_in(visits); }
+// Without the next one; EMPTY_NODE_GROUP: there is no other.
+FUNC uint rest_of_visits(uint visits)
+{
+    uint rest = visits & (visits - 1u);
+    return (rest & 0xffu) == 0u ? EMPTY_NODE_GROUP : rest;
+}
+FUNC ChildSlots slots_of_visits(uint visits, uint first)
+{
+    ChildSlots slots;
+    slots.first = first;
+    slots.mask = visits >> 8u & 0xffffu;
+    return slots;
+}
+
+FUNC uint octant_at(CompressedRecord second_half, BoxRay ray)
+{
+    uint negative = (ray.near_inverse.x < 0.0f ? 1u : 0u) | (ray.near_inverse.y < 0.0f ? 2u : 0u) |
+                    (ray.near_inverse.z < 0.0f ? 4u : 0u);
+    return octant_of(negative, second_half.a.x >> 16u);
+}
+
+// The slots of a half of the node that the ray crosses, from bit 0 on.
+FUNC uint slots_crossed(SeenGrid grid, float first, float last)
+{
+    uint slots = 0u;
+    UNROLL for (uint slot = 0u; slot < 4u; slot = slot + 1u)
+        slots = slots | (crosses_planes(grid, 8u * slot, first, last) ? 1u << slot : 0u);
+    return slots;
+}
+
+// The children that the ray enters, as visits; 0: none.
+FUNC uint enter_wide(CompressedRecord node, CompressedRecord second_half, BoxRay ray, float t_min, float t_max)
+{
+    PRECISE float first = t_min * ray.t_scale;
+    PRECISE float last = t_max * ray.t_scale;
+    SeenGrid grid = grid_of(node, ray);
+    uint crossed = slots_crossed(grid, first, last);
+    see_planes(grid, second_half, ray);
+    crossed = crossed | slots_crossed(grid, first, last) << 4u;
+    // Boxes that are not there may be crossed, too: a ray's padding can be wider than the grid.
+    uint slots = second_half.a.x & 0xffffu;
+    uint octant = octant_at(second_half, ray);
+    return make_visits(in_order_of_octant(crossed & slots, octant), slots, octant);
+}
+
+// The child in `slot`, and of the others those that come after it: as a traversal that went on to it left them.
+FUNC uint visits_from(uint visits, uint slot)
+{
+    uint bit = 1u << (slot ^ octant_in(visits));
+    return (visits & ~((bit << 1u) - 1u)) | bit;
+}
 
 const uint ROOT_EDGE = 0u; // in every layout; beside the root there is nothing that a stack could lose
 
