@@ -79,4 +79,12 @@ struct Film {
 double sum_of(const FilmPixel& pixel, uint sum);
 double mean_luminance(const Film& film);
 
+// Layers are what .exr pictures tell besides radiance.
+// samples.N: samples of each pixel; variance.Y: square of the standard error of its luminance.
+std::vector<ImageChannel> layers_of(const Film& film);
+// albedo.R G B, normal.X Y Z: means over the rays, 0 where there is nothing; depth.Z: distance from the camera, mean
+// over the rays that see something, infinite where none does; instance.ID, primitive.ID: of the first sample, 2^32 - 1
+// where it sees nothing. rays: of a pixel.
+std::vector<ImageChannel> layers_of(const std::vector<FirstSurface>& first_surfaces, uint rays);
+
 }  // namespace twinray::path_tracer

@@ -1,15 +1,69 @@
 // SPDX-License-Identifier: MIT
-// Balls that move, refit and change colour on the GPU: the host submits all frames and reads the last picture alone.
+// Balls that move, refit and change colour on the GPU: the host submits all frames, reads the last picture alone, and
+// tells how long it took, as text and as a line of JSON.
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
 #include <twinray/context.h>
 #include <twinray/tlas.h>
-#include "samples/particles/report.h"
+#include "samples/particles/renderer.h"
+#include "samples/particles/simulation.h"
+#include "samples/support/program.h"
 #include "samples/support/text.h"
 
 namespace twinray::particles {
 namespace {
+
+struct Options : samples::DeviceOptions {
+    std::filesystem::path output, json;
+    uint frames = 100;
+    uint count = 1000;
+    uint seed = 1;
+    PictureSize size;
+};
+
+// The options, or the exit status of a run that is over: help was shown (0) or the usage is wrong (2).
+struct ParsedOptions {
+    Options options;
+    std::optional<int> exit_status;
+};
+
+constexpr uint max_side = 8192, max_frames = 100'000, max_count = 1'000'000;
+
+void add_options(CLI::App& app, Options& options) {
+    app.add_option("-o,--output", options.output, "the last frame: .png, or .exr with linear radiance");
+    app.add_option("--json", options.json, "append one line with what was done and how fast");
+    app.add_option("--frames", options.frames, "how many")->check(CLI::Range(1u, max_frames))->capture_default_str();
+    app.add_option("--count", options.count, "particles")->check(CLI::Range(1u, max_count))->capture_default_str();
+    app.add_option("--width", options.size.width, "pixels")->check(CLI::Range(1u, max_side))->capture_default_str();
+    app.add_option("--height", options.size.height, "pixels")->check(CLI::Range(1u, max_side))->capture_default_str();
+    app.add_option("--samples", options.size.samples, "rays of a pixel: 1, 4, 9 or 16")
+        ->check(CLI::IsMember({1u, 4u, 9u, 16u}))
+        ->option_text("1|4|9|16 [" + std::to_string(options.size.samples) + "]");
+    app.add_option("--seed", options.seed, "of where the particles start")->capture_default_str();
+    samples::add_device_options(app, options, "Khronos validation layer; exit 1 on any message");
+}
+
+ParsedOptions parse_options(int argc, char** argv) {
+    CLI::App app("particles: moving balls, coloured by their speed, without the host in the loop");
+    ParsedOptions result;
+    add_options(app, result.options);
+    result.exit_status = samples::parse(app, argc, argv, "particles");
+    return result;
+}
+
+struct RunTimes {
+    double submit_ms = 0;                // until the host had submitted all frames
+    double total_ms = 0;                 // until the GPU was done with them
+    bool was_ahead = false;              // all frames were submitted before the GPU was done with the last
+    std::vector<PassTiming> last_frame;  // of the GPU
+};
 
 using Clock = std::chrono::steady_clock;
 
@@ -33,6 +87,33 @@ RunTimes run_frames(Simulation& simulation, Renderer& renderer, uint frames) {
     times.last_frame = simulation.timings();
     for (const PassTiming& pass : renderer.timings()) times.last_frame.push_back(pass);
     return times;
+}
+
+// Prints unless quiet, and appends to the file of --json. Throws Error naming it.
+void report(const Options& options, const AccelChoice& accel, const RunTimes& times) {
+    const double frame_ms = times.total_ms / options.frames;
+    if (!options.quiet) {
+        std::printf("%u particles, %u x %u, %u frames by %s (%s): %.2f ms a frame; all were submitted after %.1f ms\n",
+                    options.count, options.size.width, options.size.height, options.frames, name_of(accel),
+                    accel.why.c_str(), frame_ms, times.submit_ms);
+        for (const PassTiming& pass : times.last_frame) std::printf("  %-22s %9.3f ms\n", pass.name.c_str(), pass.ms);
+    }
+    nlohmann::json passes;
+    for (const PassTiming& pass : times.last_frame) passes[pass.name] = pass.ms;
+    const nlohmann::json line = {{"sample", "particles"},
+                                 {"accel", name_of(accel)},
+                                 {"accel_why", accel.why},
+                                 {"count", options.count},
+                                 {"frames", options.frames},
+                                 {"width", options.size.width},
+                                 {"height", options.size.height},
+                                 {"samples", options.size.samples},
+                                 {"frame_ms", frame_ms},
+                                 {"submit_ms", times.submit_ms},
+                                 {"total_ms", times.total_ms},
+                                 {"was_ahead", times.was_ahead},
+                                 {"pass_ms", passes}};
+    samples::append_line(options.json, line.dump());
 }
 
 int run(const Options& options) {

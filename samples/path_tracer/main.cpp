@@ -1,17 +1,26 @@
 // SPDX-License-Identifier: MIT
-// The sample path tracer: one scene, one picture, by either accelerator or by both against each other.
+// The sample path tracer: a picture of one scene or a sequence of them, by either accelerator or by both against each
+// other; or a picture of films that were rendered apart, or the window of `twinray view`.
+#include <unistd.h>
+
 #include <cmath>
 #include <cstdio>
+#include <sstream>
 
 #include <twinray/context.h>
-#include "samples/path_tracer/frames.h"
-#include "samples/path_tracer/merge.h"
+#include <twinray/scene.h>
+#include "renderer/camera.h"
+#include "renderer/configuration.h"
+#include "renderer/film_file.h"
+#include "renderer/moving_scene.h"
+#include "samples/path_tracer/rendering.h"
 #include "samples/path_tracer/report.h"
-#include "samples/path_tracer/view.h"
+#include "samples/path_tracer/session.h"
 #include "samples/support/text.h"
 
 namespace twinray::path_tracer {
 using samples::fail;
+using samples::text;
 namespace {
 
 // 128 + the signal, as shells have it, where one came.
@@ -57,6 +66,154 @@ int cross_check(const Options& options, const Ranks& ranks) {
                 difference_picture(by_hardware, by_software, marks, std::exp2(-exposure)), exposure);
     report_cross_check(options, session, result);
     return result.passed() ? 0 : 1;
+}
+
+void check(const Options& options, const Ranks& ranks) {
+    if (ranks.count() > 1) fail("under mpirun there is no --frames: start one run for each part of the frames");
+    if (!is_image_file(options.output))
+        fail("--frames: '", options.output.string(), "' must be a picture, .png or .exr");
+}
+
+class FrameRenderer {
+  public:
+    FrameRenderer(const Options& options, Ranks& ranks)
+        : options_(options),
+          ranks_(ranks),
+          session_(make_session(options, ranks)),
+          sequence_(make_sequence(options.sequence, session_.scene)),
+          accel_(make_accel(*session_.context, session_.scene, session_.accel)),
+          build_ms_(build_ms(*accel_)) {
+        const Scene whole = swept(session_.scene, sequence_);
+        center_ = bounds_of(whole).center();
+        if (is_framing(options, session_.scene)) framing_ = camera_of(options, whole, session_.settings);
+        options_.checkpoint_seconds.reset();  // a frame is whole or to be rendered anew
+        if (sequence_.animation)
+            motion_ = std::make_unique<MovingScene>(*session_.context, session_.scene, *session_.device_scene, *accel_);
+    }
+
+    // The signal that ended it, or 0.
+    int render(uint frame) {
+        FrameNote note{frame + 1, sequence_.frames, sequence_.time_of(frame), build_ms_};
+        if (motion_) note.times = motion_->move_to(pose_at(*session_.scene.rig, *sequence_.animation, note.seconds));
+        set_view(frame);
+        describe(note);
+        options_.output = frame_file(pattern_, frame);
+        const Rendering rendering = render_film(options_, session_, *accel_, ranks_);
+        report_render(options_, session_, *accel_, rendering, &note);
+        // One for all: else they would flicker.
+        if (!options_.exposure)
+            options_.exposure = exposure_of({}, rendering.film.configuration, rendering.film.mean());
+        return rendering.signal;
+    }
+
+    uint count() const { return sequence_.frames; }
+
+  private:
+    // The file's cameras may move; one that frames the scene shows it at all times.
+    void set_view(uint frame) {
+        const Camera camera = framing_ ? *framing_ : camera_of(options_, session_.scene, session_.settings);
+        RenderSettings& settings = session_.settings;
+        settings.camera = rays_of(options_, turned_about(camera, center_, sequence_.angle_of(frame)), settings);
+        settings.seed = options_.seed + frame;
+        session_.renderer->set_frame(settings.camera, settings.seed);
+    }
+
+    void describe(const FrameNote& note) {
+        if (!base_) base_ = session_.configuration;
+        session_.configuration = *base_;
+        session_.configuration.emplace_back("frame", text(note.number, " of ", note.count));
+        session_.configuration.emplace_back("time", text(note.seconds));
+    }
+
+    Options options_;
+    Ranks& ranks_;
+    std::filesystem::path pattern_ = options_.output;
+    Session session_;
+    Sequence sequence_;
+    std::unique_ptr<AbstractAccel> accel_;
+    vec3 center_ = vec3(0);
+    std::optional<Camera> framing_;
+    double build_ms_;
+    std::unique_ptr<MovingScene> motion_;  // null: nothing moves but the camera
+    std::optional<Configuration> base_;
+};
+
+// --frames: picture after picture of a scene that moves, or is gone round. Returns the exit status: 128 + the signal
+// that ended it early, else 0.
+int render_frames(const Options& options, Ranks& ranks) {
+    check(options, ranks);
+    FrameRenderer renderer(options, ranks);
+    for (uint frame = 0; frame < renderer.count(); ++frame)
+        if (const int signal = renderer.render(frame)) {
+            std::fprintf(stderr,
+                         "path_tracer: interrupted in frame %u of %u, which lacks paths; those before it are whole\n",
+                         frame + 1, renderer.count());
+            return 128 + signal;
+        }
+    return 0;
+}
+
+Film merged(const std::vector<std::filesystem::path>& files) {
+    Film film = load_film(files[0]);
+    for (std::size_t i = 1; i < files.size(); ++i)
+        film.merge(load_film(files[i]), files[0].string() + (i > 1 ? " and others" : ""), files[i].string());
+    return film;
+}
+
+// Films of one picture become one film or picture, the same in any order. Returns the exit status. Throws Error naming
+// the files that do not belong together.
+int merge_films(const MergeOptions& options) {
+    check_folder(options.output);
+    const Film film = merged(options.films);
+    if (is_film_file(options.output))
+        save_film(options.output, film);
+    else
+        write_picture_of(options.output, film, options.exposure);
+    report_merge(options, film);
+    return 0;
+}
+
+void add(std::vector<std::string>& words, const std::string& option, const std::vector<double>& numbers) {
+    words.push_back(option);
+    for (const double number : numbers) {
+        std::ostringstream out;
+        out.precision(17);
+        out << number;
+        words.push_back(out.str());
+    }
+}
+
+std::vector<std::string> command_line(const Options& options) {
+    std::vector<std::string> words = {"twinray", "view", options.scene.string(), "--layer", "path"};
+    if (options.accel != "auto") words.insert(words.end(), {"--show", options.accel});
+    if (!options.device.empty()) words.insert(words.end(), {"--device", options.device});
+    if (!options.look_from.empty()) {
+        std::vector<double> camera = options.look_from;
+        camera.insert(camera.end(), options.look_at.begin(), options.look_at.end());
+        add(words, "--camera", camera);
+        add(words, "--up", {options.up.begin(), options.up.end()});
+        add(words, "--fov", {options.fov});
+    }
+    if (options.width && options.height) add(words, "--size", {double(options.width), double(options.height)});
+    if (options.exposure) add(words, "--exposure", {*options.exposure});
+    return words;
+}
+
+// Becomes `twinray view` with this scene, camera and device: the command beside this program, else the one in PATH.
+// Throws Error where there is none.
+[[noreturn]] void view(const Options& options) {
+    if (options.scene.string().starts_with("builtin:")) fail("--view: '", options.scene.string(), "' is no file");
+    if ((options.width == 0) != (options.height == 0)) fail("--view: --width and --height go together");
+    std::vector<std::string> words = command_line(options);
+    std::vector<char*> arguments;
+    for (std::string& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    std::error_code none;
+    const std::filesystem::path beside =
+        std::filesystem::read_symlink("/proc/self/exe", none).parent_path() / "twinray";
+    execv(beside.c_str(), arguments.data());
+    execvp("twinray", arguments.data());
+    fail("--view: there is no command twinray, neither in '", beside.parent_path().string(), "' nor in PATH");
 }
 
 }  // namespace

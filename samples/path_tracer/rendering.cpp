@@ -1,25 +1,33 @@
 // SPDX-License-Identifier: MIT
 #include "samples/path_tracer/rendering.h"
 
+#include <netdb.h>
+#include <sys/socket.h>
+#include <sys/time.h>
+#include <unistd.h>
+
+#include <array>
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <limits>
+#include <memory>
 #include <utility>
 
-#include "samples/path_tracer/display.h"
+#include "renderer/configuration.h"
 #include "renderer/film_file.h"
-#include "samples/path_tracer/interrupts.h"
-#include "renderer/layers.h"
 #include "renderer/rounds.h"
 #include "samples/support/progress.h"
 #include "samples/support/text.h"
 
 namespace twinray::path_tracer {
+using samples::fail;
 using samples::text;
 namespace {
 
-// Of the error that is shown; more where estimates take long.
+// The error that is shown is estimated so often, and less often where estimates take long.
 constexpr double seconds_between_estimates = 2, share_of_estimates = 0.05;
 constexpr double seconds_between_displays = 1;
 
@@ -56,6 +64,130 @@ class RoundProgress {
     double start_;
     std::uint64_t shown_ = 0;
     samples::Progress bar_;
+};
+
+volatile std::sig_atomic_t noted = 0;
+
+void note(int number) {
+    noted = number;
+    std::signal(number, SIG_DFL);
+}
+
+// While it lives, the first SIGINT or SIGTERM is only noted, so that work can end in good order; a second one ends the
+// program at once. One at a time.
+class Interrupts {
+  public:
+    Interrupts() {
+        noted = 0;
+        std::signal(SIGINT, note);
+        std::signal(SIGTERM, note);
+    }
+    ~Interrupts() {
+        std::signal(SIGINT, SIG_DFL);
+        std::signal(SIGTERM, SIG_DFL);
+    }
+    Interrupts(const Interrupts&) = delete;
+    Interrupts& operator=(const Interrupts&) = delete;
+
+    // The number of the signal; 0: none came.
+    int signal() const { return noted; }
+};
+
+constexpr char default_port[] = "14158";
+constexpr char update_image = 3, create_image = 4;
+constexpr std::array channels = {"R", "G", "B"};
+
+struct Address {
+    std::string host, port;
+};
+
+Address address_of(const std::string& server) {
+    const std::size_t colon = server.rfind(':');
+    if (colon == std::string::npos) return {server, default_port};
+    return {server.substr(0, colon), server.substr(colon + 1)};
+}
+
+// -1: nobody listens there.
+int connected_socket(const Address& address) {
+    addrinfo hints{}, *found = nullptr;
+    hints.ai_socktype = SOCK_STREAM;
+    if (getaddrinfo(address.host.c_str(), address.port.c_str(), &hints, &found) != 0) return -1;
+    const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> all(found, &freeaddrinfo);
+    for (const addrinfo* one = all.get(); one; one = one->ai_next) {
+        const int result = socket(one->ai_family, one->ai_socktype, one->ai_protocol);
+        if (result < 0) continue;
+        // A viewer that does not read for so long counts as gone.
+        const timeval patience{.tv_sec = 2, .tv_usec = 0};
+        setsockopt(result, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
+        if (connect(result, one->ai_addr, one->ai_addrlen) == 0) return result;
+        close(result);
+    }
+    return -1;
+}
+
+// Little-endian, as the protocol is and the machines that this runs on are.
+template <class T>
+void put(std::string& payload, const T& value) {
+    payload.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+void put_text(std::string& payload, const std::string& value) { payload.append(value.c_str(), value.size() + 1); }
+
+std::string header(char kind, const std::string& name) {
+    std::string payload(1, kind);
+    payload += '\0';  // the viewer need not come to the front
+    put_text(payload, name);
+    return payload;
+}
+
+// A picture in a viewer that shows what comes over a TCP connection, as tev does: its protocol's packets CreateImage
+// and, for each channel, UpdateImage (github.com/Tom94/tev), as pbrt-v4 sends them.
+class Display {
+  public:
+    // server: HOST:PORT, or HOST alone for port 14158. Throws Error where nobody listens there.
+    Display(const std::string& server, const std::string& name, uint width, uint height)
+        : name_(name), socket_(connected_socket(address_of(server))) {
+        if (socket_ < 0) fail("--display-server ", server, ": nobody listens there; it must be HOST or HOST:PORT");
+        std::string payload = header(create_image, name_);
+        put(payload, width);
+        put(payload, height);
+        put(payload, static_cast<uint>(channels.size()));
+        for (const char* channel : channels) put_text(payload, channel);
+        send_packet(payload);
+    }
+    ~Display() {
+        if (socket_ >= 0) close(socket_);
+    }
+    Display(const Display&) = delete;
+    Display& operator=(const Display&) = delete;
+
+    // False from when the viewer has gone on.
+    bool show(const HdrImage& picture) {
+        for (std::size_t channel = 0; channel < channels.size(); ++channel) {
+            std::string payload = header(update_image, name_);
+            put_text(payload, channels[channel]);
+            for (const uint value : {0u, 0u, picture.width, picture.height}) put(payload, value);
+            for (const vec3& rgb : picture.rgb) put(payload, rgb[static_cast<int>(channel)]);
+            if (!send_packet(payload)) return false;
+        }
+        return true;
+    }
+
+  private:
+    bool send_packet(const std::string& payload) {
+        std::string packet;
+        put(packet, static_cast<uint>(payload.size() + sizeof(uint)));
+        packet += payload;
+        for (std::size_t sent = 0; sent < packet.size();) {
+            const ssize_t count = send(socket_, packet.data() + sent, packet.size() - sent, MSG_NOSIGNAL);
+            if (count <= 0) return false;
+            sent += static_cast<std::size_t>(count);
+        }
+        return true;
+    }
+
+    std::string name_;
+    int socket_ = -1;
 };
 
 std::filesystem::path film_file(const std::filesystem::path& output) {
@@ -170,7 +302,7 @@ class FilmRenderer {
         }
     }
 
-    // Of this rank's part. A viewer that has been closed is no reason to stop.
+    // A viewer sees this rank's part. One that has been closed is no reason to stop.
     void show() {
         if (display_ && !display_->show(result_.film.mean())) {
             if (!options_.quiet) std::fprintf(stderr, "path_tracer: the display server has gone\n");

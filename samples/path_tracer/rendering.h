@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Renders a film round by round until the options are content, and saves what is there to disk meanwhile.
+// Renders a film round by round until the options are content, and saves and shows what is there meanwhile.
 #pragma once
 
 #include "renderer/ranks.h"

@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "renderer/configuration.h"
 #include "renderer/reference.h"
 #include "samples/support/text.h"
 

@@ -9,6 +9,7 @@
 #include <twinray/geometry.h>
 #include <twinray/tlas.h>
 #include "renderer/camera.h"
+#include "renderer/configuration.h"
 #include "renderer/film_file.h"
 #include "renderer/stopped_lights.h"
 

@@ -5,10 +5,12 @@
 #include <memory>
 
 #include <twinray/tlas.h>
-#include "renderer/configuration.h"
-#include "samples/path_tracer/options.h"
+#include "renderer/environment.h"
+#include "renderer/lights.h"
 #include "renderer/ranks.h"
+#include "renderer/renderer.h"
 #include "renderer/rounds.h"
+#include "samples/path_tracer/options.h"
 
 namespace twinray::path_tracer {
 
