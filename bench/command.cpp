@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: MIT
+// `twinray bench` of a scene: times and errors of every backend, and how they grow with the number of triangles.
 #include "bench/command.h"
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
+#include <optional>
 
 #include "bench/embree_backend.h"
-#include "bench/feature_costs.h"
-#include "bench/growth.h"
-#include "bench/keeping.h"
-#include "bench/moves.h"
 #include "bench/report.h"
-#include "bench/trees.h"
+#include "bench/table.h"
 #include "engine/core/error.h"
-#include <twinray/tlas.h>
+#include "engine/core/statistics.h"
 #include "validation/records/recorded_device.h"
 #include "validation/records/recorder.h"
 
@@ -42,7 +39,112 @@ Setup set_up(const Session& session) {
     return setup;
 }
 
-// Fields of every record.
+void record_traces(const Session& session, const nlohmann::json& base, const Results& results,
+                   const Measured& measured) {
+    for (const auto& [kind, traces] : measured.traces) record_all(session, records_of(base, results, kind, traces));
+}
+
+// It is of one backend on one scene, in ns; what was not measured is NaN.
+struct GrowthPoint {
+    std::size_t triangles = 0;
+    double build_ms = NAN;
+    double build = NAN;                      // a triangle
+    double primary = NAN, incoherent = NAN;  // a ray
+};
+
+struct RayColumn {
+    const char* field;
+    const char* heading;
+    double GrowthPoint::*value;
+};
+constexpr RayColumn ray_columns[] = {{"primary_ns_per_ray", "primary ns/ray", &GrowthPoint::primary},
+                                     {"incoherent_ns_per_ray", "incoherent ns/ray", &GrowthPoint::incoherent}};
+
+double median_ns(const Measured& measured, RayKind kind, std::size_t backend) {
+    const auto traces = measured.traces.find(kind);
+    return traces == measured.traces.end() ? NAN : spread_of(traces->second[backend].ns_per_ray).median;
+}
+
+std::vector<double> values_of(std::span<const GrowthPoint> points, double GrowthPoint::*value) {
+    std::vector<double> values;
+    for (const GrowthPoint& point : points) values.push_back(point.*value);
+    return values;
+}
+
+std::vector<double> sizes_of(std::span<const GrowthPoint> points) {
+    std::vector<double> sizes;
+    for (const GrowthPoint& point : points) sizes.push_back(static_cast<double>(point.triangles));
+    return sizes;
+}
+
+// The line is over log2 of the sizes; there is none for fewer than two, or where a point was not measured.
+std::optional<Line> line_of(std::span<const GrowthPoint> points, const RayColumn& column) {
+    std::vector<double> x = sizes_of(points);
+    const std::vector<double> y = values_of(points, column.value);
+    for (double& size : x) size = std::log2(size);
+    const bool is_measured = std::all_of(y.begin(), y.end(), [](double value) { return std::isfinite(value); });
+    if (!is_measured || x.front() == x.back()) return std::nullopt;
+    return fit_line(x, y);
+}
+
+std::optional<PowerLaw> build_power_of(std::span<const GrowthPoint> points) {
+    return fit_power_law(sizes_of(points), values_of(points, &GrowthPoint::build_ms));
+}
+
+GrowthPoint growth_point(const BenchScene& scene, const Measured& measured, std::size_t backend) {
+    GrowthPoint point{.triangles = count_mesh_triangles(scene.scene)};
+    if (const std::vector<double>& ms = measured.builds[backend].ms; !ms.empty()) {
+        point.build_ms = spread_of(ms).median;
+        point.build = point.build_ms * 1e6 / static_cast<double>(point.triangles);
+    }
+    point.primary = median_ns(measured, RayKind::primary, backend);
+    point.incoherent = median_ns(measured, RayKind::incoherent, backend);
+    return point;
+}
+
+// A row for each point, then how times grow with the number n of triangles: builds with a power of n, rays with log2 n
+// (what each doubling adds), by least squares.
+void print_growth(std::ostream& out, const std::string& backend, std::span<const GrowthPoint> points) {
+    std::vector<std::vector<std::string>> rows = {{backend, "build ms", "ns/triangle"}};
+    for (const RayColumn& column : ray_columns) rows.back().emplace_back(column.heading);
+    for (const GrowthPoint& point : points) {
+        rows.push_back({std::to_string(point.triangles) + " triangles", number_text(point.build_ms, 3),
+                        number_text(point.build, 3)});
+        for (const RayColumn& column : ray_columns) rows.back().push_back(number_text(point.*column.value, 3));
+    }
+    const std::optional<PowerLaw> power = build_power_of(points);
+    rows.push_back({"growth", power ? "n^" + fixed_text(power->slope, 2) : "-", ""});
+    for (const RayColumn& column : ray_columns) {
+        const std::optional<Line> line = line_of(points, column);
+        rows.back().push_back(line ? number_text(line->slope, 3) + " a doubling" : "-");
+    }
+    print_table(out, rows);
+}
+
+// The growth alone, added to the fields of `base`.
+nlohmann::json growth_record(const nlohmann::json& base, const Labels& labels, std::span<const GrowthPoint> points) {
+    nlohmann::json growth = {{"build_ms", nullptr}};
+    if (const std::optional<PowerLaw> power = build_power_of(points)) growth["build_ms"] = {{"power", power->slope}};
+    for (const RayColumn& column : ray_columns) {
+        growth[column.field] = nullptr;
+        if (const std::optional<Line> line = line_of(points, column))
+            growth[column.field] = {{"offset", line->offset}, {"per_doubling", line->slope}};
+    }
+    nlohmann::json record = base;
+    record.update({{"schema", record_schema},
+                   {"contestant", labels.name},
+                   {"backend", labels.backend},
+                   {"layout", labels.layout},
+                   {"builder", labels.builder},
+                   {"level", labels.level},
+                   {"triangles_from", points.front().triangles},
+                   {"triangles_to", points.back().triangles},
+                   {"growth", growth}});
+    return record;
+}
+
+}  // namespace
+
 nlohmann::json base_record(const Session& session) {
     return {{"started", utc_now()}, {"git", session.version}, {"width", session.run.width}, {"seed", session.run.seed}};
 }
@@ -56,28 +158,6 @@ nlohmann::json base_record(const Session& session, const Context& context) {
 void record_all(const Session& session, const std::vector<nlohmann::json>& records) {
     for (const nlohmann::json& record : records) session.record(record);
 }
-
-void record_traces(const Session& session, const nlohmann::json& base, const Results& results,
-                   const Measured& measured) {
-    for (const auto& [kind, traces] : measured.traces) record_all(session, records_of(base, results, kind, traces));
-}
-
-void tell_moves(const Session& session, AbstractAccel& accel, std::size_t count) {
-    const auto [refit_ms, rebuild_ms] = measure_moves(accel, count, session.run.rounds);
-    session.out << "  " << std::left << std::setw(8) << accel.name() << std::right << std::fixed << std::setprecision(2)
-                << " refit " << std::setw(8) << refit_ms << " ms, rebuild " << std::setw(8) << rebuild_ms << " ms, "
-                << refit_ms / rebuild_ms << " of it\n";
-    session.record({{"schema", record_schema},
-                    {"device", describe(accel.context())},
-                    {"rays", "none"},
-                    {"backend", accel.is_software() ? "sw" : "hw"},
-                    {"instances", count},
-                    {"rounds", session.run.rounds},
-                    {"refit_ms", refit_ms},
-                    {"rebuild_ms", rebuild_ms}});
-}
-
-}  // namespace
 
 void bench_scene(const Session& session, const BenchScene& scene) {
     Setup setup = set_up(session);
@@ -112,65 +192,6 @@ void bench_growth(const Session& session, std::span<const double> sizes) {
         print_growth(session.out, setup.line_up[i]->labels().name, points[i]);
         session.record(growth_record(base, setup.line_up[i]->labels(), points[i]));
     }
-}
-
-void bench_moves(const Session& session, std::size_t count) {
-    Context context(session.device);
-    session.out << "bench: " << count << " instances moved from device memory, GPU times, median of "
-                << session.run.rounds << " rounds, on " << context.properties().name << '\n';
-    SwTlas software(context);
-    tell_moves(session, software, count);
-    if (!missing_for_hardware(context.properties()).empty()) return;
-    HwTlas hardware(context);
-    tell_moves(session, hardware, count);
-}
-
-void bench_feature_costs(const Session& session, const BenchScene& scene) {
-    const RunOptions& run = session.run;
-    Context context(session.device);
-    const FeatureCostOptions options{.layout = run.line_up.layouts.front(),
-                                     .level = run.line_up.levels.front(),
-                                     .rounds = std::max<std::size_t>(run.rounds, 5),
-                                     .seed = run.seed,
-                                     .width = run.width};
-    session.out << "bench " << scene.name << ": features that " << name_of(options.layout) << ' '
-                << name_of(options.level) << " does not need, one more in each line, medians of " << options.rounds
-                << " interleaved rounds, on " << context.properties().name << '\n';
-    nlohmann::json base = base_record(session, context);
-    const dvec3& origin = scene.scene.origin;
-    base.update({{"scene", scene.name}, {"origin", {origin.x, origin.y, origin.z}}});
-    nlohmann::json step_base = base;
-    step_base.update({{"layout", name_of(options.layout)}, {"level", name_of(options.level)}});
-    bool agree = true;
-    for (const FeatureCosts& costs : measure_feature_costs(context, scene, options, run.kinds)) {
-        session.out << '\n';
-        print_feature_costs(session.out, costs);
-        record_all(session, records_of(step_base, costs));
-        agree = agree && costs.agrees();
-    }
-    if (run.times_builds) {
-        const std::size_t triangles = std::max<std::size_t>(count_mesh_triangles(scene.scene), 1);
-        // Each round builds every one of them: beyond 9 the medians stand.
-        const std::vector<Keeping> keepings =
-            measure_keepings(context, scene, std::min<std::size_t>(options.rounds, 9));
-        session.out << '\n';
-        print_keepings(session.out, keepings, triangles);
-        record_all(session, records_of(base, keepings, triangles));
-    }
-    if (!agree) fail("bench: programs with more features than needed found other hits");
-}
-
-void bench_trees(const Session& session, const BenchScene& scene) {
-    const RunOptions& run = session.run;
-    Context context(session.device);
-    session.out << "bench " << scene.name << ": trees over " << count_triangles(scene.scene)
-                << " triangles as one mesh, " << run.width * run.width
-                << " rays a set at level watertight, what a ray takes on average\n";
-    const std::vector<TreeFigures> trees = measure_trees(context, scene, run.kinds, run.width, run.seed);
-    print_trees(session.out, trees);
-    nlohmann::json base = base_record(session);
-    base.update({{"scene", scene.name}, {"triangles", count_triangles(scene.scene)}});
-    record_all(session, records_of(base, trees));
 }
 
 }  // namespace twinray::bench

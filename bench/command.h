@@ -35,4 +35,9 @@ void bench_feature_costs(const Session& session, const BenchScene& scene);
 // What trees of each layout and build quality are like: counts, not times.
 void bench_trees(const Session& session, const BenchScene& scene);
 
+// The modes share these. Fields of every record.
+nlohmann::json base_record(const Session& session);
+nlohmann::json base_record(const Session& session, const Context& context);
+void record_all(const Session& session, const std::vector<nlohmann::json>& records);
+
 }  // namespace twinray::bench

@@ -1,17 +1,291 @@
 // SPDX-License-Identifier: MIT
+// Embree 3 as backends: its scenes, its calls for many rays, and the variants of both.
 #include "bench/embree_backend.h"
 
+#include <embree3/rtcore.h>
 #include <xmmintrin.h>
 
-#include "bench/embree_scene.h"
-#include "bench/embree_trace.h"
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <memory>
+#include <span>
+#include <vector>
+
 #include "bench/stopwatch.h"
 #include "bench/tiles.h"
 #include "engine/core/cpu_threads.h"
+#include "engine/core/error.h"
 #include "engine/core/parallel.h"
 
 namespace twinray::bench {
 namespace {
+
+struct EmbreeOptions {
+    RTCBuildQuality quality = RTC_BUILD_QUALITY_MEDIUM;           // of scenes
+    RTCBuildQuality geometry_quality = RTC_BUILD_QUALITY_MEDIUM;  // heeded in scenes of quality low alone
+    RTCSceneFlags flags = RTC_SCENE_FLAG_NONE;
+    unsigned threads = 1;
+};
+
+// Meshes with one instance that is not moved lie in the top scene, all others under instances.
+class EmbreeScene {
+  public:
+    explicit EmbreeScene(const EmbreeOptions& options);
+    EmbreeScene(const EmbreeScene&) = delete;
+    EmbreeScene& operator=(const EmbreeScene&) = delete;
+
+    BuildFigures build(const Scene& scene);
+    RTCScene top() const { return top_.get(); }
+    unsigned threads() const { return options_.threads; }
+
+  private:
+    // Embree reads 16 bytes where the last vertex has 12.
+    struct PaddedMesh {
+        std::vector<vec3> positions;
+        std::vector<uvec3> triangles;
+    };
+    template <auto release>
+    struct Release {
+        template <class T>
+        void operator()(T* object) const {
+            release(object);
+        }
+    };
+    using DevicePointer = std::unique_ptr<RTCDeviceTy, Release<rtcReleaseDevice>>;
+    using ScenePointer = std::unique_ptr<RTCSceneTy, Release<rtcReleaseScene>>;
+    using GeometryPointer = std::unique_ptr<RTCGeometryTy, Release<rtcReleaseGeometry>>;
+
+    static bool count_bytes(void* scene, ssize_t bytes, bool);
+    void check(const char* action) const;
+    ScenePointer make_scene() const;
+    void attach(RTCScene scene, GeometryPointer geometry, uint id) const;
+    GeometryPointer triangles_of(const PaddedMesh& mesh) const;
+
+    EmbreeOptions options_;
+    std::atomic<std::int64_t> bytes_ = 0, peak_bytes_ = 0;
+    DevicePointer device_;
+    std::vector<PaddedMesh> meshes_;
+    std::vector<ScenePointer> bottoms_;  // by mesh; null where it has no scene of its own
+    ScenePointer top_;
+};
+
+EmbreeScene::EmbreeScene(const EmbreeOptions& options)
+    : options_(options), device_(rtcNewDevice(text("threads=", options.threads).c_str())) {
+    if (!device_) fail("Embree: no device: error ", static_cast<int>(rtcGetDeviceError(nullptr)));
+    rtcSetDeviceMemoryMonitorFunction(device_.get(), count_bytes, this);
+}
+
+bool EmbreeScene::count_bytes(void* scene, ssize_t bytes, bool) {
+    auto& self = *static_cast<EmbreeScene*>(scene);
+    const std::int64_t now = self.bytes_ += bytes;
+    std::int64_t peak = self.peak_bytes_;
+    while (peak < now && !self.peak_bytes_.compare_exchange_weak(peak, now)) {}
+    return true;
+}
+
+void EmbreeScene::check(const char* action) const {
+    const RTCError error = rtcGetDeviceError(device_.get());
+    if (error != RTC_ERROR_NONE) fail("Embree: ", action, ": error ", static_cast<int>(error));
+}
+
+EmbreeScene::ScenePointer EmbreeScene::make_scene() const {
+    ScenePointer scene(rtcNewScene(device_.get()));
+    rtcSetSceneFlags(scene.get(), options_.flags);
+    rtcSetSceneBuildQuality(scene.get(), options_.quality);
+    return scene;
+}
+
+void EmbreeScene::attach(RTCScene scene, GeometryPointer geometry, uint id) const {
+    rtcSetGeometryBuildQuality(geometry.get(), options_.geometry_quality);
+    rtcCommitGeometry(geometry.get());
+    rtcAttachGeometryByID(scene, geometry.get(), id);
+}
+
+EmbreeScene::GeometryPointer EmbreeScene::triangles_of(const PaddedMesh& mesh) const {
+    GeometryPointer geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
+    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh.positions.data(), 0,
+                               sizeof(vec3), mesh.positions.size() - 1);
+    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangles.data(), 0,
+                               sizeof(uvec3), mesh.triangles.size());
+    return geometry;
+}
+
+BuildFigures EmbreeScene::build(const Scene& scene) {
+    top_.reset();
+    bottoms_.clear();
+    meshes_.clear();
+    const std::int64_t before = bytes_;
+    peak_bytes_ = before;
+
+    const Stopwatch whole;
+    std::vector<uint> uses(scene.meshes.size());
+    for (const Instance& instance : scene.instances) ++uses[instance.mesh];
+    for (const Mesh& mesh : scene.meshes) {
+        meshes_.push_back({mesh.positions, mesh.triangles});
+        meshes_.back().positions.emplace_back(0.0f);
+    }
+    bottoms_.resize(meshes_.size());
+
+    const Stopwatch building;
+    top_ = make_scene();
+    for (uint i = 0; i < scene.instances.size(); ++i) {
+        const Instance& instance = scene.instances[i];
+        const PaddedMesh& mesh = meshes_[instance.mesh];
+        if (mesh.triangles.empty()) continue;
+        if (uses[instance.mesh] == 1 && instance.transform == Transform()) {
+            attach(top_.get(), triangles_of(mesh), i);
+            continue;
+        }
+        ScenePointer& bottom = bottoms_[instance.mesh];
+        if (!bottom) {
+            bottom = make_scene();
+            attach(bottom.get(), triangles_of(mesh), 0);
+            rtcCommitScene(bottom.get());
+        }
+        GeometryPointer placed(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE));
+        rtcSetGeometryInstancedScene(placed.get(), bottom.get());
+        rtcSetGeometryTransform(placed.get(), 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, &instance.transform);
+        attach(top_.get(), std::move(placed), i);
+    }
+    rtcCommitScene(top_.get());
+    const double ms = building.ms(), wall_ms = whole.ms();
+    check("build");
+    return {ms, wall_ms, static_cast<std::uint64_t>(bytes_ - before), static_cast<std::uint64_t>(peak_bytes_ - bytes_)};
+}
+
+// Rays and hits of ours, which go through Embree's calls for many rays.
+struct EmbreeTrace {
+    RTCScene scene;
+    Query query;
+    std::span<const Ray> rays;
+    std::span<Hit> hits;  // as many
+};
+
+constexpr std::size_t packet = 8;
+constexpr std::size_t stream = 256;
+
+struct Found {
+    float t, u, v;
+    uint primitive, geometry, instance;
+};
+
+// Instances, and meshes without one, are attached under the index of the instance.
+Hit hit_of(const Found& found) {
+    if (found.geometry == RTC_INVALID_GEOMETRY_ID) return miss();
+    Hit hit = miss();
+    hit.hit = 1;
+    hit.t = found.t;
+    hit.primitive_index = found.primitive;
+    hit.u = found.u;
+    hit.v = found.v;
+    hit.instance_index = found.instance == RTC_INVALID_GEOMETRY_ID ? found.geometry : found.instance;
+    return hit;
+}
+
+// Embree sets the end of rays that are occluded to minus infinity.
+Hit occlusion_of(float t_far) {
+    Hit hit = miss();
+    if (t_far < 0) {
+        hit.hit = 1;
+        hit.t = 0;
+    }
+    return hit;
+}
+
+void set(RTCRay8& packed, std::size_t i, const Ray& ray) {
+    packed.org_x[i] = ray.origin.x;
+    packed.org_y[i] = ray.origin.y;
+    packed.org_z[i] = ray.origin.z;
+    packed.tnear[i] = ray.t_min;
+    packed.dir_x[i] = ray.direction.x;
+    packed.dir_y[i] = ray.direction.y;
+    packed.dir_z[i] = ray.direction.z;
+    packed.tfar[i] = ray.t_max;
+    packed.time[i] = 0;
+    packed.mask[i] = ~0u;
+    packed.id[i] = 0;
+    packed.flags[i] = 0;
+}
+
+RTCRay ray_of(const Ray& ray) {
+    return {ray.origin.x,
+            ray.origin.y,
+            ray.origin.z,
+            ray.t_min,
+            ray.direction.x,
+            ray.direction.y,
+            ray.direction.z,
+            0,
+            ray.t_max,
+            ~0u,
+            0,
+            0};
+}
+
+void trace_packet(const EmbreeTrace& part, RTCIntersectContext& context) {
+    const auto& [scene, query, rays, hits] = part;
+    alignas(32) std::array<int, packet> valid{};
+    RTCRayHit8 packed;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        valid[i] = -1;
+        set(packed.ray, i, rays[i]);
+        packed.hit.geomID[i] = packed.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    }
+    if (query == Query::any) {
+        rtcOccluded8(valid.data(), scene, &context, &packed.ray);
+        for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = occlusion_of(packed.ray.tfar[i]);
+        return;
+    }
+    rtcIntersect8(valid.data(), scene, &context, &packed);
+    for (std::size_t i = 0; i < rays.size(); ++i)
+        hits[i] = hit_of({packed.ray.tfar[i], packed.hit.u[i], packed.hit.v[i], packed.hit.primID[i],
+                          packed.hit.geomID[i], packed.hit.instID[0][i]});
+}
+
+void trace_stream(const EmbreeTrace& part, RTCIntersectContext& context) {
+    const auto& [scene, query, rays, hits] = part;
+    const auto count = static_cast<unsigned>(rays.size());
+    if (query == Query::any) {
+        std::array<RTCRay, stream> list;
+        std::transform(rays.begin(), rays.end(), list.begin(), ray_of);
+        rtcOccluded1M(scene, &context, list.data(), count, sizeof(RTCRay));
+        for (std::size_t i = 0; i < count; ++i) hits[i] = occlusion_of(list[i].tfar);
+        return;
+    }
+    std::array<RTCRayHit, stream> list;
+    for (std::size_t i = 0; i < count; ++i) {
+        list[i].ray = ray_of(rays[i]);
+        list[i].hit.geomID = list[i].hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    }
+    rtcIntersect1M(scene, &context, list.data(), count, sizeof(RTCRayHit));
+    for (std::size_t i = 0; i < count; ++i)
+        hits[i] = hit_of({list[i].ray.tfar, list[i].hit.u, list[i].hit.v, list[i].hit.primID, list[i].hit.geomID,
+                          list[i].hit.instID[0]});
+}
+
+template <class Part>
+void in_parts(std::size_t size, const EmbreeTrace& whole, const Part& trace_part) {
+    for (std::size_t begin = 0; begin < whole.rays.size(); begin += size) {
+        const std::size_t count = std::min(size, whole.rays.size() - begin);
+        trace_part({whole.scene, whole.query, whole.rays.subspan(begin, count), whole.hits.subspan(begin, count)});
+    }
+}
+
+// Rays go in packets of 8 (rtcIntersect8, rtcOccluded8), in the given order, with Embree's default flags.
+void trace_packets(const EmbreeTrace& trace) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    in_parts(packet, trace, [&](const EmbreeTrace& part) { trace_packet(part, context); });
+}
+
+// Rays go in streams of 256 (rtcIntersect1M, rtcOccluded1M), told whether they are coherent.
+void trace_streams(const EmbreeTrace& trace, bool is_coherent) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = is_coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    in_parts(stream, trace, [&](const EmbreeTrace& part) { trace_stream(part, context); });
+}
 
 // Embree asks its callers to flush denormals: MXCSR's bits FTZ and DAZ, put back at the end.
 class FlushDenormals {

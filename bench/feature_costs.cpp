@@ -1,22 +1,50 @@
 // SPDX-License-Identifier: MIT
-#include "engine/accel/trace_program.h"
-#include "bench/feature_costs.h"
+// `twinray bench` of what each feature of shaders/shared/features.h costs a scene that does not need it: time and
+// memory.
+#include "bench/command.h"
 
 #include <algorithm>
 
 #include <twinray/scene.h>
+#include <twinray/tlas.h>
 
 #include "bench/accel_backend.h"
 #include "bench/figures.h"
 #include "bench/hits_hash.h"
 #include "bench/report.h"
 #include "bench/table.h"
-#include "feature_costs_program.trace_program.h"
 #include "engine/accel/feature_additions.h"
-#include <twinray/tlas.h>
+#include "engine/accel/trace_program.h"
+#include "engine/core/error.h"
+#include "feature_costs_program.trace_program.h"
 
 namespace twinray::bench {
 namespace {
+
+struct FeatureCostOptions {
+    Layout layout = Layout::compressed4;
+    Level level = Level::watertight;
+    std::size_t rounds = 9;  // at least 5
+    std::uint64_t seed = 1;
+    uint width = 256;  // as RunOptions::width
+};
+
+// One set of rays, traced by programs for the same scene that bits of FEATURES are added to, one after the other. The
+// first has those alone that the trace needs.
+struct FeatureCosts {
+    struct Step {
+        std::string name;  // "needed", "+ masks"
+        uint features = 0;
+        TraceRounds rounds;
+    };
+    RayKind kind;
+    std::vector<Step> steps;
+
+    // Median over the rounds of its time over that of the first.
+    double ratio(std::size_t step) const;
+    // Whether all of them found the same.
+    bool agrees() const;
+};
 
 // A scene, traced by one program.
 class FeatureBackend : public Backend {
@@ -96,8 +124,6 @@ FeatureCosts measure_costs(AbstractAccel& accel, RayKind kind, std::vector<Ray>&
     return costs;
 }
 
-}  // namespace
-
 double FeatureCosts::ratio(std::size_t step) const { return speed_up(steps.front().rounds, steps[step].rounds); }
 
 bool FeatureCosts::agrees() const {
@@ -105,6 +131,7 @@ bool FeatureCosts::agrees() const {
                        [&](const Step& step) { return step.rounds.hash == steps.front().rounds.hash; });
 }
 
+// SwTlas traces scenes whose instances do not move. Throws Error naming the scene if no primary ray meets it.
 std::vector<FeatureCosts> measure_feature_costs(Context& context, const BenchScene& scene,
                                                 const FeatureCostOptions& options, std::span<const RayKind> kinds) {
     auto rays = make_rays(context, scene, options.width, options.seed);
@@ -129,6 +156,7 @@ void print_feature_costs(std::ostream& out, const FeatureCosts& costs) {
     print_table(out, rows);
 }
 
+// One for each step, added to the fields of `base`.
 std::vector<nlohmann::json> records_of(const nlohmann::json& base, const FeatureCosts& costs) {
     std::vector<nlohmann::json> records;
     for (std::size_t i = 0; i < costs.steps.size(); ++i) {
@@ -149,6 +177,162 @@ std::vector<nlohmann::json> records_of(const nlohmann::json& base, const Feature
         records.push_back(std::move(record));
     }
     return records;
+}
+
+// An accelerator keeps this, and its builds take so long, for a thing that a scene may not need.
+struct Keeping {
+    std::string name;  // "needed", "may move", "vertices moved", "layout bvh2", "level refined"
+    MemoryUsage usage;
+    std::vector<double> build_ms;  // of each round: the sync that led to it
+};
+
+struct Configuration {
+    std::string name;
+    AccelOptions options;
+    bool moves_vertices = false;
+};
+
+std::vector<Configuration> configurations_on(const DeviceProperties& device) {
+    const auto with = [](AccelOptions options) {
+        options.keeps_meshes = options.can_move = false;
+        return options;
+    };
+    std::vector<Configuration> configurations = {
+        {"needed", with({})},
+        {"may move", {.keeps_meshes = false}},
+        {"meshes on the host", {.can_move = false}},
+        {"vertices moved", {.can_move = false}, true},
+        {"build quality high", with({.build_quality = BuildQuality::high})},
+        {"layout compressed8", with({.layout = Layout::compressed8})},
+        {"layout bvh2", with({.layout = Layout::bvh2})},
+    };
+    if (SwTlas::capability_on(device, Feature::level_refined).support != Support::unsupported)
+        configurations.push_back({"level refined", with({.level = Level::refined})});
+    if (SwTlas::capability_on(device, Feature::level_certified).support != Support::unsupported)
+        configurations.push_back({"level certified", with({.level = Level::certified})});
+    return configurations;
+}
+
+double sync_ms(SwTlas& accel) {
+    const Stopwatch watch;
+    accel.sync();
+    accel.wait_for_gpu();
+    return total_ms(accel.build_timings(), watch);
+}
+
+void move_vertices(SwTlas& accel, const Scene& scene, std::span<const AccelHandle> handles) {
+    std::size_t pushed = 0;
+    for (std::size_t i = 0; i < scene.instances.size(); ++i)
+        if (i == 0 || scene.instances[i].mesh != scene.instances[i - 1].mesh)
+            accel.update_vertices(handles[pushed++], scene.meshes[scene.instances[i].mesh].positions);
+}
+
+void measure_round(Context& context, const Scene& scene, const Configuration& configuration, Keeping& keeping) {
+    SwTlas accel(context, configuration.options);
+    const std::vector<AccelHandle> handles = push_scene(accel, scene);
+    double ms = sync_ms(accel);
+    // The first move pays for later ones: it copies the mesh and measures the tree as it was built.
+    for (int moves = 0; configuration.moves_vertices && moves < 2; ++moves) {
+        move_vertices(accel, scene, handles);
+        ms = sync_ms(accel);
+    }
+    keeping.build_ms.push_back(ms);
+    keeping.usage = accel.memory_usage();
+}
+
+// In the order of the columns.
+std::vector<std::pair<const char*, double>> shares_of(const MemoryUsage& usage, std::size_t triangles) {
+    const auto share = [&](std::uint64_t bytes) { return static_cast<double>(bytes) / static_cast<double>(triangles); };
+    return {{"structures", share(usage.structures())}, {"instances", share(usage.instances + usage.blocks)},
+            {"vertices", share(usage.vertices)},       {"scratch", share(usage.scratch)},
+            {"total", share(usage.total())},           {"host", share(usage.host)}};
+}
+
+// SwTlas keeps the scene as it is, at level watertight in layout compressed4, whose instances may not move, then the
+// same with one thing more. Levels that the device lacks are left out.
+std::vector<Keeping> measure_keepings(Context& context, const BenchScene& scene, std::size_t rounds) {
+    const std::vector<Configuration> configurations = configurations_on(context.properties());
+    std::vector<Keeping> keepings;
+    for (const Configuration& configuration : configurations)
+        keepings.push_back({.name = configuration.name, .usage = {}, .build_ms = {}});
+    for (std::size_t round = 0; round < rounds + 1; ++round)
+        for (std::size_t i = 0; i < configurations.size(); ++i)
+            measure_round(context, scene.scene, configurations[i], keepings[i]);
+    // Drivers compile kernels in the first round.
+    for (Keeping& keeping : keepings) keeping.build_ms.erase(keeping.build_ms.begin());
+    return keepings;
+}
+
+// Bytes a triangle of all meshes, instances not counted.
+void print_keepings(std::ostream& out, std::span<const Keeping> keepings, std::size_t triangles) {
+    std::vector<std::vector<std::string>> rows = {{"bytes/triangle"}};
+    for (const auto& [name, _] : shares_of({}, triangles)) rows.front().emplace_back(name);
+    rows.front().insert(rows.front().end(), {"build ms", "min"});
+    for (const Keeping& keeping : keepings) {
+        const Spread ms = spread_of(keeping.build_ms);
+        std::vector<std::string> row = {keeping.name};
+        for (const auto& [_, bytes] : shares_of(keeping.usage, triangles)) row.push_back(number_text(bytes, 4));
+        row.insert(row.end(), {number_text(ms.median, 3), number_text(ms.min, 3)});
+        rows.push_back(std::move(row));
+    }
+    print_table(out, rows);
+}
+
+// One for each, added to the fields of `base`.
+std::vector<nlohmann::json> records_of(const nlohmann::json& base, std::span<const Keeping> keepings,
+                                       std::size_t triangles) {
+    std::vector<nlohmann::json> records;
+    for (const Keeping& keeping : keepings) {
+        const Spread ms = spread_of(keeping.build_ms);
+        nlohmann::json record = base;
+        record.update({{"schema", record_schema},
+                       {"keeping", keeping.name},
+                       {"rounds", keeping.build_ms.size()},
+                       {"build_ms", ms.median},
+                       {"build_ms_min", ms.min},
+                       {"build_ms_max", ms.max}});
+        for (const auto& [name, bytes] : shares_of(keeping.usage, triangles))
+            record[std::string(name) + "_bytes_per_triangle"] = bytes;
+        records.push_back(std::move(record));
+    }
+    return records;
+}
+
+}  // namespace
+
+void bench_feature_costs(const Session& session, const BenchScene& scene) {
+    const RunOptions& run = session.run;
+    Context context(session.device);
+    const FeatureCostOptions options{.layout = run.line_up.layouts.front(),
+                                     .level = run.line_up.levels.front(),
+                                     .rounds = std::max<std::size_t>(run.rounds, 5),
+                                     .seed = run.seed,
+                                     .width = run.width};
+    session.out << "bench " << scene.name << ": features that " << name_of(options.layout) << ' '
+                << name_of(options.level) << " does not need, one more in each line, medians of " << options.rounds
+                << " interleaved rounds, on " << context.properties().name << '\n';
+    nlohmann::json base = base_record(session, context);
+    const dvec3& origin = scene.scene.origin;
+    base.update({{"scene", scene.name}, {"origin", {origin.x, origin.y, origin.z}}});
+    nlohmann::json step_base = base;
+    step_base.update({{"layout", name_of(options.layout)}, {"level", name_of(options.level)}});
+    bool agree = true;
+    for (const FeatureCosts& costs : measure_feature_costs(context, scene, options, run.kinds)) {
+        session.out << '\n';
+        print_feature_costs(session.out, costs);
+        record_all(session, records_of(step_base, costs));
+        agree = agree && costs.agrees();
+    }
+    if (run.times_builds) {
+        const std::size_t triangles = std::max<std::size_t>(count_mesh_triangles(scene.scene), 1);
+        // Each round builds every one of them: beyond 9 the medians stand.
+        const std::vector<Keeping> keepings =
+            measure_keepings(context, scene, std::min<std::size_t>(options.rounds, 9));
+        session.out << '\n';
+        print_keepings(session.out, keepings, triangles);
+        record_all(session, records_of(base, keepings, triangles));
+    }
+    if (!agree) fail("bench: programs with more features than needed found other hits");
 }
 
 }  // namespace twinray::bench

@@ -1,16 +1,27 @@
 // SPDX-License-Identifier: MIT
-#include "bench/moves.h"
+// `twinray bench` of instances that a kernel moves.
+#include "bench/command.h"
 
 #include <cmath>
+#include <iomanip>
 
-#include "engine/core/statistics.h"
 #include <twinray/geometry.h>
+#include <twinray/tlas.h>
+
+#include "bench/report.h"
+#include "engine/core/statistics.h"
 #include "twinray/glsl/cpp.h"
+#include "validation/records/recorded_device.h"
 
 namespace twinray::bench {
 namespace {
 
-// In a cube, `phase` along their ways.
+// Medians of the GPU's times.
+struct MoveTimes {
+    double refit_ms = 0, rebuild_ms = 0;
+};
+
+// They stand in a cube, `phase` along their ways.
 std::vector<Transform> placed(std::size_t count, float phase) {
     const auto side = static_cast<std::size_t>(std::ceil(std::cbrt(static_cast<double>(count))));
     std::vector<Transform> transforms;
@@ -40,8 +51,7 @@ double sync_ms(AbstractAccel& accel) {
     return sum;
 }
 
-}  // namespace
-
+// The times are of `count` instances of a sphere in an empty accelerator, whose transforms come from device memory.
 MoveTimes measure_moves(AbstractAccel& accel, std::size_t count, std::size_t rounds) {
     const AccelHandle handle = accel.push(make_icosphere(1), placed(count, 0));
     accel.push(make_icosphere(1));
@@ -60,6 +70,34 @@ MoveTimes measure_moves(AbstractAccel& accel, std::size_t count, std::size_t rou
         rebuilds.push_back(rebuild);
     }
     return {median(refits), median(rebuilds)};
+}
+
+void tell_moves(const Session& session, AbstractAccel& accel, std::size_t count) {
+    const auto [refit_ms, rebuild_ms] = measure_moves(accel, count, session.run.rounds);
+    session.out << "  " << std::left << std::setw(8) << accel.name() << std::right << std::fixed << std::setprecision(2)
+                << " refit " << std::setw(8) << refit_ms << " ms, rebuild " << std::setw(8) << rebuild_ms << " ms, "
+                << refit_ms / rebuild_ms << " of it\n";
+    session.record({{"schema", record_schema},
+                    {"device", describe(accel.context())},
+                    {"rays", "none"},
+                    {"backend", accel.is_software() ? "sw" : "hw"},
+                    {"instances", count},
+                    {"rounds", session.run.rounds},
+                    {"refit_ms", refit_ms},
+                    {"rebuild_ms", rebuild_ms}});
+}
+
+}  // namespace
+
+void bench_moves(const Session& session, std::size_t count) {
+    Context context(session.device);
+    session.out << "bench: " << count << " instances moved from device memory, GPU times, median of "
+                << session.run.rounds << " rounds, on " << context.properties().name << '\n';
+    SwTlas software(context);
+    tell_moves(session, software, count);
+    if (!missing_for_hardware(context.properties()).empty()) return;
+    HwTlas hardware(context);
+    tell_moves(session, hardware, count);
 }
 
 }  // namespace twinray::bench

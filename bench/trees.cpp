@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "bench/trees.h"
+// `twinray bench` of trees of each layout and build quality: counts, which no device changes.
+#include "bench/command.h"
 
 #include <algorithm>
+#include <map>
 #include <mutex>
 
 #include "bench/report.h"
@@ -17,6 +19,25 @@
 namespace twinray::bench {
 namespace {
 
+// Steps of a ray, on average.
+struct RaySteps {
+    double nodes = 0;       // fetched
+    double boxes = 0;       // tested
+    double leaves = 0;      // fetched
+    double primitives = 0;  // tested in full
+};
+
+// The tree of a scene whose instances are joined to one mesh.
+struct TreeFigures {
+    Layout layout;
+    BuildQuality quality;
+    double bytes = 0;       // a triangle, of what is kept of the tree and its triangles
+    double used_bytes = 0;  // the same, of what a traversal can reach
+    double sah = 0;         // surface-area cost of its boxes as rays meet them, over that of the root
+    double overlap = 0;     // end-point overlap
+    std::map<RayKind, RaySteps> steps;
+};
+
 std::size_t bytes_kept(const BuiltTree& tree) {
     return tree.nodes.size() * sizeof(BvhNode) + tree.triangles.size() * sizeof(BvhTriangle) +
            tree.records.size() * sizeof(CompressedRecord) + tree.vertices.size() * sizeof(vec3);
@@ -28,7 +49,7 @@ std::size_t bytes_used(const BuiltTree& tree) {
     return bytes_kept(tree) - (tree.records.size() - used) * sizeof(CompressedRecord);
 }
 
-// As rays meet its boxes.
+// Boxes count as rays meet them.
 double sah_of(const BuiltTree& tree, const Mesh& mesh) {
     std::vector<LeafBox> boxes;
     if (tree.records.empty()) {
@@ -83,8 +104,8 @@ Followed follow(const reference::Scene& scene, std::span<const Ray> rays, Query 
     return {{a_ray(all.nodes), a_ray(all.boxes), a_ray(all.leaves), a_ray(all.primitives)}, hits};
 }
 
-}  // namespace
-
+// Trees are of every layout and quality. SwTlas builds and measures them; its CPU reference follows rays, at level
+// watertight. Throws Error where trees differ in how many rays hit.
 std::vector<TreeFigures> measure_trees(Context& context, const BenchScene& scene, std::span<const RayKind> kinds,
                                        uint width, std::uint64_t seed) {
     const Mesh mesh = joined(scene.scene, scene.name);
@@ -148,6 +169,21 @@ std::vector<nlohmann::json> records_of(const nlohmann::json& base, std::span<con
         records.push_back(std::move(record));
     }
     return records;
+}
+
+}  // namespace
+
+void bench_trees(const Session& session, const BenchScene& scene) {
+    const RunOptions& run = session.run;
+    Context context(session.device);
+    session.out << "bench " << scene.name << ": trees over " << count_triangles(scene.scene)
+                << " triangles as one mesh, " << run.width * run.width
+                << " rays a set at level watertight, what a ray takes on average\n";
+    const std::vector<TreeFigures> trees = measure_trees(context, scene, run.kinds, run.width, run.seed);
+    print_trees(session.out, trees);
+    nlohmann::json base = base_record(session);
+    base.update({{"scene", scene.name}, {"triangles", count_triangles(scene.scene)}});
+    record_all(session, records_of(base, trees));
 }
 
 }  // namespace twinray::bench

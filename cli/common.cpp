@@ -101,15 +101,10 @@ std::unique_ptr<Context> make_context(const CommonOptions& options) {
     return std::make_unique<Context>(context_desc(options));
 }
 
-std::unique_ptr<AbstractAccel> make_accel(Context& context, const AccelChoice& choice, Level level) {
-    const AccelOptions options{.level = std::max(level, Level::watertight)};
-    if (choice.is_software) return std::make_unique<SwTlas>(context, options);
-    return std::make_unique<HwTlas>(context, BuildOrder::automatic, options);
-}
-
 std::unique_ptr<AbstractAccel> make_accel(Context& context, const AccelChoice& choice, const Scene& scene,
                                           Level level) {
-    std::unique_ptr<AbstractAccel> accel = make_accel(context, choice, level);
+    std::unique_ptr<AbstractAccel> accel =
+        twinray::make_accel(context, choice, {.level = std::max(level, Level::watertight)});
     push_scene(*accel, scene);
     context.wait(accel->sync());
     return accel;

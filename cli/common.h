@@ -57,7 +57,6 @@ std::unique_ptr<Context> make_context(const CommonOptions& options);
 inline constexpr double most_suite_seconds = 300, most_conformance_seconds = 60;
 ContextDesc watched_context_desc(const CommonOptions& options, double most_wait_seconds);
 
-std::unique_ptr<AbstractAccel> make_accel(Context& context, const AccelChoice& choice, Level level = Level::watertight);
 // Holds the scene, built.
 std::unique_ptr<AbstractAccel> make_accel(Context& context, const AccelChoice& choice, const Scene& scene,
                                           Level level = Level::watertight);

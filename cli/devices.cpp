@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
 // `twinray devices`: every Vulkan device, what each accelerator can do there, and why not.
+#include <iomanip>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
 
 #include "cli/command/values.h"
 #include "cli/commands.h"
 #include "cli/common.h"
-#include "cli/device_requirements.h"
 #include "engine/core/error.h"
+#include "engine/core/requirement.h"
 #include <twinray/tlas.h>
 
 namespace twinray::cli {
@@ -104,6 +107,40 @@ void print_devices(const std::filesystem::path& json) {
     for (const std::string& rejection : choice.rejections) std::cout << "not the default: device " << rejection << '\n';
     if (devices.empty())
         fail("no Vulkan device: the loader found no driver (Debian: apt-get install mesa-vulkan-drivers)");
+}
+
+nlohmann::json describe_requirements(std::size_t index, const DeviceProperties& device) {
+    nlohmann::json all = nlohmann::json::array();
+    for (const Requirement& requirement : requirements_of(device))
+        all.push_back({{"of", name_of(requirement.of)},
+                       {"what", requirement.what},
+                       {"why", requirement.why},
+                       {"has", requirement.is_met}});
+    return {{"index", index}, {"name", device.name}, {"requirements", all}};
+}
+
+// `--requirements`: what twinray needs, by its parts, and which device has it.
+void print_requirements(std::span<const DeviceProperties> devices, const std::filesystem::path& json) {
+    // One column for each; without any, the rows of one that has nothing.
+    std::vector<std::vector<Requirement>> columns;
+    if (!devices.empty()) std::cout << "Devices, from left to right\n";
+    for (const DeviceProperties& device : devices) {
+        std::cout << "  " << columns.size() << "  " << device.name << '\n';
+        append_json(json, describe_requirements(columns.size(), device));
+        columns.push_back(requirements_of(device));
+    }
+    const std::vector<Requirement> rows = columns.empty() ? requirements_of(DeviceProperties{}) : columns.front();
+    const std::string indent(5 * columns.size() + 2, ' ');
+    std::optional<Requirement::Of> part;
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+        if (part != rows[row].of) std::cout << title_of(rows[row].of) << '\n';
+        part = rows[row].of;
+        std::cout << "  ";
+        for (const std::vector<Requirement>& column : columns)
+            std::cout << std::left << std::setw(5) << (column[row].is_met ? "yes" : "no");
+        std::cout << rows[row].what << '\n' << indent << "because " << rows[row].why << '\n';
+    }
+    std::cout << "Never needed: " << never_required() << '\n';
 }
 
 }  // namespace

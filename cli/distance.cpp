@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `twinray distance`: what of a scene is near to points.
+// `twinray distance`: what of a scene is near to points, as a table or as a picture of a plane.
 #include <twinray/queries.h>
 
 #include <algorithm>
@@ -7,19 +7,78 @@
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "cli/command/values.h"
 #include "cli/commands.h"
 #include "cli/common.h"
-#include "cli/distance_slice.h"
+#include "cli/coordinates.h"
+#include "cli/csv_files.h"
 #include "engine/analysis/npz.h"
-#include "cli/query_points.h"
 #include "engine/core/error.h"
 #include "engine/scene/bytes.h"
 #include "twinray/glsl/cpp.h"
+#include "twinray/glsl/vector_math.h"
+#include "viewer/picture/page.h"
+#include "viewer/picture/slice_picture.h"
 
 namespace twinray::cli {
 namespace {
+
+constexpr std::uint64_t most_cells = 640;
+
+// The box of the scene, grown by a tenth of its largest side on all sides.
+struct QueryBox {
+    dvec3 lo, size;
+};
+// Throws Error where there is no triangle.
+QueryBox query_box(const Scene& scene) {
+    const Bounds bounds = bounds_of(scene);
+    if (bounds.is_empty()) fail("distance: the scene has no triangle around which points could be");
+    const dvec3 lo(bounds.lo), hi(bounds.hi), size = hi - lo;
+    const double margin = 0.1 * std::max({size.x, size.y, size.z});
+    return {lo - margin, size + 2 * margin};
+}
+
+// The points: of a file, at random, or of a grid.
+struct QueryPointOptions {
+    std::filesystem::path file;
+    std::uint64_t random = 0;
+    std::uint64_t grid = 0;  // points along each side
+
+    bool is_asked_for() const { return !file.empty() || random > 0 || grid > 0; }
+    // The last two are in query_box(): of a grid, the centres of its cells, x fastest. None if nothing was asked for.
+    // Throws Error naming the file and the line.
+    std::vector<dvec3> make(const Scene& scene, std::uint64_t seed) const;
+};
+
+std::vector<dvec3> QueryPointOptions::make(const Scene& scene, std::uint64_t seed) const {
+    if (!file.empty()) return read_points(file, scene.origin);
+    if (random == 0 && grid == 0) return {};
+    const QueryBox box = query_box(scene);
+    std::vector<dvec3> points;
+    if (random > 0) {
+        std::mt19937_64 generator(seed);
+        const auto unit = [&] { return static_cast<double>(generator() >> 11) * 0x1p-53; };
+        for (std::uint64_t i = 0; i < random; ++i) {
+            const double x = unit(), y = unit();
+            points.push_back(box.lo + box.size * dvec3(x, y, unit()));
+        }
+        return points;
+    }
+    const dvec3 cell = box.size / static_cast<double>(grid);
+    for (std::uint64_t i = 0; i < grid * grid * grid; ++i) {
+        const dvec3 index(static_cast<double>(i % grid), static_cast<double>(i / grid % grid),
+                          static_cast<double>(i / (grid * grid)));
+        points.push_back(box.lo + cell * (index + 0.5));
+    }
+    return points;
+}
+
+struct SliceOptions {
+    std::filesystem::path file;  // .png; empty: none
+    SliceDesc desc = {};         // in the file's coordinates
+};
 
 struct DistanceOptions {
     CommonOptions common;
@@ -171,6 +230,29 @@ void run_closest(const DistanceOptions& options, Search& search) {
     append_json(options.common.json, record);
 }
 
+// Throws Error for a scene without triangles. `is_signed`: negative inside, as signed_distances() tells.
+void write_slice(const SliceOptions& options, const Scene& scene, PointQuery& query, bool is_signed,
+                 const std::string& title) {
+    const QueryBox box = query_box(scene);
+    const int normal = options.desc.axis - 'x';
+    SliceDesc desc = options.desc;
+    if (desc.at) *desc.at -= scene.origin[normal];
+    const Slice slice = slice_of(desc, box.lo, box.size);
+    std::vector<double> values;
+    if (is_signed)
+        values = query.signed_distances(slice.points);
+    else
+        for (const ClosestPoint& found : query.closest(slice.points)) values.push_back(found.distance);
+    const ValueScale scale = ValueScale::linear_for(values);
+    const std::string at = coordinate_text(slice.points.front()[normal], scene.origin[normal]);
+    const Raster page =
+        compose(draw_slice(slice, values, scale),
+                {.title = title,
+                 .subtitle = text("plane ", desc.axis, " = ", at),
+                 .legend = {.title = is_signed ? "signed" : "distance", .scale = scale, .entries = {}}});
+    write_png(options.file, page.width, page.height, page.pixels);
+}
+
 void run(const DistanceOptions& options) {
     if (!options.points.is_asked_for() && options.slice.file.empty())
         throw UsageError("one of --points, --random, --grid, --slice is required");
@@ -183,6 +265,37 @@ void run(const DistanceOptions& options) {
     if (!options.slice.file.empty())
         write_slice(options.slice, search.scene, search.query, options.is_signed,
                     options.scene.filename().string() + ": distances");
+}
+
+// --points, --random, --grid: at most one of them.
+std::vector<Option> query_point_options(QueryPointOptions& options) {
+    return {{.name = "--points", .value = cli::file(options.file), .help = "points from a file of x,y,z lines"},
+            {.name = "--random",
+             .value = number(options.random, {1, most_points}),
+             .help = "so many, in the box of the scene and a tenth around it"},
+            {.name = "--grid",
+             .value = number(options.grid, {1, most_cells}),
+             .help = "the centres of N x N x N cells of that box, x fastest"}};
+}
+
+Section slice_options(SliceOptions& options) {
+    const Names<char> axes = {{"x", 'x'}, {"y", 'y'}, {"z", 'z'}};
+    return {"Slice",
+            {{.name = "--slice",
+              .value = file(options.file, {".png"}),
+              .help = "written: distances in a plane through the scene"},
+             {.name = "--slice-axis",
+              .value = choice(options.desc.axis, axes),
+              .help = "the axis that the plane is perpendicular to",
+              .needs = {"--slice"}},
+             {.name = "--slice-at",
+              .value = number(options.desc.at),
+              .help = "where on that axis the plane is; the middle of the scene if not given",
+              .needs = {"--slice"}},
+             {.name = "--slice-size",
+              .value = number(options.desc.width, {16, 4096}),
+              .help = "pixels of the larger side",
+              .needs = {"--slice"}}}};
 }
 
 }  // namespace

@@ -110,7 +110,8 @@ std::uint64_t run(const LeaksOptions& options) {
     const nlohmann::json identity = identity_of(options, choice, mesh, *context);
     const bool goes_on = !options.state.empty() && std::filesystem::exists(options.state);
     LeakState state = goes_on ? read_state(options.state, identity) : LeakState();
-    const std::unique_ptr<AbstractAccel> accel = make_accel(*context, choice, options.level);
+    const std::unique_ptr<AbstractAccel> accel =
+        twinray::make_accel(*context, choice, {.level = std::max(options.level, Level::watertight)});
     const LeakTest test(*accel, mesh, options.level, options.common.seed);
     std::cout << "leaks " << file << ": closed, " << mesh.triangles.size() << " triangles; " << text_of(choice)
               << " at " << name_of(options.level) << " on " << context->properties().name << '\n';

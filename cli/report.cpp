@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // `twinray report`: error against run time over the suite of stiff and extreme cases.
 #include <algorithm>
+#include <array>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -11,7 +12,6 @@
 #include "cli/commands.h"
 #include "cli/common.h"
 #include "cli/verify_conformance.h"
-#include "cli/compare_reports.h"
 #include "report/page/compare_text.h"
 #include "report/page/gnuplot.h"
 #include "report/page/page.h"
@@ -169,6 +169,41 @@ int run(const ReportOptions& options) {
     }
     std::cout << "  " << (options.folder / "report.html").string() << '\n';
     return report::faults_of_ours(recorder.records()) > 0 ? 1 : 0;
+}
+
+nlohmann::json json_of(const report::NamedReport& before, const report::NamedReport& now,
+                       const report::Comparison& comparison) {
+    nlohmann::json changes = nlohmann::json::array(), times = nlohmann::json::array();
+    constexpr std::array kinds = {"worse", "better", "slower", "faster"};
+    for (const report::Change& change : comparison.changes)
+        changes.push_back(
+            {{"kind", kinds[static_cast<std::size_t>(change.kind)]}, {"what", change.what}, {"how", change.how}});
+    for (const report::TimeRatio& time : comparison.times)
+        times.push_back({{"backend", time.backend},
+                         {"level", time.level},
+                         {"ratio", time.ratio},
+                         {"ratio_95", {time.ratio_95.low, time.ratio_95.high}},
+                         {"n", time.measurements}});
+    return {{"schema", "twinray-compare/1"},     {"before", before.name},     {"now", now.name},
+            {"n", comparison.compared},          {"tests", comparison.tests}, {"drift", comparison.drift},
+            {"is_worse", comparison.is_worse()}, {"changes", changes},        {"times", times}};
+}
+
+// `--compare`: prints what changed from the first report (a folder, or its JSON lines) to each of the others, and
+// appends it to `json` unless that is empty. Exit status: 1 where one is worse.
+int compare_reports(std::span<const std::filesystem::path> paths, const std::filesystem::path& json) {
+    std::vector<report::NamedReport> reports;
+    for (const std::filesystem::path& path : paths) reports.push_back(report::read_report(path));
+    report::print_side_by_side(std::cout, reports);
+    bool is_worse = false;
+    for (std::size_t i = 1; i < reports.size(); ++i) {
+        const report::Comparison comparison = report::compare(reports[0].records, reports[i].records);
+        std::cout << reports[0].name << " -> " << reports[i].name << '\n';
+        report::print_comparison(std::cout, comparison);
+        append_json(json, json_of(reports[0], reports[i], comparison));
+        is_worse |= comparison.is_worse();
+    }
+    return is_worse ? 1 : 0;
 }
 
 }  // namespace

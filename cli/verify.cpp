@@ -15,13 +15,13 @@
 #include "twinray_version.h"
 #include "validation/exact/exact_reference.h"
 #include "report/replay/scene_file.h"
-#include "report/replay/show.h"
+#include "report/explain/explain.h"
 #include "report/reproducer/write.h"
-#include "validation/verify/output.h"
+#include "validation/verify/comparison.h"
 #include "validation/records/progress.h"
 #include "validation/reference/aimed_rays.h"
 #include <twinray/tlas.h>
-#include "report/replay/write_faults.h"
+#include "report/replay/replay.h"
 
 namespace twinray::cli {
 namespace {

@@ -1,26 +1,34 @@
 // SPDX-License-Identifier: MIT
-// `twinray viewfactors`: the view factors of a scene with their errors.
+// `twinray viewfactors`: the view factors of a scene with their errors, as a matrix and as pictures.
 #include <twinray/analysis.h>
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <iomanip>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cli/command/values.h"
 #include "cli/commands.h"
 #include "cli/common.h"
 #include "cli/face_groups.h"
-#include "cli/view_factor_picture.h"
+#include "cli/picture_options.h"
 #include "engine/analysis/matrix_file.h"
 #include "engine/analysis/row_run.h"
 #include "engine/core/error.h"
-#include "validation/records/progress.h"
 #include "engine/scene/bytes.h"
+#include "validation/records/progress.h"
+#include "viewer/picture/matrix_picture.h"
 
 namespace twinray::cli {
 namespace {
+
+struct ViewFactorPictureOptions {
+    std::filesystem::path matrix;
+    std::optional<uint> from;  // a row; none: open fractions of all
+};
 
 struct Options {
     CommonOptions common;
@@ -119,6 +127,56 @@ nlohmann::json fields_of(const Summary& run, const Options& options) {
             {"projected", run.projected ? json_of(*run.projected) : nlohmann::json()}};
 }
 
+std::vector<double> open_fractions(const std::vector<ViewFactorRow>& rows) {
+    std::vector<double> values;
+    for (const ViewFactorRow& row : rows) values.push_back(row.rays > 0 ? row.open.value : NAN);
+    return values;
+}
+
+std::vector<double> factors_of(const ViewFactorRow& row, std::size_t count) {
+    std::vector<double> values(count, NAN);
+    for (const ViewFactor& factor : row.factors) values[factor.target] = static_cast<double>(factor.value);
+    return values;
+}
+
+std::vector<double> by_face(const std::vector<uint>& groups, const std::vector<double>& values) {
+    std::vector<double> of_faces;
+    for (const uint group : groups) of_faces.push_back(values[group]);
+    return of_faces;
+}
+
+// `groups`: of each face. `rows` are all, in order.
+ScenePicture picture_of_view_factors(const PictureOptions& options, const ViewFactorPictureOptions& shown,
+                                     const std::string& scene, const std::vector<uint>& groups,
+                                     const std::vector<ViewFactorRow>& rows) {
+    if (!shown.from) {
+        ScenePicture picture = picture_of_values(options, by_face(groups, open_fractions(rows)), "open");
+        picture.page.title = scene + ": open fraction";
+        picture.page.subtitle = "part of the diffuse radiation of a face that meets nothing";
+        return picture;
+    }
+    const std::vector<double> values = by_face(groups, factors_of(rows[*shown.from], rows.size()));
+    ScenePicture picture = picture_of_values(options, values, "F", ColorScale::log);
+    for (std::size_t face = 0; face < groups.size(); ++face)
+        if (groups[face] == *shown.from) picture.colors[face] = categorical::vermilion;
+    picture.page.legend.entries.push_back({categorical::vermilion, text("row ", *shown.from)});
+    picture.page.title = text(scene, ": view factors of row ", *shown.from);
+    picture.page.subtitle = "part of its diffuse radiation that meets each group of faces";
+    return picture;
+}
+
+void write_matrix(const std::filesystem::path& file, const std::string& scene, FaceGrouping grouping,
+                  const std::vector<ViewFactorRow>& rows) {
+    std::vector<MatrixEntry> entries;
+    for (const ViewFactorRow& row : rows)
+        for (const ViewFactor& factor : row.factors) entries.push_back({row.group, factor.target, factor.value});
+    const Raster raster = draw_matrix(rows.size(), entries,
+                                      {.title = scene + ": view factors",
+                                       .subtitle = text("row: from which ", name_of(grouping), ", column: to which"),
+                                       .legend = {.title = "F", .scale = {}, .entries = {}}});
+    write_png(file, raster.width, raster.height, raster.pixels);
+}
+
 void write_matrices(const Options& options, const std::vector<double>& areas, const std::vector<ViewFactorRow>& rows) {
     const std::string suffix = lower_suffix(options.output);
     if (suffix == ".csv") write_matrix_csv(options.output, rows);
@@ -131,6 +189,12 @@ void check_outputs(const Options& options) {
     check_writable(options.output);
     check_pictures(options.pictures);
     check_writable(options.shown.matrix);
+}
+
+// Throws Error for a row that is not there.
+void check_shown(const ViewFactorPictureOptions& options, std::size_t row_count) {
+    if (options.from && *options.from >= row_count)
+        fail("--from ", *options.from, ": there are ", row_count, " rows, the first is 0");
 }
 
 void run(const Options& options) {
@@ -173,6 +237,17 @@ void run(const Options& options) {
     record.update(describe(choice));
     record.update(fields_of(summary, options));
     append_json(options.common.json, record);
+}
+
+// --matrix, and --from, which needs --picture.
+std::vector<Option> view_factor_picture_options(ViewFactorPictureOptions& options) {
+    return {{.name = "--from",
+             .value = number(options.from),
+             .help = "the row whose view factors --picture shows, from 0",
+             .needs = {"--picture"}},
+            {.name = "--matrix",
+             .value = file(options.matrix, {".png"}),
+             .help = "a picture of the matrix, on a logarithmic scale"}};
 }
 
 }  // namespace

@@ -25,8 +25,8 @@ declare -A readers=(
     [image]="engine/scene/image.cpp"
     [json]="validation/records/record_json.cpp report/replay/replay.cpp validation/leaks/leak_state.cpp
         cli/kernels/limits.cpp"
-    [obj]="$(echo $importers/{obj,obj_file,obj_lines,mtl,polygon}.cpp)"
-    [ply]="$(echo $importers/{ply,ply_header,polygon}.cpp)"
+    [obj]="$(echo $importers/{obj,obj_lines,mtl,polygon}.cpp)"
+    [ply]="$(echo $importers/{ply,polygon}.cpp)"
     [rays]="engine/scene/ray_file.cpp"
     [rows]="engine/analysis/row_file.cpp"
     [saved_accel]="swtlas/saved.cpp swtlas/check.cpp"

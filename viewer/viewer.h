@@ -14,7 +14,6 @@
 #include "viewer/keys.h"
 #include "viewer/layers.h"
 #include "viewer/path_picture.h"
-#include "viewer/pick.h"
 #include "viewer/stage.h"
 
 namespace twinray::viewer {
@@ -28,6 +27,22 @@ struct ViewerDesc {
     std::function<void(const std::string&)> say;  // what keys tell, as the camera's options
     std::string version;                          // of twinray
 };
+
+// All that is said of one ray: by both accelerators, by the float64 reference, and on the way through the tree.
+struct Pick {
+    Ray ray{};
+    Hit software{}, hardware{};
+    bool has_hardware = false;
+    ReferenceHit reference;
+    HitClass software_class = HitClass::agree, hardware_class = HitClass::agree;
+    std::optional<dvec3> point;                          // of the software's hit, in world space
+    std::optional<std::size_t> face;                     // of the same, by instance, then by triangle
+    std::uint64_t nodes = 0, boxes = 0, primitives = 0;  // that the ray asks the software tree for
+};
+// A line each: the ray, the hits and what they are worth, steps.
+std::string text_of(const Pick& pick);
+// Triangle tests and boxes on the way to what either says, in float32 and exactly.
+std::string explanation_of(Stage& stage, const Pick& pick);
 
 class Viewer {
   public:

@@ -1,18 +1,49 @@
 // SPDX-License-Identifier: MIT
-// twinray._core: scene.h for Python. Arguments are checked and cast in Python, which has the public names.
+// twinray._core: scene.h and analysis.h for Python, and memory that Python's array packages share. Arguments are
+// checked and cast in Python, which has the public names.
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include "bindings/python/analysis.h"
-#include "bindings/python/arrays.h"
-#include "bindings/python/device_memory.h"
 #include "bindings/python/parallel.h"
 #include "bindings/python/scene.h"
 
 namespace twinray::python {
 namespace {
+
+namespace nb = nanobind;
+
+// Rows of N numbers; the Python side has cast and checked them.
+template <class T, int N>
+using Rows = nb::ndarray<const T, nb::shape<-1, N>, nb::c_contig, nb::device::cpu>;
+
+// Rows as structs of the same numbers.
+template <class Row, class Array>
+std::span<const Row> as(const Array& rows) {
+    static_assert(sizeof(Row) == 3 * sizeof(*rows.data()));
+    return {reinterpret_cast<const Row*>(rows.data()), rows.shape(0)};
+}
+
+// An array that owns its memory, of `columns` numbers of type T a row; 0: one number, without the second axis.
+template <class T, class Rows>
+nb::object given(Rows&& rows, std::size_t columns = 0) {
+    auto owner = std::make_unique<Rows>(std::move(rows));
+    const std::size_t shape[] = {owner->size(), columns};
+    auto* data = reinterpret_cast<T*>(owner->data());
+    nb::capsule capsule(owner.get(), [](void* p) noexcept { delete static_cast<Rows*>(p); });
+    owner.release();
+    return nb::cast(nb::ndarray<nb::numpy, T>(data, columns ? 2 : 1, shape, capsule));
+}
 
 using RayArray = Rows<float, 6>;
 using PointRows = Rows<double, 3>;
@@ -233,6 +264,68 @@ void bind_analysis(nb::module_& m) {
         return given<std::uint8_t>(
             unlocked([&] { return visible(scene, as<vec3>(points), as<vec3>(vectors), as<vec3>(normals), t_near); }));
     });
+}
+
+Buffer make_buffer(Context& context, std::uint64_t bytes, bool in_host_memory) {
+    const BufferDesc desc{.name = "array shared with Python",
+                          .bytes = bytes,
+                          .memory = in_host_memory ? Memory::readback : Memory::device};
+    return in_host_memory ? Buffer(context, desc) : Buffer::exportable(context, desc);
+}
+
+// Memory of a scene's device that Python's array packages see, too: where the device is a CPU it lies in the host's
+// memory, elsewhere it can be exported.
+class DeviceMemory {
+  public:
+    // The host's memory is possible only where the device is a CPU. Throws Error where the device cannot export memory.
+    DeviceMemory(Scene& scene, std::uint64_t bytes, bool in_host_memory);
+    ~DeviceMemory();
+
+    std::byte* mapped() const { return buffer_.mapped(); }  // null unless it lies in the host's memory
+    std::uint64_t bytes() const { return buffer_.bytes(); }
+    ExportedMemory exported() const { return buffer_.exported(); }
+    std::array<std::uint8_t, 16> device_uuid() const { return device_->context.properties().uuid; }
+    Column<std::byte> download() const;
+
+  private:
+    friend void trace(Scene& scene, const DeviceMemory& rays, DeviceMemory& hits, std::size_t count, Query query);
+
+    std::shared_ptr<Device> device_;
+    Buffer buffer_;
+};
+
+DeviceMemory::DeviceMemory(Scene& scene, std::uint64_t bytes, bool in_host_memory) : device_(scene.device()) {
+    const std::lock_guard lock(device_->mutex);
+    buffer_ = make_buffer(device_->context, bytes, in_host_memory);
+}
+
+DeviceMemory::~DeviceMemory() {
+    const std::lock_guard lock(device_->mutex);
+    buffer_ = {};
+}
+
+Column<std::byte> DeviceMemory::download() const {
+    const std::lock_guard lock(device_->mutex);
+    Column<std::byte> copy(bytes());
+    download_bytes(device_->context, buffer_, 0, std::span(copy.data(), copy.size()));
+    return copy;
+}
+
+// Writes what `count` Rays in one memory meet, as Hits into the other; waits. Throws Error for memory of another
+// device.
+void trace(Scene& scene, const DeviceMemory& rays, DeviceMemory& hits, std::size_t count, Query query) {
+    if (rays.device_ != scene.device() || hits.device_ != scene.device())
+        throw Error("trace: rays and hits must be arrays of the scene's device");
+    const Scene::Turn turn(scene);
+    turn.accel().sync();
+    Commands commands(rays.device_->context, "trace for Python");
+    turn.accel().trace(commands, turn.accel().view(),
+                       {.rays = rays.buffer_.ref<Ray>(),
+                        .hits = hits.buffer_.ref<Hit>(),
+                        .count = count,
+                        .query = query,
+                        .level = turn.level()});
+    commands.submit_and_wait();
 }
 
 void bind_device_memory(nb::module_& m) {

@@ -39,12 +39,6 @@ ContextDesc desc_for(const std::string& request, std::vector<std::string>& log) 
     return desc;
 }
 
-std::unique_ptr<AbstractAccel> make_accel(Context& context, const AccelChoice& choice, Level level) {
-    const AccelOptions options{.level = level};
-    if (choice.is_software) return std::make_unique<SwTlas>(context, options);
-    return std::make_unique<HwTlas>(context, BuildOrder::automatic, options);
-}
-
 dvec3 world_vertex(const Transform& transform, vec3 p) {
     dvec3 world;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -89,7 +83,7 @@ Scene::Scene(const std::string& accel, const std::string& device, const std::str
     device_ = device_for(device);
     const Lock lock(device_->mutex);
     choice_ = choose_accel(device_->context.properties(), accel, {.level = level_});
-    accel_ = make_accel(device_->context, choice_, level_);
+    accel_ = make_accel(device_->context, choice_, {.level = level_});
 }
 
 Scene::~Scene() {

@@ -1,11 +1,31 @@
 // SPDX-License-Identifier: MIT
-// Kernels compiled for a device, and what its compiler says.
+// What the compiler of a device makes of kernels, and what builds of SwTlas record and move: rows of `twinray kernels`.
 #pragma once
 
-#include "cli/kernels/builds.h"
+#include <nlohmann/json_fwd.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
 #include "cli/kernels/limits.h"
+#include "engine/core/context.h"
 
 namespace twinray::kernels {
+
+struct BuildRow {
+    std::string what;  // "build", "refit"
+    std::string layout, quality;
+    std::uint64_t dispatches = 0, barriers = 0, copies = 0;
+    double read = 0, written = 0;  // bytes a triangle: what a time on a device is to be compared with
+};
+
+// Of one mesh of build_triangles and one instance, by the software accelerator, in each layout and quality. The context
+// runs nothing (ContextDesc::watch_kernels).
+inline constexpr std::size_t build_triangles = 81'920;
+std::vector<BuildRow> list_builds(Context& context);
+
+std::string table_of(std::span<const BuildRow> rows);
+nlohmann::json to_json(const BuildRow& row, const std::string& device);
 
 // What the compiler of one device makes of the kernels of list_kernels().
 struct CompiledKernels {

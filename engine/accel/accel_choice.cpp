@@ -35,4 +35,9 @@ AccelChoice choose_accel(const DeviceProperties& device, const std::string& requ
                         device.ray_query ? "VK_KHR_ray_query" : "VK_KHR_ray_tracing_pipeline")};
 }
 
+std::unique_ptr<AbstractAccel> make_accel(Context& context, const AccelChoice& choice, const AccelOptions& options) {
+    if (choice.is_software) return std::make_unique<SwTlas>(context, options);
+    return std::make_unique<HwTlas>(context, BuildOrder::automatic, options);
+}
+
 }  // namespace twinray

@@ -2,9 +2,17 @@
 // What AccelOptions::keeps_surfaces keeps on the device: arrays of meshes, and the table that leads from a hit to them.
 #pragma once
 
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
 #include <unordered_map>
+#include <vector>
 
-#include "engine/accel/surface_slice.h"
+#include <twinray/device_mesh.h>
+
+#include "engine/core/buffer.h"
 #include "engine/core/kernel.h"
 #include "twinray/glsl/cpp_spawn.h"
 
@@ -17,6 +25,66 @@ namespace twinray {
 #include "twinray/glsl/cpp_end.h"
 
 static_assert(sizeof(SurfaceAttribute) == 16 && sizeof(SurfaceGeometry) == 32 && sizeof(SurfaceTable) == 40);
+
+// The attributes that an accelerator's meshes have, in the order of their numbers: the ATTRIBUTE_* first.
+class AttributeNames {
+  public:
+    // None: no mesh had it.
+    std::optional<uint> number_of(std::string_view name) const;
+    // Throws Error naming the mesh and a name that is one too many.
+    uint number_for(std::string_view mesh, std::string_view name);
+
+  private:
+    std::vector<std::string> names_{"normals", "tangents", "uv0", "uv1", "colors"};
+};
+
+// The arrays of one geometry, in one buffer, or in memory of the caller's.
+struct SurfaceSlice {
+    struct Place {
+        std::uint64_t offset = 0;
+        std::uint64_t in_place = 0;  // the address instead, unless 0
+
+        std::uint64_t address(std::uint64_t base) const { return in_place ? in_place : base + offset; }
+    };
+    struct Array {
+        uint number = 0, components = 0;
+        bool is_per_face = false;
+        Place place;
+    };
+    // Words that are copied from memory of the caller's.
+    struct Copy {
+        Uints from;
+        std::uint64_t offset = 0, words = 0;
+
+        std::uint64_t end() const { return offset + words * sizeof(uint); }
+    };
+    std::vector<Array> arrays;
+    std::optional<Place> face_metadata, metadata;
+    // Until they are on the device.
+    std::vector<std::byte> packed;  // from 0 on
+    std::vector<Copy> copies;       // behind it, in order
+    Buffer data;
+
+    bool is_empty() const { return arrays.empty() && !face_metadata && !metadata; }
+    std::uint64_t pending_bytes() const { return copies.empty() ? packed.size() : copies.back().end(); }
+};
+
+// Appends at a multiple of 16 bytes, which it returns.
+std::uint64_t append_aligned(std::vector<std::byte>& packed, std::span<const std::byte> bytes);
+
+// Throws Error naming the mesh and the array whose length, components or address do not fit, or whose name is empty or
+// taken. Does so for arrays that the accelerator does not keep, too.
+void check_arrays(const MeshView& mesh);
+void check_arrays(const DeviceMesh& mesh);
+
+// The mesh without the arrays that AccelOptions::keeps_metadata does not keep.
+MeshView metadata_of(const MeshView& mesh);
+DeviceMesh metadata_of(const DeviceMesh& mesh);
+
+// Copies what the checked mesh has, or notes where the device has it. Throws Error naming the mesh and an attribute
+// whose name is one too many; `names` is then as it was.
+SurfaceSlice surface_slice(const MeshView& mesh, AttributeNames& names);
+SurfaceSlice surface_slice(const DeviceMesh& mesh, AttributeNames& names);
 
 class SurfaceTables {
   public:

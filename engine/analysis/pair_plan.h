@@ -8,9 +8,11 @@
 #include <vector>
 
 #include "engine/analysis/contour.h"
-#include "engine/analysis/face_part.h"
 
 namespace twinray {
+#include "twinray/glsl/cpp_begin.h"
+#include "shaders/analysis/face_part.h"
+#include "twinray/glsl/cpp_end.h"
 
 // All faces of a scene, in its order; those without an area have no vertices.
 struct FacePolygons {

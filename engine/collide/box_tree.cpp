@@ -2,12 +2,67 @@
 #include "engine/collide/box_tree.h"
 
 #include <bit>
+#include <cmath>
+#include <utility>
 
+#include "collide_centers.spv.h"
+#include "collide_codes.spv.h"
 #include "collide_leaves.spv.h"
 #include "collide_level.spv.h"
 #include "engine/core/error.h"
 
 namespace twinray {
+namespace {
+
+constexpr uint code_bits = 30;
+
+Uints column(const Buffer& scratch, std::uint64_t count, std::uint64_t index) {
+    return scratch.ref<uint>(index * count * sizeof(uint));
+}
+
+}  // namespace
+
+HilbertOrder::HilbertOrder(Context& context)
+    : context_(context),
+      centers_(context, {.name = "collide_centers", .spirv = collide_centers_spirv, .group_size = WORLD_BOUND_GROUP}),
+      codes_(context, {.name = "collide_codes", .spirv = collide_codes_spirv}),
+      sort_(context),
+      bits_(context, {.name = "collide centers", .bytes = sizeof(WorldBoundBits)}) {}
+
+void HilbertOrder::prepare(std::size_t count) {
+    grow(context_, scratch_, "collide sort",
+         4 * count * sizeof(uint) + RadixSort::counter_bytes(count, context_.state().tuning()));
+}
+
+// Two stable sorts make the order by 60 bits.
+Uints HilbertOrder::record(Commands& commands, Ref<TreeBox> boxes, uint count) const {
+    {
+        const auto pass = commands.pass("collide start");
+        commands.write(bits_, WorldBoundBits{uvec3(ordered_bits(INFINITY)), uvec3(ordered_bits(-INFINITY)), 0, 0});
+    }
+    constexpr uint boxes_of_group = 16 * WORLD_BOUND_GROUP;
+    HilbertOrderArgs args{.boxes = boxes,
+                          .bits = bits_.ref<WorldBoundBits>(),
+                          .keys = {},
+                          .order = {},
+                          .count = count,
+                          .group_count = (count - 1) / boxes_of_group + 1,
+                          .is_coarse = 0,
+                          .reserved = 0};
+    centers_.dispatch_groups(commands, args, args.group_count);
+    RadixSort::Pairs pairs{column(scratch_, count, 0), column(scratch_, count, 1)};
+    RadixSort::Pairs spare{column(scratch_, count, 2), column(scratch_, count, 3)};
+    const Uints counters = column(scratch_, count, 4);
+    args.keys = pairs.keys;
+    codes_.dispatch(commands, args, count);
+    const RadixSort::Pairs fine = sort_.record_iota(commands, pairs.keys, pairs, spare, counters, count, code_bits);
+    if (fine.values.address != pairs.values.address) std::swap(pairs, spare);
+    args.is_coarse = 1;
+    args.keys = pairs.keys;
+    args.order = pairs.values;
+    codes_.dispatch(commands, args, count);
+    return sort_.record(commands, pairs, spare, counters, count, code_bits).values;
+}
 
 BoxTree::BoxTree(Context& context)
     : context_(context),

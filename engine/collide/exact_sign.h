@@ -4,7 +4,9 @@
 // or underflows.
 #pragma once
 
-#include "engine/collide/expansion.h"
+#include <array>
+#include <cstddef>
+
 #include "engine/collide/pair_class.h"
 
 namespace twinray {
@@ -12,6 +14,23 @@ namespace twinray {
 #include "twinray/glsl/cpp_begin.h"
 #include "shaders/collide/orient.h"
 #include "twinray/glsl/cpp_end.h"
+
+// A sum of doubles without rounding, as doubles that do not overlap, the largest last (Shewchuk 1997, GROW-EXPANSION
+// with zeros left out). Exact as long as nothing over- or underflows.
+class Expansion {
+  public:
+    // At most 192 times.
+    void add(double term);
+    // x y z, without rounding: four terms.
+    void add_product(double x, double y, double z);
+    int sign() const { return size_ == 0 ? 0 : terms_[size_ - 1] > 0 ? 1 : -1; }
+    // To a relative error of 2^-51.
+    double value() const;
+
+  private:
+    std::array<double, 192> terms_;
+    std::size_t size_ = 0;
+};
 
 // det(a - d, b - d, c - d), and its sign: 1 where d sees a, b, c turn clockwise.
 Expansion volume_of(const dvec3& a, const dvec3& b, const dvec3& c, const dvec3& d);

@@ -1,8 +1,71 @@
 // SPDX-License-Identifier: MIT
-// What hosts call, of what Context::State does.
+// What hosts call, of what Context::State does, and what is checked of a device that a host created.
 #include "engine/core/context.h"
 
+#include <algorithm>
+
+#include "engine/core/device_properties.h"
+#include "engine/core/error.h"
+#include "engine/core/requirement.h"
+#include "engine/core/vulkan.h"
+
 namespace twinray {
+namespace {
+
+void check_queue_family(const AdoptedDevice& adopted, const VulkanTable& vk) {
+    std::uint32_t count = 0;
+    vk.vkGetPhysicalDeviceQueueFamilyProperties(adopted.physical_device, &count, nullptr);
+    if (adopted.queue_family >= count)
+        fail("adopted device: queue family ", adopted.queue_family, " does not exist; the device has ", count);
+    std::vector<VkQueueFamilyProperties> families(count);
+    vk.vkGetPhysicalDeviceQueueFamilyProperties(adopted.physical_device, &count, families.data());
+    if (!(families[adopted.queue_family].queueFlags & VK_QUEUE_COMPUTE_BIT))
+        fail("adopted device: queue family ", adopted.queue_family, " does not support compute");
+}
+
+void check_needs(const DeviceProperties& enabled) {
+    std::string lacking;
+    for (const Requirement& requirement : requirements_of(enabled))
+        if (!requirement.is_met && requirement.of == Requirement::Of::everything)
+            lacking += text("\n  twinray needs ", requirement.what, " because ", requirement.why);
+    if (!lacking.empty())
+        fail("adopted device '", enabled.name,
+             "': not enabled (see DeviceRequirements::add_to and enabled_properties):", lacking);
+}
+
+// A host that tells what the driver supports, and not what it enabled, is found out where it can be.
+void check_claims(const DeviceProperties& told, const DeviceProperties& supported, const VulkanTable& vk) {
+    if (const char* feature = feature_beyond(told, supported))
+        fail("adopted device '", told.name, "': ", feature, " is told to be enabled but the device has none");
+    const auto check_function = [&](bool is_told, const void* function, const char* extension) {
+        if (is_told && !function)
+            fail("adopted device '", told.name, "': ", extension,
+                 " is told to be enabled but the VkDevice was created without");
+    };
+    check_function(told.acceleration_structure, reinterpret_cast<const void*>(vk.vkCreateAccelerationStructureKHR),
+                   VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME);
+    check_function(told.ray_tracing_pipeline, reinterpret_cast<const void*>(vk.vkCreateRayTracingPipelinesKHR),
+                   VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME);
+    check_function(told.external_memory_fd, reinterpret_cast<const void*>(vk.vkGetMemoryFdKHR),
+                   VK_KHR_EXTERNAL_MEMORY_FD_EXTENSION_NAME);
+}
+
+}  // namespace
+
+DeviceProperties check_adoption(const AdoptedDevice& adopted, const VulkanTable& vk) {
+    if (!vk.vkGetPhysicalDeviceFeatures2)
+        fail("adopted device: its VkInstance was created for less than Vulkan 1.1; twinray needs 1.2");
+    check_queue_family(adopted, vk);
+    const DeviceProperties supported = query_device_properties(vk, adopted.physical_device);
+    DeviceProperties properties = supported;
+    properties.has_compute_queue = true;
+    properties.api_version = std::min(supported.api_version, adopted.api_version);
+    for (const FeatureBit& bit : feature_bits()) properties.*bit.fact = adopted.enabled.*bit.fact;
+    properties.external_memory_fd = adopted.enabled.external_memory_fd;
+    check_needs(properties);
+    check_claims(properties, supported, vk);
+    return properties;
+}
 
 Context::Context(const ContextDesc& desc) : state_(std::make_unique<State>(desc)) {}
 Context::Context(const AdoptedDevice& adopted) : state_(std::make_unique<State>(adopted)) {}

@@ -5,7 +5,8 @@
 #include <deque>
 #include <mutex>
 
-#include "engine/core/adopted_device.h"
+#include <twinray/context.h>
+
 #include "engine/core/allocator.h"
 #include "engine/core/submission_log.h"
 #include "engine/core/kernel_tuning.h"
@@ -14,6 +15,12 @@
 #include "engine/core/promised_points.h"
 
 namespace twinray {
+
+// Returns what twinray may use of a device that somebody else created: the features of `adopted.enabled`, all other
+// properties from the driver. Throws Error, naming what the host has to change, unless twinray can run on the device:
+// something needed is not enabled, the queue family has no compute, or `enabled` claims what the device does not
+// support or the VkDevice was not created with. The handles must be set and the functions of all levels loaded.
+DeviceProperties check_adoption(const AdoptedDevice& adopted, const VulkanTable& vk);
 
 // A primary command buffer, and what it records.
 struct Submission {

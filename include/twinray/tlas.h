@@ -85,5 +85,8 @@ const char* name_of(const AccelChoice& choice);
 // driver's structures are code, too, and where hardware lacks something. Throws Error for "hw" in the latter case; it
 // names what is lacking.
 AccelChoice choose_accel(const DeviceProperties& device, const std::string& request, const AccelNeeds& needs = {});
+// The one that was chosen, empty. Throws Error as its constructor does.
+std::unique_ptr<AbstractAccel> make_accel(Context& context, const AccelChoice& choice,
+                                          const AccelOptions& options = {});
 
 }  // namespace twinray

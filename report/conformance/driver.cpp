@@ -2,8 +2,15 @@
 #include "report/conformance/driver.h"
 
 #include <algorithm>
+#include <cstring>
 #include <utility>
 
+#include "conformance_pipeline_rahit.spv.h"
+#include "conformance_pipeline_rchit.spv.h"
+#include "conformance_pipeline_rgen.spv.h"
+#include "conformance_pipeline_rgen_culling.spv.h"
+#include "conformance_pipeline_rint.spv.h"
+#include "conformance_pipeline_rmiss.spv.h"
 #include "conformance_query.spv.h"
 #include "conformance_query_culling.spv.h"
 #include "engine/core/buffer.h"
@@ -53,6 +60,58 @@ void add_record_offsets(const Top& top, Traced& traced) {
 }
 
 }  // namespace
+
+std::uint64_t Serialized::word(std::size_t index) const {
+    std::uint64_t value = 0;
+    std::memcpy(&value, bytes.data() + header_bytes + index * sizeof value, sizeof value);
+    return value;
+}
+
+std::span<const std::uint8_t, VK_UUID_SIZE> Serialized::driver_uuid() const {
+    return std::span<const std::uint8_t, VK_UUID_SIZE>(reinterpret_cast<const std::uint8_t*>(bytes.data()),
+                                                       VK_UUID_SIZE);
+}
+
+std::span<const std::uint8_t, VK_UUID_SIZE> Serialized::compatibility_uuid() const {
+    return std::span<const std::uint8_t, VK_UUID_SIZE>(
+        reinterpret_cast<const std::uint8_t*>(bytes.data() + VK_UUID_SIZE), VK_UUID_SIZE);
+}
+
+std::vector<std::uint64_t> Serialized::handles() const {
+    std::vector<std::uint64_t> addresses;
+    for (std::size_t i = 0; i < handle_count(); ++i) addresses.push_back(word(3 + i));
+    return addresses;
+}
+
+void Serialized::set_handles(std::span<const std::uint64_t> addresses) {
+    std::memcpy(bytes.data() + header_bytes + 3 * sizeof(std::uint64_t), addresses.data(), addresses.size_bytes());
+}
+
+RayTracingPipelineDesc PipelineQuery::desc(const Context& context) {
+    RayTracingPipelineDesc desc;
+    desc.name = "conformance_pipeline";
+    desc.ray_generation = conformance_pipeline_rgen_spirv;
+    if (context.properties().primitive_culling) desc.ray_generation = conformance_pipeline_rgen_culling_spirv;
+    desc.miss = conformance_pipeline_rmiss_spirv;
+    desc.closest_hit = conformance_pipeline_rchit_spirv;
+    desc.any_hit = conformance_pipeline_rahit_spirv;
+    desc.intersection = conformance_pipeline_rint_spirv;
+    return desc;
+}
+
+void PipelineQuery::record(Commands& commands, const QueryArgs& args, const Buffer& answers) const {
+    Buffer arguments(commands.context(), {.name = "conformance arguments", .bytes = sizeof(QueryArgs)});
+    {
+        const auto pass = commands.pass("conformance arguments");
+        commands.write(arguments, args);
+        commands.fill(answers, 0, answers.bytes(), 0);
+    }
+    TraceArgs launch{};
+    launch.user_data = arguments.address();
+    launch.count = args.count;
+    pipeline_.trace(commands, launch);
+    commands.retain(std::move(arguments));
+}
 
 BottomRef Bottom::ref() const {
     const bool holds_boxes = std::ranges::any_of(input.geometries, &GeometryInput::is_boxes);

@@ -1,19 +1,57 @@
 // SPDX-License-Identifier: MIT
-// A driver's acceleration structures without HwTlas in between: builds, updates, copies, files and ray queries.
+// A driver's acceleration structures without HwTlas in between: builds, updates, copies, files, ray queries, pipelines.
 #pragma once
 
+#include <vulkan/vulkan_core.h>
+
+#include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "engine/core/kernel.h"
 #include "hwtlas/acceleration_structure.h"
+#include "hwtlas/ray_tracing_pipeline.h"
 #include "report/conformance/driver_input.h"
 #include "report/conformance/misdeed.h"
-#include "report/conformance/pipeline_query.h"
 #include "report/conformance/query.h"
-#include "report/conformance/serialized.h"
 
 namespace twinray::conformance {
+
+// What vkCmdCopyAccelerationStructureToMemoryKHR writes, on the host.
+struct Serialized {
+    std::vector<std::byte> bytes;
+
+    std::span<const std::uint8_t, VK_UUID_SIZE> driver_uuid() const;
+    std::span<const std::uint8_t, VK_UUID_SIZE> compatibility_uuid() const;
+    std::uint64_t serialized_bytes() const { return word(0); }
+    std::uint64_t deserialized_bytes() const { return word(1); }
+    std::uint64_t handle_count() const { return word(2); }
+    void set_handles(std::span<const std::uint64_t> addresses);  // of bottom levels, which the file's are replaced by
+    std::vector<std::uint64_t> handles() const;
+
+    static constexpr std::size_t header_bytes = 2 * VK_UUID_SIZE;  // before the numbers
+
+  private:
+    std::uint64_t word(std::size_t index) const;
+};
+
+// The shots of a query through a ray tracing pipeline: candidates come up in any-hit and intersection shaders.
+class PipelineQuery {
+  public:
+    // Instances of triangles are to take the first hit record, those of boxes the second.
+    explicit PipelineQuery(Context& context) : pipeline_(context, desc(context)) {}
+
+    // Opens passes. The answers become zeros first.
+    void record(Commands& commands, const QueryArgs& args, const Buffer& answers) const;
+
+  private:
+    static RayTracingPipelineDesc desc(const Context& context);
+
+    RayTracingPipeline pipeline_;
+};
 
 // A structure, and what it was made of.
 struct Bottom {

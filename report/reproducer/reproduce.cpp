@@ -2,13 +2,103 @@
 #include "report/reproducer/reproduce.h"
 
 #include <chrono>
+#include <iomanip>
+#include <set>
+#include <sstream>
+#include <utility>
 
+#include <twinray/tlas.h>
 #include "engine/core/error.h"
-#include "report/reproducer/driver_test.h"
+#include "report/reproducer/fault_case.h"
 #include "report/reproducer/simplify.h"
+#include "report/suite/checks.h"
 
 namespace twinray::reproducer {
 namespace {
+
+bool is_leak_at_edges(const Reproduction& found) { return found.kind == HitClass::hw_leak && !found.answer.hit; }
+
+const char* summary(const Reproduction& found) {
+    switch (found.kind) {
+        case HitClass::hw_leak:
+            return found.answer.hit ? "a closest hit is not the closest: the ray passes through nearer triangles"
+                                    : "a ray passes through triangles that close its way, and misses";
+        case HitClass::hw_false: return "a hit names a triangle that the ray passes, or a t outside of its interval";
+        case HitClass::hw_t_err: return "the t of a hit is wrong by more than rounding in float32";
+        default: return "t or the barycentric coordinates of a hit are not finite, or wrong by more than rounding";
+    }
+}
+
+// What the Vulkan specification says of it, and how firmly.
+const char* specification(const Reproduction& found) {
+    if (is_leak_at_edges(found))
+        return "Chapter *Ray Traversal*, section *Ray Intersection Candidate Determination*, *Watertightness*, for "
+               "triangles of one instance with equal positions of shared vertices and equal winding: \"Implementations "
+               "**should** not double-hit or miss when a ray intersects a shared edge, or a shared vertex of a closed "
+               "fan.\" This is a *should*, not a *must*; a note adds that it is \"expected and tested that "
+               "implementations will perform watertight intersection tests\". Where the ray meets a triangle well "
+               "inside, it is a candidate without any such condition.";
+    if (found.kind == HitClass::hw_leak)
+        return "Chapter *Ray Traversal*: the committed intersection of a traversal that runs to its end is the closest "
+               "one of the candidates that were confirmed, opaque ones all of them.";
+    if (found.kind == HitClass::hw_false)
+        return "Chapter *Ray Traversal*, section *Ray Intersection Candidate Determination*: a triangle is a candidate "
+               "where the ray intersects it at a t with t_min < t < t_max. No precision is stated for this test; the "
+               "ray passes the triangle by more than the rounding of its operands in float32 explains.";
+    return "Chapter *Ray Traversal*, section *Ray Intersection Candidate Determination*: t and the barycentric "
+           "coordinates are those of the intersection. The specification states no precision for them, so this is a "
+           "matter of quality unless they are not finite; what is taken as right here allows for rounding of every "
+           "operation in float32.";
+}
+
+// Whether two triangles of an instance list an edge in the same direction: that is no shared edge to Vulkan.
+bool has_unequal_winding(const Scene& scene) {
+    for (const Mesh& mesh : scene.meshes) {
+        std::set<std::pair<uint, uint>> directed;
+        for (const uvec3& t : mesh.triangles)
+            for (int k = 0; k < 3; ++k)
+                if (!directed.emplace(t[k], t[(k + 1) % 3]).second) return true;
+    }
+    return false;
+}
+
+void put_triangles(std::ostream& out, const Scene& scene) {
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+        const Instance& instance = scene.instances[i];
+        const Mesh& mesh = scene.meshes[instance.mesh];
+        out << "| instance | triangle | vertices |\n|---|---|---|\n";
+        for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+            out << "| " << i << " | " << t << " |";
+            for (int k = 0; k < 3; ++k) {
+                const vec3& p = mesh.positions[mesh.triangles[t][k]];
+                out << " (" << p.x << ", " << p.y << ", " << p.z << ')';
+            }
+            out << " |\n";
+        }
+        if (instance.transform == Transform{}) continue;
+        out << "\nInstance " << i << " has the transform, row by row";
+        for (const vec4& row : instance.transform.rows)
+            out << " (" << row.x << ", " << row.y << ", " << row.z << ", " << row.w << ')';
+        out << ".\n\n";
+    }
+}
+
+// The driver's own answers: nothing is refined, and triangles and instances are built in the order in which they are
+// given.
+class DriverTest {
+  public:
+    DriverTest(suite::Devices& devices, suite::Backend backend)
+        : accel_(devices.context(backend), BuildOrder::input, {.level = Level::watertight}) {}
+
+    Hit answer(const Scene& scene, const Ray& ray) {
+        for (const AccelHandle handle : accel_.handles()) accel_.erase(handle);
+        push_scene(accel_, scene);
+        return accel_.closest_hits(std::span(&ray, 1), {.level = Level::watertight}).front();
+    }
+
+  private:
+    HwTlas accel_;
+};
 
 // Whether the driver reorders this scene's triangles is known by an accelerator as users have it.
 bool reorders(suite::Devices& devices, suite::Backend backend) { return HwTlas(devices.context(backend)).reorders(); }
@@ -22,6 +112,50 @@ bool is_allowed(const ReferenceScene& reference, const Ray& ray, const Hit& answ
 }
 
 }  // namespace
+
+std::string words_of(const Hit& answer) {
+    if (!answer.hit) return "a miss";
+    std::ostringstream out;
+    out << std::setprecision(9) << "triangle " << answer.primitive_index << " of instance " << answer.instance_index
+        << " at t = " << answer.t << ", u = " << answer.u << ", v = " << answer.v;
+    return out.str();
+}
+
+std::string page_text(const Reproduction& found, const replay::Replay& replay) {
+    const bool is_pipeline = found.backend == suite::Backend::pipeline;
+    std::ostringstream out;
+    out << std::setprecision(9) << "# " << replay.device << ": " << summary(found) << "\n\n"
+        << "- device: " << replay.device << "\n- driver: " << replay.driver << "\n- traced by: "
+        << (is_pipeline ? "a ray tracing pipeline (`VK_KHR_ray_tracing_pipeline`)" : "a ray query (`VK_KHR_ray_query`)")
+        << "\n- class of the fault: `" << replay.kind << "`, found by twinray " << replay.twinray << "\n\n"
+        << "## The ray\n\n"
+        << "- origin (" << found.ray.origin.x << ", " << found.ray.origin.y << ", " << found.ray.origin.z
+        << "), direction (" << found.ray.direction.x << ", " << found.ray.direction.y << ", " << found.ray.direction.z
+        << "), t_min " << found.ray.t_min << ", t_max " << found.ray.t_max << "\n- to the last bit: `"
+        << suite::hexadecimal(found.ray) << "`\n- expected: " << found.right.exact
+        << " (in rational arithmetic)\n- answered: " << words_of(found.answer) << "\n\n## The scene\n\n";
+    put_triangles(out, found.scene);
+    out << "\nDecimals are rounded; `reproducer.c` and `scene.glb` hold every bit. The scene was reduced from "
+        << found.triangles_before << " triangles"
+        << (found.was_cut_short ? " until the time was up: it may not be the smallest.\n" : ".\n")
+        << "\n## What the specification says\n\n"
+        << specification(found)
+        << (is_leak_at_edges(found) && has_unequal_winding(found.scene)
+                ? " Two of these triangles list their common edge in the same direction: their winding is not equal, "
+                  "so "
+                  "the sentence does not speak of them."
+                : "")
+        << "\n\n## To see it\n\n"
+        << "    cc -std=c99 reproducer.c -lvulkan -o reproducer && ./reproducer\n\n"
+        << "prints the answer, and WRONG with exit status 1, or RIGHT with 0 (2: it cannot run here). The program "
+           "needs "
+           "nothing but the Vulkan loader and headers 1.2.162 or newer; `./reproducer DEVICE "
+        << (is_pipeline ? "query" : "pipeline") << "` traces the same ray by a "
+        << (is_pipeline ? "ray query" : "ray tracing pipeline")
+        << ". Its shaders are beside it as `*.spv`. `twinray verify --replay replay.json` explains the ray step by "
+           "step.\n";
+    return out.str();
+}
 
 Reproduction reproduce(suite::Devices& devices, suite::Backend backend, const Scene& scene, const Ray& ray,
                        double seconds) {

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
-// A faulty ray of the driver in as small a scene as shows it.
+// A faulty ray of the driver in as small a scene as shows it, and in words for the driver's tracker.
 #pragma once
 
+#include <string>
+
+#include "report/replay/replay.h"
 #include "report/reproducer/right_answers.h"
 #include "report/suite/devices.h"
 
@@ -24,5 +27,11 @@ struct Reproduction {
 // the result depends on the arguments and the driver alone.
 Reproduction reproduce(suite::Devices& devices, suite::Backend backend, const Scene& scene, const Ray& ray,
                        double seconds);
+
+// Markdown. `replay`: of the reduced scene.
+std::string page_text(const Reproduction& found, const replay::Replay& replay);
+
+// "a miss", or the triangle with t, u and v.
+std::string words_of(const Hit& answer);
 
 }  // namespace twinray::reproducer

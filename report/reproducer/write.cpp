@@ -9,8 +9,8 @@
 
 #include "engine/core/error.h"
 #include "report/replay/scene_file.h"
-#include "report/reproducer/page.h"
 #include "report/reproducer/program.h"
+#include "report/reproducer/reproduce.h"
 
 namespace twinray::reproducer {
 namespace {

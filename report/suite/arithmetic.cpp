@@ -1,10 +1,220 @@
 // SPDX-License-Identifier: MIT
 // Self-intersection and arithmetic.
-#include "report/suite/floats.h"
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <twinray/geometry.h>
+#include <twinray/scene.h>
+#include "engine/core/error.h"
+#include "report/suite/case_run.h"
+#include "report/suite/cpu_reference.h"
+#include "report/suite/demands.h"
+#include "report/suite/flush.h"
 #include "report/suite/pictures.h"
+#include "report/suite/shapes.h"
 #include "report/suite/spawning.h"
+#include "validation/reference/aimed_rays.h"
+#include "validation/reference/float_probe.h"
 
 namespace twinray::suite {
+namespace {
+
+constexpr std::size_t batch_size = 1 << 20;
+
+Scene scene_with(const Mesh& mesh, std::vector<Transform> transforms = {Transform{}}) {
+    Scene scene;
+    scene.meshes = {mesh};
+    for (const Transform& transform : transforms) scene.instances.push_back({"", 0, transform});
+    return scene;
+}
+
+// What a configuration answers and what the CPU reference does, batch by batch.
+Difference compared(CaseRun& run, const Configuration& configuration, const Scene& scene, std::span<const Ray> rays,
+                    const std::optional<Control>& control = {}) {
+    const World world = world_of(scene);
+    const std::unique_ptr<reference::Scene> on_cpu = cpu_reference_of(scene, run.devices().trees());
+    Difference sum;
+    for (std::size_t first = 0; first < rays.size(); first += batch_size) {
+        const auto batch = rays.subspan(first, std::min(batch_size, rays.size() - first));
+        const std::vector<Traced> traced = trace(run.devices(), std::span(&configuration, 1), world,
+                                                 {.rays = batch, .reps = 0, .control = control ? &*control : nullptr});
+        sum += difference(batch, traced.front().hits, trace_cpu_reference(*on_cpu, batch, configuration.level));
+    }
+    return sum;
+}
+
+// SwTlas's configurations whose arithmetic is `precise` throughout.
+std::vector<Configuration> precise_configurations(CaseRun& run) {
+    std::vector<Configuration> chosen;
+    for (const Configuration& configuration : run.configurations())
+        if (is_ours(configuration.backend) && configuration.level != Level::fast) chosen.push_back(configuration);
+    return chosen;
+}
+
+// Where contraction does harm: edges of cells far from the origin.
+Mesh far_grid() {
+    Mesh grid = make_grid(32, 32);
+    for (vec3& position : grid.positions) position = position * 32.0f + vec3(1e7f, 0, 1e7f);
+    return grid;
+}
+
+void record_contraction(CaseRun& run, const Configuration& configuration, const Difference& found, std::size_t count,
+                        const std::optional<Control>& control) {
+    Record record = run.record(configuration);
+    record.reference = "invariance";
+    record.n = count;
+    record.faults = found.decisions;
+    record.bound95 = upper_bound_95(found.decisions, count);
+    record.results = {{"other_decisions", found.decisions}, {"other_bits", found.bits}};
+    record.example = found.example;
+    const std::string excuse = why_bits_may_differ(run, configuration);
+    if (control) {
+        record.variant = control->code.name;
+        record.criterion = "none: without `precise` the driver may contract";
+    } else if (!excuse.empty()) {
+        record.criterion = "none: " + excuse;
+    } else {
+        record.pass = found.decisions == 0;
+        record.fault_of = *record.pass ? "" : "twinray";
+    }
+    run.add(record);
+}
+
+// Instances under rotations and uneven scales, so that the inverse and the transformed ray are in play, too.
+std::vector<Transform> uneven_transforms() {
+    return {Transform{},
+            Transform{{vec4(0.3f, 0.8f, 0.1f, 2), vec4(-0.7f, 0.2f, 0.4f, 0.5f), vec4(0.1f, -0.3f, 1.7f, 1)}},
+            Transform::translation({-3, 0.2f, 1}) * Transform::scaling({2, 0.01f, -1})};
+}
+
+struct NamedScene {
+    const char* name;
+    Scene scene;
+};
+
+std::vector<NamedScene> scenes_for_both() {
+    return {{"soup", scene_with(make_soup(2000, 5, 0.2f))},
+            {"sphere", scene_with(make_icosphere(5))},
+            {"height field", scene_with(make_grid(64, 64, 0.2f, 3))},
+            {"instances", scene_with(make_soup(500, 6, 0.3f), uneven_transforms())}};
+}
+
+std::vector<Ray> random_and_aimed(const Scene& scene, std::size_t random, std::size_t aimed, std::uint64_t seed) {
+    const ReferenceScene reference = ReferenceScene::of(scene);
+    std::vector<Ray> rays = random_rays(bounds_of(scene), random, seed);
+    for (const auto& more : {vertex_aimed_rays(reference, aimed, seed), edge_aimed_rays(reference, aimed, seed)})
+        rays.insert(rays.end(), more.begin(), more.end());
+    return rays;
+}
+
+// Each coordinate of origins and directions is a denormal, half of the time; the rest is as it was.
+std::vector<Ray> with_denormals(std::vector<Ray> rays, std::uint64_t seed) {
+    std::mt19937 random(static_cast<std::uint32_t>(seed));
+    const auto denormal = [&] {
+        const float magnitude = std::ldexp(1.0f, -127 - static_cast<int>(random() % 20));
+        return random() % 2 ? magnitude : -magnitude;
+    };
+    for (Ray& ray : rays) {
+        const auto kept = static_cast<int>(random() % 3);  // so that the direction is not 0
+        for (int axis = 0; axis < 3; ++axis) {
+            if (random() % 2) ray.origin[axis] = denormal();
+            if (axis != kept && random() % 2) ray.direction[axis] = denormal();
+        }
+        if (std::abs(ray.direction[kept]) < 0x1p-24f) ray.direction[kept] = 1;
+    }
+    return rays;
+}
+
+void contraction(CaseRun& run) {
+    const Scene scene = scene_with(far_grid());
+    const ReferenceScene reference = ReferenceScene::of(scene);
+    const std::vector<Ray> rays = edge_aimed_rays(reference, run.amount(1'024, 1'000'000), run.seed());
+    for (const Configuration& configuration : precise_configurations(run)) {
+        record_contraction(run, configuration, compared(run, configuration, scene, rays), rays.size(), {});
+        if (configuration.level != Level::watertight) continue;
+        const std::optional<Control> control = without_precise();
+        record_contraction(run, configuration, compared(run, configuration, scene, rays, control), rays.size(),
+                           control);
+    }
+}
+
+void float_probe(CaseRun& run) {
+    for (const Configuration& configuration : run.one_configuration_each()) {
+        if (!is_ours(configuration.backend)) continue;
+        const FloatFacts& properties = probe_floats(run.devices().context(configuration.backend));
+        const std::vector<std::string> faults = robust_faults(properties);
+        run.expect(configuration, {.results = {{"product_ulp", properties.product_ulp},
+                                               {"sum_ulp", properties.sum_ulp},
+                                               {"quotient_ulp", properties.quotient_ulp},
+                                               {"keeps_denormals", properties.keeps_denormals},
+                                               {"has_exact_float64", properties.has_exact_float64}},
+                                   .n = robust_conditions,
+                                   .faults = faults.size(),
+                                   .what = "watertightness cannot be claimed: " + joined(faults),
+                                   .fault_of = "driver"});
+    }
+}
+
+// A ray displaced by a denormal passes a shared edge on the other side, so that the triangle may change, but no answer
+// may become wrong.
+void denormals(CaseRun& run) {
+    for (const Configuration& configuration : precise_configurations(run)) {
+        if (!FlushDenormals::is_able()) {
+            run.add_not_run("the host's denormals cannot be flushed", &configuration);
+            continue;
+        }
+        for (const auto& [name, scene] : scenes_for_both()) {
+            const World world = world_of(scene);
+            const std::size_t count = run.amount(2'000, 1'000'000);
+            const std::vector<Ray> rays =
+                with_denormals(random_and_aimed(scene, count, count / 4, run.seed()), run.seed());
+            const std::unique_ptr<reference::Scene> on_cpu = cpu_reference_of(scene, run.devices().trees());
+            const std::vector<Hit> flushed =
+                trace_cpu_reference(*on_cpu, rays, configuration.level, Denormals::flushed);
+            const std::vector<Traced> traced =
+                trace(run.devices(), std::span(&configuration, 1), world, {.rays = rays, .reps = 0});
+            const Difference changed =
+                difference(rays, flushed, trace_cpu_reference(*on_cpu, rays, configuration.level));
+            CheckResult checked = check(world.reference, rays, flushed, configuration.backend);
+            const CheckResult of_device = check(world.reference, rays, traced.front().hits, configuration.backend);
+            checked.classes += of_device.classes;
+            checked.faults += of_device.faults;
+            if (checked.example.empty()) checked.example = of_device.example;
+            run.add_checked(configuration, checked,
+                            {.params = {{"scene", name}}, .results = {{"changed_by_flushing", changed.decisions}}});
+        }
+    }
+}
+
+void device_against_cpu(CaseRun& run) {
+    for (const Configuration& configuration : precise_configurations(run)) {
+        const std::string excuse = why_bits_may_differ(run, configuration);
+        for (const auto& [name, scene] : scenes_for_both()) {
+            const std::vector<Ray> rays =
+                random_and_aimed(scene, run.amount(25'000, 2'500'000), run.amount(2'500, 250'000), run.seed());
+            const Difference found = compared(run, configuration, scene, rays);
+            Record record = run.record(configuration);
+            record.params = {{"scene", name}};
+            record.reference = "invariance";
+            record.n = rays.size();
+            record.results = {
+                {"other_decisions", found.decisions}, {"other_bits", found.bits}, {"worst_t_ulp", found.worst_ulp}};
+            record.faults = found.total();
+            record.bound95 = upper_bound_95(found.total(), rays.size());
+            record.example = found.example;
+            if (excuse.empty()) {
+                record.pass = found.total() == 0;
+                record.fault_of = *record.pass ? "" : "twinray";
+            } else {
+                record.criterion = "none: " + excuse;
+            }
+            run.add(record);
+        }
+    }
+}
+
+}  // namespace
 
 std::vector<SuiteCase> arithmetic_cases() {
     return {

@@ -56,8 +56,7 @@ std::unique_ptr<AbstractAccel> Devices::make_accel(const Configuration& configur
 }
 
 std::unique_ptr<AbstractAccel> Devices::make_accel(Context& context, Backend backend, const AccelOptions& options) {
-    if (is_ours(backend)) return std::make_unique<SwTlas>(context, options);
-    return std::make_unique<HwTlas>(context, BuildOrder::automatic, options);
+    return twinray::make_accel(context, {is_ours(backend), ""}, options);
 }
 
 AbstractAccel& Devices::empty_accel(const Configuration& configuration, Layout layout) {

@@ -1,16 +1,122 @@
 // SPDX-License-Identifier: MIT
-// What each level costs on scenes of an ordinary size, and what it is worth there.
+// What each level costs on scenes of an ordinary size, and what it is worth there; what features of the kernel cost a
+// scene that does not need them.
 #include "report/suite/case_run.h"
-#include "report/suite/feature_costs.h"
-#include <twinray/scene.h>
 
-#include "engine/core/error.h"
+#include <algorithm>
+#include <cstring>
+
 #include <twinray/geometry.h>
-#include "validation/reference/aimed_rays.h"
+#include <twinray/scene.h>
+#include <twinray/tlas.h>
+#include "engine/accel/feature_additions.h"
+#include "engine/core/error.h"
+#include "feature_costs_program.trace_program.h"
 #include "report/suite/shapes.h"
+#include "validation/reference/aimed_rays.h"
 
 namespace twinray::suite {
 namespace {
+
+struct Step {
+    const char* name;
+    std::unique_ptr<TraceProgram> program;
+    std::vector<double> ns_per_ray = {};
+    std::vector<Hit> hits = {};
+};
+
+std::vector<Step> steps_of(const AbstractAccel& accel, Query query) {
+    std::vector<Step> steps;
+    uint features = accel.features_for({.query = query, .occlusion_only = true});
+    const auto add = [&](const char* name) {
+        steps.push_back({name, accel.make_program(feature_costs_program, features)});
+    };
+    add("needed");
+    for (const FeatureAddition& addition : feature_additions) {
+        if ((addition.features & ~features) == 0) continue;
+        features |= addition.features;
+        add(addition.name);
+    }
+    return steps;
+}
+
+void upload_now(Context& context, const Buffer& buffer, std::span<const Ray> rays) {
+    Commands commands(context, "rays of features");
+    {
+        const auto pass = commands.pass("upload rays");
+        commands.upload(buffer, rays);
+    }
+    commands.submit();
+    context.wait_for_gpu();
+}
+
+// All steps in turn, each round.
+void trace_rounds(AbstractAccel& accel, std::span<const Ray> rays, Query query, std::size_t rounds,
+                  std::vector<Step>& steps) {
+    Context& context = accel.context();
+    const Buffer on_device(context, {.name = "rays of features", .bytes = rays.size_bytes()});
+    const Buffer hits(context, {.name = "hits of features", .bytes = rays.size() * sizeof(Hit)});
+    upload_now(context, on_device, rays);
+    for (std::size_t round = 0; round <= rounds; ++round)  // the first compiles
+        for (Step& step : steps) {
+            Commands commands(context, "features");
+            accel.trace(commands, accel.view(),
+                        {.rays = on_device.ref<Ray>(),
+                         .hits = hits.ref<Hit>(),
+                         .count = rays.size(),
+                         .query = query,
+                         .occlusion_only = true,
+                         .program = step.program.get()});
+            commands.submit();
+            const double ns = total_ms(commands.timings()) * 1e6 / static_cast<double>(rays.size());
+            context.wait_for_gpu();
+            if (round == 0)
+                step.hits = download<Hit>(context, hits, rays.size());
+            else
+                step.ns_per_ray.push_back(ns);
+        }
+}
+
+void add_records(CaseRun& run, const char* rays, const std::vector<Step>& steps) {
+    const Step& needed = steps.front();
+    for (const Step& step : steps) {
+        std::vector<double> ratios;
+        for (std::size_t i = 0; i < step.ns_per_ray.size(); ++i)
+            ratios.push_back(step.ns_per_ray[i] / needed.ns_per_ray[i]);
+        std::sort(ratios.begin(), ratios.end());
+        const Interval ratio_95 = quantile_interval_95(ratios, 0.5);
+        std::uint64_t faults = 0;
+        for (std::size_t i = 0; i < step.hits.size(); ++i)
+            faults += std::memcmp(&step.hits[i], &needed.hits[i], sizeof(Hit)) != 0;
+        run.expect({Backend::software, Level::watertight}, {.params = {{"features", step.name}, {"rays", rays}},
+                                                            .results = {{"of_needed", quantile(ratios, 0.5)},
+                                                                        {"of_needed_low", ratio_95.low},
+                                                                        {"of_needed_high", ratio_95.high}},
+                                                            .n = step.hits.size(),
+                                                            .faults = faults,
+                                                            .what = "another hit than without the feature",
+                                                            .reference = "invariance",
+                                                            .time = time_figures("ns_per_ray", step.ns_per_ray)});
+    }
+}
+
+// A record for each feature that is added, of closest and of any hits: the time over that of the kernel with what is
+// needed alone (of_needed, the median over rounds in which all take turns, with its 95 % interval of_needed_low and
+// of_needed_high). A fault is a ray that finds another hit.
+void feature_costs(CaseRun& run) {
+    const std::vector<Configuration> able = run.configurations();
+    if (std::find(able.begin(), able.end(), Configuration{}) == able.end()) return;
+    const Mesh mesh = make_icosphere(static_cast<uint>(run.amount(5, 8)));
+    const std::vector<Ray> rays = primary_rays(bounds_of(mesh), static_cast<uint>(run.amount(96, 1024)));
+    SwTlas accel(run.devices().context(Backend::software), {.can_move = false});
+    accel.push(mesh);
+    accel.sync();
+    for (const auto& [query, name] : {std::pair{Query::closest, "closest"}, std::pair{Query::any, "any"}}) {
+        std::vector<Step> steps = steps_of(accel, query);
+        trace_rounds(accel, rays, query, run.amount(5, 25), steps);
+        add_records(run, name, steps);
+    }
+}
 
 // 65,536 and 2^20 of them.
 std::vector<Ray> camera_rays(CaseRun& run, const Bounds& bounds) {

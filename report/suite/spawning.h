@@ -2,10 +2,33 @@
 // Cases about points of surfaces and rays that leave them: rows F01 to F05, I10 and I15.
 #pragma once
 
+#include "engine/core/kernel.h"
+#include "engine/scene/mesh.h"
 #include "report/suite/case_run.h"
-#include "report/suite/spawned_rays.h"
+#include "report/suite/devices.h"
+#include "twinray/glsl/cpp_spawn.h"
 
 namespace twinray::suite {
+#include "twinray/glsl/cpp_begin.h"
+#include "shaders/suite/spawn_args.h"
+#include "twinray/glsl/cpp_end.h"
+
+struct SpawnedRays {
+    std::vector<Ray> rays;           // of every method, one an item
+    std::vector<SpawnPrice> prices;  // of the items by SPAWN_BOUND
+};
+
+// A kernel lets rays leave points of a mesh, by the function that users call. Compiled once; the same rays for all
+// accelerators, as the kernel traces nothing.
+class Spawner {
+  public:
+    explicit Spawner(Context& context);
+    SpawnedRays operator()(const Mesh& mesh, const Transform& instance, std::span<const SpawnItem> items) const;
+
+  private:
+    Context& context_;
+    Kernel<SpawnArgs> kernel_;
+};
 
 void leave_a_sphere(CaseRun& run);
 void leave_triangles_of_all_kinds(CaseRun& run);

@@ -121,7 +121,7 @@ int run(const Options& options) {
         samples::fail("'", options.output.string(), "': pictures are .png or .exr");
     Context context(samples::context_desc(options, "particles"));
     const AccelChoice choice = choose_accel(context.properties(), options.accel);
-    const std::unique_ptr<AbstractAccel> accel = samples::make_accel(context, choice);
+    const std::unique_ptr<AbstractAccel> accel = make_accel(context, choice);
     Simulation simulation(*accel, make_particles(options.count, options.seed));
     Renderer renderer(simulation, options.size);
     const RunTimes times = run_frames(simulation, renderer, options.frames);

@@ -202,7 +202,7 @@ Session make_session(const Options& options, const Ranks& ranks) {
 }
 
 std::unique_ptr<AbstractAccel> make_accel(Context& context, const Scene& scene, const AccelChoice& choice) {
-    std::unique_ptr<AbstractAccel> accel = samples::make_accel(context, choice);
+    std::unique_ptr<AbstractAccel> accel = twinray::make_accel(context, choice);
     push_scene(*accel, scene);
     accel->sync();
     return accel;

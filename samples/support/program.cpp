@@ -47,11 +47,6 @@ ContextDesc context_desc(const DeviceOptions& options, const std::string& progra
     return desc;
 }
 
-std::unique_ptr<AbstractAccel> make_accel(Context& context, const AccelChoice& choice) {
-    if (choice.is_software) return std::make_unique<SwTlas>(context);
-    return std::make_unique<HwTlas>(context);
-}
-
 void append_line(const std::filesystem::path& file, const std::string& line) {
     if (file.empty()) return;
     std::ofstream out(file, std::ios::app);

@@ -34,8 +34,6 @@ std::optional<int> parse(CLI::App& app, int argc, char** argv, const std::string
 // extensions that TWINRAY_DISABLE names, a comma-separated list of ray_query and ray_tracing_pipeline, stay unused.
 ContextDesc context_desc(const DeviceOptions& options, const std::string& program);
 
-std::unique_ptr<AbstractAccel> make_accel(Context& context, const AccelChoice& choice);
-
 // Appends a line to a file, as --json does; nothing for an empty name. Throws Error naming the file.
 void append_line(const std::filesystem::path& file, const std::string& line);
 

@@ -1,12 +1,43 @@
 // SPDX-License-Identifier: MIT
+// Features that accelerators have on a device, and which accelerator is chosen for it.
 #include <twinray/tlas.h>
+#include <twinray/trace.h>
 
 #include <gtest/gtest.h>
 
-#include "engine/core/error.h"
+#include <set>
+
+#include "tests/scene/temp_dir.h"
 
 namespace twinray {
 namespace {
+
+TEST(Capability, EveryFeatureHasANameOfItsOwn) {
+    std::set<std::string> names;
+    for (std::size_t i = 0; i < feature_count; ++i) names.insert(name_of(static_cast<Feature>(i)));
+    EXPECT_EQ(names.size(), feature_count);
+}
+
+TEST(Capability, LevelsHaveTheirFeatures) {
+    EXPECT_EQ(feature_of(Level::fast), Feature::level_fast);
+    EXPECT_EQ(feature_of(Level::certified), Feature::level_certified);
+}
+
+TEST(Capability, QueriesInKernelsNeedRayQueriesOnHardwareAlone) {
+    DeviceProperties device;
+    EXPECT_EQ(HwTlas::capability_on(device, Feature::kernel_queries).support, Support::unsupported);
+    EXPECT_EQ(SwTlas::capability_on(device, Feature::kernel_queries).support, Support::native);
+    device.ray_query = true;
+    EXPECT_EQ(HwTlas::capability_on(device, Feature::kernel_queries).support, Support::native);
+}
+
+TEST(Capability, WhatIsUnsupportedSaysWhy) {
+    for (std::size_t i = 0; i < feature_count; ++i)
+        for (const Capability& capability :
+             {HwTlas::capability_on({}, static_cast<Feature>(i)), SwTlas::capability_on({}, static_cast<Feature>(i))})
+            EXPECT_TRUE(capability.support != Support::unsupported || !capability.note.empty())
+                << name_of(capability.feature);
+}
 
 DeviceProperties device_of(DeviceKind kind) {
     DeviceProperties device;
@@ -21,12 +52,7 @@ DeviceProperties device_of(DeviceKind kind) {
 }
 
 std::string refusal_of(const DeviceProperties& device, const std::string& request, const AccelNeeds& needs = {}) {
-    try {
-        choose_accel(device, request, needs);
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return "";
+    return test::error_of([&] { choose_accel(device, request, needs); });
 }
 
 TEST(AccelChoice, AutomaticIsHardwareWhereTheDeviceHasIt) {

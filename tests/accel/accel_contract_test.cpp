@@ -6,9 +6,7 @@
 #include <random>
 
 #include "engine/accel/world_bound.h"
-#include "engine/core/vulkan.h"
 #include "validation/reference/aimed_rays.h"
-#include "validation/reference/classify.h"
 #include "tests/accel/accel_fixture.h"
 #include "tests/validation/reference/meshes.h"
 
@@ -598,13 +596,7 @@ TEST_P(Accel, KernelsMoveInstancesInTheirBuffer) {
     const InstanceRange range = accel().instance_buffer(handle);
     EXPECT_EQ(range.count, 2u);
     const Transform up = Transform::translation({0, 0, 6});
-    Commands commands(context(), "move");
-    {
-        const auto pass = commands.pass("move");
-        context().state().vk().vkCmdUpdateBuffer(commands.handle(), range.buffer, range.offset + sizeof(InstanceRecord),
-                                                 sizeof up, &up);
-    }
-    commands.submit();
+    write_instances(range, sizeof(InstanceRecord), up);
     accel().mark_transforms_dirty(handle);
     EXPECT_EQ(closest(down(0.5f, 0.25f)).t, 4.0f);
     EXPECT_EQ(closest(down(0.5f, 0.25f)).instance_index, 1u);
@@ -620,17 +612,9 @@ TEST_P(Accel, KernelsMaskInstancesInTheirBuffer) {
     const Transform places[] = {Transform{}, Transform::translation({0, 0, 1}), Transform::translation({0, 0, 2})};
     const AccelHandle handle = masked->push(square(0), places);
     masked->sync();
-    const InstanceRange range = masked->instance_buffer(handle);
-    Commands commands(context(), "mask");
-    {
-        const auto pass = commands.pass("mask");
-        const uint with_mask_2 = 2u << 24 | 77u;
-        context().state().vk().vkCmdUpdateBuffer(
-            commands.handle(), range.buffer,
-            range.offset + 2 * sizeof(InstanceRecord) + offsetof(InstanceRecord, custom_index_mask), sizeof with_mask_2,
-            &with_mask_2);
-    }
-    commands.submit();
+    const uint with_mask_2 = 2u << 24 | 77u;
+    write_instances(masked->instance_buffer(handle),
+                    2 * sizeof(InstanceRecord) + offsetof(InstanceRecord, custom_index_mask), with_mask_2);
     masked->mark_transforms_dirty(handle);
     const Ray ray = down(0.5f, 0.25f);
     const auto seen = [&](std::uint8_t mask) {
@@ -934,12 +918,8 @@ TEST_P(Accel, AgreesWithTheReferenceOnRandomScenes) {
     for (const Ray& ray : vertex_aimed_rays(reference, 5'000, 2)) rays.push_back(ray);
     for (const Ray& ray : edge_aimed_rays(reference, 5'000, 3)) rays.push_back(ray);
 
-    const bool ours = is_ours();
     const std::vector<Hit> hits = accel().closest_hits(rays);
-    HitClassCounts classes;
-    for (const RayResult& ray_result :
-         ours ? classify_all(reference, rays, hits, {}) : classify_all(reference, rays, {}, hits))
-        classes.add(ours ? *ray_result.software : *ray_result.hardware);
+    const HitClassCounts classes = classes_of(reference, rays, hits);
     EXPECT_EQ(classes.faults_of_ours(), 0u);
     EXPECT_EQ(classes[HitClass::hw_false] + classes[HitClass::hw_t_err] + classes[HitClass::hw_range], 0u);
     EXPECT_GT(classes[HitClass::agree], 25'000u);

@@ -4,9 +4,12 @@
 #pragma once
 
 #include <functional>
+#include <tuple>
 
 #include "engine/core/error.h"
+#include "engine/core/vulkan.h"
 #include <twinray/geometry.h>
+#include "validation/reference/classify.h"
 #include "validation/reference/reference_accel.h"
 #include <twinray/tlas.h>
 #include "tests/support/device.h"
@@ -76,6 +79,28 @@ class AccelTest : public VulkanTest, public ::testing::WithParamInterface<Kind> 
         return buffer;
     }
 
+    // As a kernel would, that many bytes behind where a handle's instances begin.
+    template <class T>
+    void write_instances(const InstanceRange& range, std::uint64_t offset, const T& value) {
+        Commands commands(context(), "write");
+        {
+            const auto pass = commands.pass("write");
+            context().state().vk().vkCmdUpdateBuffer(commands.handle(), range.buffer, range.offset + offset,
+                                                     sizeof value, &value);
+        }
+        commands.submit();
+    }
+
+    // Classes of the hits that this accelerator found.
+    HitClassCounts classes_of(const ReferenceScene& reference, std::span<const Ray> rays, std::span<const Hit> hits) {
+        const std::span<const Hit> none;
+        HitClassCounts classes;
+        for (const RayResult& result :
+             is_ours() ? classify_all(reference, rays, hits, none) : classify_all(reference, rays, none, hits))
+            classes.add(is_ours() ? *result.software : *result.hardware);
+        return classes;
+    }
+
     // Through this very view.
     Hit trace(const AccelView& view, const Ray& ray) {
         const Buffer rays = device_copy(std::vector<Ray>{ray}), hits(context(), {.name = "hits", .bytes = sizeof(Hit)});
@@ -98,6 +123,13 @@ inline std::string name_of_kind(const ::testing::TestParamInfo<Kind>& info) {
     }
     return "";
 }
+
+// SwTlas in each layout, at each level.
+using LayoutAndLevel = std::tuple<Layout, Level>;
+inline std::string name_of_layout_and_level(const ::testing::TestParamInfo<LayoutAndLevel>& info) {
+    return text(name_of(std::get<Layout>(info.param)), '_', name_of(std::get<Level>(info.param)));
+}
+inline const auto every_level = ::testing::ValuesIn(all_levels);
 
 // The unit square at height z, facing up; rays go down onto it.
 inline Mesh square(float z) { return make_quad(vec3(0, 0, z), vec3(1, 0, 0), vec3(0, 1, 0)); }

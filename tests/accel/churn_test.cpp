@@ -4,7 +4,6 @@
 
 #include "engine/core/vma.h"
 #include "validation/reference/aimed_rays.h"
-#include "validation/reference/classify.h"
 #include "tests/accel/accel_fixture.h"
 
 namespace twinray {
@@ -64,8 +63,8 @@ class Churn : public test::AccelTest {
     std::vector<Placed> placed_;
     std::size_t vertex_edits_ = 0;
 };
-INSTANTIATE_TEST_SUITE_P(Every, Churn, testing::Values(Kind::software, Kind::pipeline), test::name_of_kind);
-INSTANTIATE_TEST_SUITE_P(Full, Churn, testing::Values(Kind::ray_query), test::name_of_kind);
+INSTANTIATE_TEST_SUITE_P(Every, Churn, testing::Values(test::Kind::software, test::Kind::pipeline), test::name_of_kind);
+INSTANTIATE_TEST_SUITE_P(Full, Churn, testing::Values(test::Kind::ray_query), test::name_of_kind);
 
 void Churn::push() {
     Placed placed{{}, random_mesh(), random_transforms(random_() % 4)};
@@ -204,10 +203,7 @@ void Churn::expect_agreement(std::size_t count) {
     aim_at_triangles(scene, rays);
     const std::vector<Hit> hits = accel().closest_hits(rays);
     const ReferenceScene reference = ReferenceScene::of(scene);
-    HitClassCounts classes;
-    for (const RayResult& ray_result :
-         is_ours() ? classify_all(reference, rays, hits, {}) : classify_all(reference, rays, {}, hits))
-        classes.add(is_ours() ? *ray_result.software : *ray_result.hardware);
+    const HitClassCounts classes = classes_of(reference, rays, hits);
     ASSERT_EQ(classes.faults_of_ours() + classes.faults_of_hardware(), 0u);
 }
 

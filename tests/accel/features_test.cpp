@@ -29,7 +29,7 @@ std::vector<Ray> rays_with_zeros() {
     return rays;
 }
 
-class Features : public test::VulkanTest, public ::testing::WithParamInterface<std::tuple<Layout, Level>> {
+class Features : public test::VulkanTest, public ::testing::WithParamInterface<test::LayoutAndLevel> {
   protected:
     void SetUp() override {
         VulkanTest::SetUp();
@@ -129,16 +129,11 @@ class Features : public test::VulkanTest, public ::testing::WithParamInterface<s
     std::map<uint, std::unique_ptr<TraceProgram>> programs_;
 };
 
-std::string name_of_features(const ::testing::TestParamInfo<std::tuple<Layout, Level>>& info) {
-    const char* names[] = {"_fast", "_watertight", "_refined", "_certified"};
-    return std::string(name_of(std::get<0>(info.param))) + names[static_cast<std::size_t>(std::get<1>(info.param))];
-}
-const auto every_level = ::testing::Values(Level::fast, Level::watertight, Level::refined, Level::certified);
-INSTANTIATE_TEST_SUITE_P(Every, Features, ::testing::Combine(::testing::Values(Layout::compressed4), every_level),
-                         name_of_features);
+INSTANTIATE_TEST_SUITE_P(Every, Features, ::testing::Combine(::testing::Values(Layout::compressed4), test::every_level),
+                         test::name_of_layout_and_level);
 INSTANTIATE_TEST_SUITE_P(Full, Features,
-                         ::testing::Combine(::testing::Values(Layout::bvh2, Layout::compressed8), every_level),
-                         name_of_features);
+                         ::testing::Combine(::testing::Values(Layout::bvh2, Layout::compressed8), test::every_level),
+                         test::name_of_layout_and_level);
 
 TEST_P(Features, LeanProgramsFindWhatTheGeneralOneFinds) {
     const uint one = of_layout() | FEATURE_HITS, several = one | FEATURE_INSTANCES;
@@ -170,7 +165,7 @@ INSTANTIATE_TEST_SUITE_P(Some, FeaturesOfAccel,
                          ::testing::Values(std::tuple(Layout::compressed4, Level::watertight),
                                            std::tuple(Layout::compressed8, Level::watertight),
                                            std::tuple(Layout::bvh2, Level::certified)),
-                         name_of_features);
+                         test::name_of_layout_and_level);
 
 TEST_P(FeaturesOfAccel, MeshesBuiltInAnotherUnitAreElsewhere) {
     Mesh tiny = make_icosphere(2);

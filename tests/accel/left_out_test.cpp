@@ -8,7 +8,6 @@
 
 #include "engine/accel/world_bound.h"
 #include "engine/core/context.h"
-#include "engine/core/vulkan.h"
 #include "tests/accel/accel_fixture.h"
 
 namespace twinray {
@@ -63,14 +62,7 @@ TEST_P(LeftOut, TheBoundIsThereAfterTheFirstQuestionThatDoesNotWait) {
 TEST_P(LeftOut, TheBoundIsThatOfTheLastSync) {
     const AccelHandle handle = accel().push(square(0));
     accel().sync();
-    const InstanceRange range = accel().instance_buffer(handle);
-    const Transform up = Transform::translation({0, 0, 7});
-    Commands commands(context(), "move");
-    {
-        const auto pass = commands.pass("move");
-        context().state().vk().vkCmdUpdateBuffer(commands.handle(), range.buffer, range.offset, sizeof up, &up);
-    }
-    commands.submit();
+    write_instances(accel().instance_buffer(handle), 0, Transform::translation({0, 0, 7}));
     EXPECT_EQ(accel().world_bound().hi.z, 0.0f);
     accel().mark_transforms_dirty(handle);
     accel().sync();
@@ -85,14 +77,7 @@ TEST_P(LeftOut, TheKernelThatGathersInstancesUntilAKernelHasWrittenTheOneThatThe
     accel().update_transform(handle, Transform::translation({0, 0, 2}));
     EXPECT_EQ(height(), 3.0f) << "the host has moved it";
     EXPECT_FALSE(has_pass("hwtlas_gather_instances"));
-    const InstanceRange range = accel().instance_buffer(handle);
-    const Transform up = Transform::translation({0, 0, 4});
-    Commands commands(context(), "move");
-    {
-        const auto pass = commands.pass("move");
-        context().state().vk().vkCmdUpdateBuffer(commands.handle(), range.buffer, range.offset, sizeof up, &up);
-    }
-    commands.submit();
+    write_instances(accel().instance_buffer(handle), 0, Transform::translation({0, 0, 4}));
     accel().mark_transforms_dirty(handle);
     EXPECT_EQ(height(), 5.0f) << "a kernel has";
     EXPECT_EQ(has_pass("hwtlas_gather_instances"), !accel().is_software());

@@ -120,7 +120,7 @@ TWINRAY_OVER_EVERY_ACCEL(SortedRaysOfAccels);
 
 TEST_P(SortedRaysOfAccels, FindTheSameAtEveryLevel) {
     push_scene();
-    for (const Level level : {Level::fast, Level::watertight, Level::refined, Level::certified}) {
+    for (const Level level : all_levels) {
         if (accel().capability(feature_of(level)).support == Support::unsupported) continue;
         expect_equal(mixed_rays(1000), {.level = level});
     }

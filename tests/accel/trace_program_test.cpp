@@ -228,7 +228,7 @@ TEST_P(Program, TheFilterSeesTheDistanceOfTheGivenRayAtEveryLevel) {
 TEST_P(Program, LevelsThatAreUnsupportedAreRefused) {
     accel().push(square(0));
     const Ray ray = down(0.3f, 0.6f);
-    for (const Level level : {Level::fast, Level::watertight, Level::refined, Level::certified}) {
+    for (const Level level : all_levels) {
         const bool is_unsupported = accel().capability(feature_of(level)).support == Support::unsupported;
         const std::string error = error_if_any(
             [&] { EXPECT_EQ(accel().closest_hits(std::span(&ray, 1), {.level = level}).front().t, 10.0f); });

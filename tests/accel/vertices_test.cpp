@@ -5,7 +5,6 @@
 #include <random>
 
 #include "validation/reference/aimed_rays.h"
-#include "validation/reference/classify.h"
 #include "tests/accel/accel_fixture.h"
 #include "tests/support/seam.h"
 
@@ -31,11 +30,7 @@ void Vertices::expect_agreement(const Mesh& mesh) {
     std::vector<Ray> rays = random_rays(bounds_of(mesh), 2000, 1);
     for (const Ray& ray : vertex_aimed_rays(reference, 500, 2)) rays.push_back(ray);
     const std::vector<Hit> hits = accel().closest_hits(rays);
-    const bool ours = is_ours();
-    HitClassCounts classes;
-    for (const RayResult& ray_result :
-         ours ? classify_all(reference, rays, hits, {}) : classify_all(reference, rays, {}, hits))
-        classes.add(ours ? *ray_result.software : *ray_result.hardware);
+    const HitClassCounts classes = classes_of(reference, rays, hits);
     EXPECT_EQ(classes.faults_of_ours(), 0u);
     EXPECT_EQ(classes[HitClass::hw_false] + classes[HitClass::hw_t_err] + classes[HitClass::hw_range], 0u);
 }

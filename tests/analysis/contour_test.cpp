@@ -1,25 +1,84 @@
 // SPDX-License-Identifier: MIT
+// Exchanges of polygons by their contours, and what may come between them.
 #include "engine/analysis/contour.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <vector>
 
-#include "engine/analysis/pair_plan.h"
 #include <twinray/geometry.h>
+#include "engine/analysis/pair_plan.h"
+#include "engine/analysis/shaft.h"
 #include "tests/analysis/plain_scenes.h"
-#include "tests/analysis/polygon_scenes.h"
 
 namespace twinray {
 namespace {
 
-using test::Surface;
+// Polygons whose exchange is known in closed form.
+
+using Surface = std::vector<Polygon64>;
+
+// Two triangles, as make_quad() makes them.
+Surface quad(const dvec3& vertex, const dvec3& u, const dvec3& v) {
+    return {{vertex, vertex + u, vertex + u + v}, {vertex, vertex + u + v, vertex + v}};
+}
+
+double area_of(const Surface& surface) {
+    double area = 0;
+    for (const Polygon64& polygon : surface) area += length(polygon.area_vector());
+    return area;
+}
+
+// Contours alone tell it: nothing is in between.
+ContourExchange exchange_of(const Surface& a, const Surface& b) {
+    ContourExchange sum;
+    for (const Polygon64& one : a)
+        for (const Polygon64& other : b) {
+            const FacingPair pair = facing_parts(one, other, rounding_of(1));
+            if (pair.is_empty()) continue;
+            const ContourExchange part = contour_exchange(pair.a, pair.b);
+            sum.flow += part.flow;
+            sum.error += part.error;
+            sum.evaluations += part.evaluations;
+        }
+    return sum;
+}
+
+struct KnownPair {
+    std::string name;
+    Surface a, b;
+    double value;  // F from a to b
+};
+
+KnownPair parallel_squares64(double distance, double value) {
+    return {"parallel, distance " + std::to_string(distance), quad(dvec3(0), dvec3(1, 0, 0), dvec3(0, 1, 0)),
+            quad(dvec3(0, 0, distance), dvec3(0, 1, 0), dvec3(1, 0, 0)), value};
+}
+
+KnownPair perpendicular64(double w, double h, double value) {
+    return {"perpendicular, " + std::to_string(w) + " by " + std::to_string(h),
+            quad(dvec3(0), dvec3(w, 0, 0), dvec3(0, 1, 0)), quad(dvec3(0), dvec3(0, 1, 0), dvec3(0, 0, h)), value};
+}
+
+// Howell, "A Catalog of Radiation Heat Transfer Configuration Factors", C-11 and C-14, evaluated with 30 digits.
+std::vector<KnownPair> known_pairs() {
+    return {parallel_squares64(1, 0.199824895698387383),     parallel_squares64(0.5, 0.415253283577146735),
+            parallel_squares64(2, 0.0685895888185524478),    parallel_squares64(0.1, 0.826994522397256578),
+            parallel_squares64(10, 0.00316205683875760197),  parallel_squares64(1e-3, 0.998005631907579727),
+            parallel_squares64(1e-6, 0.9999980000100295),    parallel_squares64(1e3, 3.18309673977380258e-7),
+            perpendicular64(1, 1, 0.200043776075403154),     perpendicular64(1, 2, 0.232852602795361888),
+            perpendicular64(2, 1, 0.116426301397680944),     perpendicular64(0.5, 0.5, 0.240636006176961697),
+            perpendicular64(10, 10, 0.0550239795284105898),  perpendicular64(1, 0.01, 0.00489584926850668304),
+            perpendicular64(1, 1e-6, 4.99997492619688762e-7)};
+}
 
 TEST(Contour, IsExactWhereTheFactorIsKnown) {
-    for (const test::KnownPair& known : test::known_pairs()) {
-        const ContourExchange exchange = test::exchange_of(known.a, known.b);
-        const double flow = known.value * test::area_of(known.a);
+    for (const KnownPair& known : known_pairs()) {
+        const ContourExchange exchange = exchange_of(known.a, known.b);
+        const double flow = known.value * area_of(known.a);
         EXPECT_NEAR(exchange.flow / flow, 1, 1e-12) << known.name;
         EXPECT_LE(std::abs(exchange.flow - flow), exchange.error + 1e-16 * flow) << known.name;
         EXPECT_LE(exchange.error, 1e-10 * flow) << known.name << ": the bound is not far above the error";
@@ -27,7 +86,7 @@ TEST(Contour, IsExactWhereTheFactorIsKnown) {
 }
 
 TEST(Contour, DoesNotDependOnPlaceAndScale) {
-    const test::KnownPair known = test::perpendicular64(1, 1, 0.200043776075403154);
+    const KnownPair known = perpendicular64(1, 1, 0.200043776075403154);
     for (const double scale : {1e-12, 1.0, 1e12}) {
         const auto moved = [&](Surface surface) {
             for (Polygon64& polygon : surface)
@@ -50,15 +109,15 @@ constexpr std::uint64_t most_evaluations = 20'000;  // of two polygons: 4 ms
 
 // What is cut off a square a hair from an edge, and the rest of it, are the square.
 TEST(Contour, OfSliversIsWhatIsLeftOfTheWhole) {
-    const Surface floor = test::quad(dvec3(0), dvec3(1, 0, 0), dvec3(0, 1, 0));
+    const Surface floor = quad(dvec3(0), dvec3(1, 0, 0), dvec3(0, 1, 0));
     for (const double gap : {0.0, 1e-8, 0.5})
         for (const double width : {1e-6, 1e-9, 1e-12}) {
             const auto wall = [&](double low, double high) {
-                return test::quad(dvec3(-gap, 0, low), dvec3(0, 1, 0), dvec3(0, 0, high - low));
+                return quad(dvec3(-gap, 0, low), dvec3(0, 1, 0), dvec3(0, 0, high - low));
             };
-            const ContourExchange whole = test::exchange_of(floor, wall(0, 1));
-            const ContourExchange sliver = test::exchange_of(floor, wall(0, width));
-            const ContourExchange rest = test::exchange_of(floor, wall(width, 1));
+            const ContourExchange whole = exchange_of(floor, wall(0, 1));
+            const ContourExchange sliver = exchange_of(floor, wall(0, width));
+            const ContourExchange rest = exchange_of(floor, wall(width, 1));
             const double error = whole.error + sliver.error + rest.error;
             EXPECT_LE(std::abs(sliver.flow + rest.flow - whole.flow), error + 1e-16) << gap << ' ' << width;
             EXPECT_LE(error, 1e-12 * whole.flow) << gap << ' ' << width;
@@ -75,7 +134,7 @@ TEST(Contour, OfRoomsRoundedToFloat32IsAsExactAsOfOthers) {
         for (std::size_t i = 0; i < room.size(); i += 5) {
             ContourExchange sum;
             for (const Polygon64& other : room) {
-                const ContourExchange part = test::exchange_of({room[i]}, {other});
+                const ContourExchange part = exchange_of({room[i]}, {other});
                 sum.flow += part.flow;
                 sum.error += part.error;
                 EXPECT_LE(part.evaluations, most_evaluations) << angle;
@@ -106,7 +165,7 @@ TEST(Contour, OfPolygonsWithMoreCornersNearsThatOfDiscs) {
     double last = 0;
     for (const int n : {8, 16, 32}) {
         const Surface a = disc(n, 0, true), b = disc(n, 1, false);
-        const double error = std::abs(test::exchange_of(a, b).flow / test::area_of(a) - known);
+        const double error = std::abs(exchange_of(a, b).flow / area_of(a) - known);
         if (n > 8) {
             EXPECT_NEAR(last / error, 4, 0.2) << n << ": the error falls as 1 / n^2";
         }
@@ -131,7 +190,7 @@ TEST(Contour, SpheresThatFaceEachOtherAreCutAtTheirHorizons) {
     for (const uint subdivisions : {0u, 1u, 2u}) {
         const Surface a = sphere_surface(subdivisions, dvec3(0), 1),
                       b = sphere_surface(subdivisions, dvec3(4, 0, 0), 1);
-        const double factor = test::exchange_of(a, b).flow / test::area_of(a);
+        const double factor = exchange_of(a, b).flow / area_of(a);
         if (subdivisions) {
             EXPECT_NEAR((last - known) / (factor - known), 4, 0.9) << subdivisions;
         }
@@ -152,6 +211,78 @@ TEST(FacingParts, AreWhatLiesBeforeTheOther) {
     EXPECT_TRUE(facing_parts(floor, above, rounding_of(1)).is_empty()) << "that one looks away";
     EXPECT_FALSE(facing_parts(floor, above.flipped(), rounding_of(1)).is_empty());
     EXPECT_EQ(gap_over_size(floor, above), 1 / std::sqrt(5.0));
+}
+
+const Polygon64 bottom(dvec3(0, 0, 0), dvec3(1, 0, 0), dvec3(1, 1, 0));
+const Polygon64 top(dvec3(0, 0, 1), dvec3(1, 1, 1), dvec3(1, 0, 1));
+
+bool is_blocked(const Polygon64& face) {
+    const double rounding = rounding_of(1);
+    const Shaft shaft(facing_parts(bottom, top, rounding), rounding);
+    EXPECT_EQ(shaft.may_be_blocked_by(face, box_of(face)), shaft.may_be_blocked_by(face.flipped(), box_of(face)));
+    return shaft.may_be_blocked_by(face, box_of(face));
+}
+
+TEST(Shaft, IsBlockedByWhatReachesIntoIt) {
+    EXPECT_TRUE(is_blocked({dvec3(0.7, 0.2, 0.5), dvec3(0.8, 0.2, 0.5), dvec3(0.7, 0.3, 0.6)}));
+    EXPECT_TRUE(is_blocked({dvec3(-9, -9, 0.5), dvec3(20, -9, 0.5), dvec3(0, 20, 0.5)})) << "all of it";
+    EXPECT_TRUE(is_blocked({dvec3(0.5, 0.5 - 1e-9, 0.5), dvec3(0, 1, 0.5), dvec3(0, 1, 0.6)})) << "by a tip";
+}
+
+TEST(Shaft, IsNotBlockedByWhatTouchesItFromOutside) {
+    EXPECT_FALSE(is_blocked({dvec3(0.5, 0.5, 0.5), dvec3(0, 1, 0.5), dvec3(0, 1, 0.6)})) << "by a tip";
+    EXPECT_FALSE(is_blocked({dvec3(1, 0, 0), dvec3(1, 1, 0), dvec3(1, 1, 1)})) << "a wall";
+    EXPECT_FALSE(is_blocked({dvec3(0, 0, 0), dvec3(1, 1, 0), dvec3(0, 1, 0)})) << "the rest of the floor";
+    EXPECT_FALSE(is_blocked({dvec3(-9, -9, -0.1), dvec3(20, -9, -0.1), dvec3(0, 20, -0.1)})) << "beyond the floor";
+    EXPECT_FALSE(is_blocked({dvec3(0.3, 0.9, 0.1), dvec3(0.4, 0.9, 0.1), dvec3(0.3, 0.9, 0.9)})) << "within its box";
+}
+
+// Each is parted by planes of one kind alone.
+TEST(Shaft, TriesAllPlanesThatMayPart) {
+    // Through the edge of the shaft from (0, 0, 0) to (0, 0, 1) and the closest one of the face.
+    const dvec3 near(-0.01, -0.004, 0.5), along(-0.15, 0.37, 0.2), away(-0.28, -0.11, 0.3);
+    EXPECT_FALSE(is_blocked({near - along, near + along, near + away}));
+    EXPECT_TRUE(is_blocked({near - along + dvec3(0.1, 0.04, 0), near + along + dvec3(0.1, 0.04, 0), near + away}));
+
+    // A wall beyond the rest of the floor sees the floor's other half across a tip that lies in its plane.
+    const double rounding = rounding_of(1);
+    const Polygon64 wall(dvec3(0, 0, 0), dvec3(0, 1, 0), dvec3(0, 1, 1));
+    const Shaft shaft(facing_parts(bottom, wall, rounding), rounding);
+    const Polygon64 tile(dvec3(0.4, 0.5, 0), dvec3(0.3, 0.95, 0), dvec3(0.1, 0.95, 0));
+    EXPECT_FALSE(shaft.may_be_blocked_by(tile, box_of(tile)));
+    const Polygon64 over(dvec3(0.5, 0.4, 0), dvec3(0.3, 0.95, 0), dvec3(0.1, 0.95, 0));
+    EXPECT_TRUE(shaft.may_be_blocked_by(over, box_of(over)));
+}
+
+TEST(Shaft, IsBlockedByWhatLiesOnAFace) {
+    EXPECT_TRUE(is_blocked(bottom)) << "as another face in the same place";
+    EXPECT_TRUE(is_blocked({dvec3(0.5, 0.1, 0), dvec3(0.6, 0.1, 0), dvec3(0.6, 0.2, 0)}));
+    EXPECT_TRUE(is_blocked({dvec3(-3, -9, 1), dvec3(20, -9, 1), dvec3(0, 20, 1)}));
+}
+
+TEST(Shaft, InAConvexRoomNothingIsBetweenWalls) {
+    // Turned by angles that leave no coordinate exact.
+    const auto turned = [](const dvec3& p) {
+        const double c = std::cos(0.3), s = std::sin(0.3);
+        const dvec3 q(c * p.x - s * p.y, s * p.x + c * p.y, p.z);
+        return dvec3(q.x, c * q.y - s * q.z, s * q.y + c * q.z);
+    };
+    const Mesh box = make_box(vec3(-1), vec3(1));
+    Surface faces;
+    for (const uvec3& t : box.triangles)
+        faces.push_back({turned(box.positions[t.x]), turned(box.positions[t.z]), turned(box.positions[t.y])});
+    const double rounding = rounding_of(2);
+    int pairs = 0;
+    for (const Polygon64& a : faces)
+        for (const Polygon64& b : faces) {
+            const FacingPair pair = facing_parts(a, b, rounding);
+            if (&a == &b || pair.is_empty()) continue;
+            ++pairs;
+            const Shaft shaft(pair, rounding);
+            for (const Polygon64& face : faces)
+                EXPECT_FALSE(&face != &a && &face != &b && shaft.may_be_blocked_by(face, box_of(face)));
+        }
+    EXPECT_EQ(pairs, 12 * 10);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 namespace twinray {
 namespace {
 
+using test::entry_of;
 using test::scene_of;
 using test::turned;
 
@@ -160,13 +161,6 @@ TEST_P(PairExchangesTest, FewRaysThroughAHoleHaveNoBias) {
     EXPECT_NEAR(mean, known, 3 * error);
     EXPECT_LE(error, 0.15 * known);
     EXPECT_GT(without, seeds) << "of " << 4 * seeds;
-}
-
-const ViewFactor& entry_of(const ViewFactorRow& row, uint target) {
-    static const ViewFactor none;
-    for (const ViewFactor& entry : row.factors)
-        if (entry.target == target) return entry;
-    return none;
 }
 
 bool overlap(const ViewFactor& a, const ViewFactor& b) { return a.low <= b.high && b.low <= a.high; }

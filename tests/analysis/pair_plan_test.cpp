@@ -34,13 +34,13 @@ std::string refusal_of(const Scene& scene, PairEstimator estimator) {
 
 // Squares with sides of 1 at a distance, and a smaller one half way between.
 Scene plate_between(float distance) {
-    return test::scene_of_meshes({make_quad(vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)),
-                                  make_quad(vec3(0, 0, distance), vec3(0, 1, 0), vec3(1, 0, 0)),
-                                  make_quad(vec3(0.2f, 0.2f, distance / 2), vec3(0, 0.6f, 0), vec3(0.6f, 0, 0))});
+    return test::scene_of({make_quad(vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)),
+                           make_quad(vec3(0, 0, distance), vec3(0, 1, 0), vec3(1, 0, 0)),
+                           make_quad(vec3(0.2f, 0.2f, distance / 2), vec3(0, 0.6f, 0), vec3(0.6f, 0, 0))});
 }
 
 TEST(PairPlan, ContoursTellAllOfAConvexRoom) {
-    Scene room = test::scene_of_meshes({make_box(vec3(-1, -2, -3), vec3(1, 0, 5))});
+    Scene room = test::scene_of({make_box(vec3(-1, -2, -3), vec3(1, 0, 5))});
     for (uvec3& triangle : room.meshes[0].triangles) std::swap(triangle.y, triangle.z);  // seen from inside
     room.instances[0].transform = Transform::scaling(vec3(-1, 1, 1));                    // still, in a mirror
     const PairPlan plan = plan_of(room);
@@ -56,9 +56,9 @@ TEST(PairPlan, ContoursTellAllOfAConvexRoom) {
 }
 
 TEST(PairPlan, WhatIsFarAwayDoesNotMakeOthersTouch) {
-    const Scene scene = test::scene_of_meshes({make_quad(vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)),
-                                               make_quad(vec3(0, 0, 1e-6f), vec3(0, 1, 0), vec3(1, 0, 0)),
-                                               make_quad(vec3(1e9f, 0, 9), vec3(1e9f, 0, 0), vec3(0, 1e9f, 0))});
+    const Scene scene = test::scene_of({make_quad(vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)),
+                                        make_quad(vec3(0, 0, 1e-6f), vec3(0, 1, 0), vec3(1, 0, 0)),
+                                        make_quad(vec3(1e9f, 0, 9), vec3(1e9f, 0, 0), vec3(0, 1e9f, 0))});
     const PairPlan plan = plan_pairs(FacePolygons(scene), std::vector<std::vector<uint>>{{0, 1}, {2, 3}, {4, 5}}, {});
     ASSERT_FALSE(plan.pairs.empty());
     EXPECT_EQ(plan.pairs[0].j, 1u);
@@ -83,7 +83,7 @@ Scene corner_behind_plate(float height) {
     seen.positions = {vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)};
     corner.positions = {vec3(1.5f, 0, height), vec3(1.5f, 1, height - 1), vec3(1.5f, 0, height - 1)};
     seen.triangles = corner.triangles = {{0, 1, 2}};
-    return test::scene_of_meshes({seen, corner, make_quad(vec3(1.2f, -1, -1), vec3(0, 2, 0), vec3(0, 0, 2))});
+    return test::scene_of({seen, corner, make_quad(vec3(1.2f, -1, -1), vec3(0, 2, 0), vec3(0, 0, 2))});
 }
 
 TEST(PairPlan, AreasAreSampledWhereTheyLieBeforeTheOthersPlane) {
@@ -111,7 +111,7 @@ TEST(PairPlan, OfCornersThatFloat32DoesNotHoldOnlyTheBoundIsTold) {
 }
 
 TEST(PairPlan, BothSidesAreSeenByHalf) {
-    const Scene scene = test::scene_of_meshes(
+    const Scene scene = test::scene_of(
         {make_quad(vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)), make_quad(vec3(0, 0, 1), vec3(1, 0, 0), vec3(0, 1, 0))});
     const FacePolygons polygons(scene);
     const std::vector<std::vector<uint>> meshes = {{0, 1}, {2, 3}};
@@ -135,7 +135,7 @@ TEST(PairPlan, AnEstimatorThatDoesNotFitIsRefused) {
     EXPECT_EQ(refusal_of(plate_between(2), PairEstimator::area), "");
     EXPECT_NE(refusal_of(plate_between(0.05f), PairEstimator::area).find("the gap between faces 0 and 2 is 0.035"),
               std::string::npos);
-    const Scene many = test::scene_of_meshes({make_icosphere(3)});
+    const Scene many = test::scene_of({make_icosphere(3)});
     EXPECT_NE(refusal_of(many, PairEstimator::automatic).find("1280 faces"), std::string::npos);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Scenes for tests that need no device.
+// Scenes of which tests know what is seen.
 #pragma once
 
 #include <cmath>
@@ -8,12 +8,15 @@
 
 namespace twinray::test {
 
-// One instance of each mesh.
-inline Scene scene_of_meshes(std::vector<Mesh> meshes) {
+// One instance of each mesh, or as many as there are transforms of the only one.
+inline Scene scene_of(std::vector<Mesh> meshes, const std::vector<Transform>& transforms = {{}}) {
     Scene scene;
     scene.materials.resize(1);
     scene.meshes = std::move(meshes);
-    for (uint i = 0; i < scene.meshes.size(); ++i) scene.instances.push_back({"", i, {}});
+    if (scene.meshes.size() == 1)
+        for (const Transform& transform : transforms) scene.instances.push_back({"", 0, transform});
+    else
+        for (uint i = 0; i < scene.meshes.size(); ++i) scene.instances.push_back({"", i, transforms.front()});
     return scene;
 }
 
@@ -38,7 +41,7 @@ inline Scene rounded_room(uint n, double angle, const dvec3& middle = dvec3(0)) 
                     mesh.triangles.push_back(side < 0 ? t : uvec3(t.x, t.z, t.y));
             }
         }
-    return scene_of_meshes({mesh});
+    return scene_of({mesh});
 }
 
 }  // namespace twinray::test

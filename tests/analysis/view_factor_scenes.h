@@ -48,6 +48,14 @@ inline Mesh make_disc(int n, float radius) {
     return mesh;
 }
 
+// 0 where there is none.
+inline const ViewFactor& entry_of(const ViewFactorRow& row, uint target) {
+    static const ViewFactor none;
+    for (const ViewFactor& entry : row.factors)
+        if (entry.target == target) return entry;
+    return none;
+}
+
 // A F from mesh 0 to mesh 1, between which nothing is, in float64.
 inline double contour_flow(const Scene& scene) {
     const FacePolygons polygons(scene);

@@ -12,14 +12,9 @@
 namespace twinray {
 namespace {
 
+using test::entry_of;
 using test::scene_of;
 using test::turned;
-
-float factor_or_none(const ViewFactorRow& row, uint target) {
-    for (const ViewFactor& entry : row.factors)
-        if (entry.target == target) return entry.value;
-    return 0;
-}
 
 class ViewFactorsOfAccels : public test::AccelTest {
   protected:
@@ -138,7 +133,7 @@ TEST_P(ViewFactorsOfAccels, EveryRayInAClosedRoomMeetsAFace) {
                 EXPECT_EQ(row.hits, row.rays) << "face " << row.group;
                 EXPECT_EQ(row.open.value, 0) << "face " << row.group;
             }
-            EXPECT_EQ(factor_or_none(row, row.group), 0) << "a flat face does not see itself";
+            EXPECT_EQ(entry_of(row, row.group).value, 0) << "a flat face does not see itself";
             double sum = row.open.value + row.back.value;
             for (const ViewFactor& entry : row.factors) sum += static_cast<double>(entry.value);
             EXPECT_EQ(sum, 1) << "face " << row.group;
@@ -183,9 +178,9 @@ TEST_P(ViewFactorsTest, WhatIsHiddenOrTurnedAwayHasNoFactor) {
     blocked.meshes.push_back(make_quad(vec3(-9, -9, 0.5f), vec3(20, 0, 0), vec3(0, 20, 0)));
     blocked.instances.push_back({"plate", 2, {}});
     std::vector<ViewFactorRow> all = rows(blocked, {.grouping = FaceGrouping::mesh});
-    EXPECT_EQ(factor_or_none(all[0], 1), 0);
-    EXPECT_EQ(factor_or_none(all[1], 0), 0);
-    EXPECT_GT(factor_or_none(all[1], 2), 0.99f) << "the plate's front";
+    EXPECT_EQ(entry_of(all[0], 1).value, 0);
+    EXPECT_EQ(entry_of(all[1], 0).value, 0);
+    EXPECT_GT(entry_of(all[1], 2).value, 0.99f) << "the plate's front";
     EXPECT_GT(all[0].back.value, 0.99) << "and its back";
 
     Scene away = test::parallel_squares(1);
@@ -194,7 +189,7 @@ TEST_P(ViewFactorsTest, WhatIsHiddenOrTurnedAwayHasNoFactor) {
     EXPECT_TRUE(all[0].factors.empty() && all[1].factors.empty());
     EXPECT_EQ(all[0].open.value, 1);
     all = rows(away, {.grouping = FaceGrouping::mesh, .sides = Sides::both});
-    EXPECT_NEAR(factor_or_none(all[0], 1), 0.199824895698387383 / 2, 0.003) << "half of the rays leave the other side";
+    EXPECT_NEAR(entry_of(all[0], 1).value, 0.199824895698387383 / 2, 0.003) << "half of the rays leave the other side";
 
     Scene coplanar = scene_of({test::square(0), make_quad(vec3(1, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0))});
     all = rows(coplanar, {.grouping = FaceGrouping::mesh, .sides = Sides::both});
@@ -225,7 +220,7 @@ TEST_P(ViewFactorsTest, NarrowGapsAndPanelsAreAsAccurateAsWideOnes) {
 TEST_P(ViewFactorsOfAccels, OfConcentricSpheresTheInnerSeesTheOuterAlone) {
     const Scene spheres = scene_of({make_icosphere(3, 1), turned(make_icosphere(3, 2))});
     const std::vector<ViewFactorRow> all = rows(spheres, {.grouping = FaceGrouping::mesh, .rays = 1 << 17});
-    EXPECT_EQ(factor_or_none(all[0], 1), 1) << "every ray, to the last";
+    EXPECT_EQ(entry_of(all[0], 1).value, 1) << "every ray, to the last";
     EXPECT_EQ(all[1].hits, all[1].rays);
     const ViewFactor& inward = all[1].factors.front();
     EXPECT_EQ(inward.target, 0u);
@@ -241,7 +236,7 @@ TEST_P(ViewFactorsTest, InstancesStandWhereTheirTransformsPutThem) {
         for (vec3& position : mesh.positions) position = transform_point(in_half, position);
     for (Instance& instance : scene.instances) instance.transform = inverse(in_half, "test");
     const ViewFactorRow row = rows(scene, {.grouping = FaceGrouping::instance}).front();
-    EXPECT_NEAR(factor_or_none(row, 1), 0.199824895698387383, 0.006);
+    EXPECT_NEAR(entry_of(row, 1).value, 0.199824895698387383, 0.006);
 }
 
 TEST_P(ViewFactorsTest, RowsEndWhenTheirErrorIsSmallEnough) {
@@ -279,27 +274,25 @@ TEST_P(ViewFactorsTest, AnAcceleratorOfAnotherSceneIsRefused) {
     EXPECT_EQ(refusal_of(scene), "");
     Scene more = scene;
     more.instances.push_back(more.instances.back());
-    EXPECT_NE(refusal_of(more).find("view factors: it has 3 instances and the scene 2"), std::string::npos);
+    test::expect_contains(refusal_of(more), "view factors: it has 3 instances and the scene 2");
     Scene finer = scene;
     finer.meshes[1] = make_icosphere(2);
-    EXPECT_NE(refusal_of(finer).find("its instance 1 has 320 primitives and the scene's 2 triangles"),
-              std::string::npos);
+    test::expect_contains(refusal_of(finer), "its instance 1 has 320 primitives and the scene's 2 triangles");
     const auto accel = make_accel();
     push_scene(*accel, scene);
     ViewFactors factors(*accel, faces, {});
     accel->push(make_icosphere(0));
-    EXPECT_NE(test::error_if_any([&] { factors.rows(0, 1); }).find("it has 3 instances"), std::string::npos);
-    const std::string refusal =
-        test::error_if_any([&] { exchanges_of_pairs(*accel, scene, faces, {}, PairEstimator::area, nullptr); });
-    EXPECT_NE(refusal.find("exchanges of pairs: it has 3 instances"), std::string::npos) << refusal;
+    test::expect_contains(test::error_of([&] { factors.rows(0, 1); }), "it has 3 instances");
+    test::expect_contains(
+        test::error_of([&] { exchanges_of_pairs(*accel, scene, faces, {}, PairEstimator::area, nullptr); }),
+        "exchanges of pairs: it has 3 instances");
 }
 
 TEST_P(ViewFactorsTest, OptionsOutOfRangeAreRefused) {
     const Scene scene = test::parallel_squares(1);
-    EXPECT_NE(test::error_if_any([&] { rows(scene, {.rays = 0}); }).find("0 rays a row"), std::string::npos);
-    EXPECT_NE(test::error_if_any([&] { rows(scene, {.target_error = -1}); }).find("target error of -1"),
-              std::string::npos);
-    EXPECT_NE(test::error_if_any([&] { rows(scene, {.target_error = NAN}); }).find("target error"), std::string::npos);
+    test::expect_contains(test::error_of([&] { rows(scene, {.rays = 0}); }), "0 rays a row");
+    test::expect_contains(test::error_of([&] { rows(scene, {.target_error = -1}); }), "target error of -1");
+    test::expect_contains(test::error_of([&] { rows(scene, {.target_error = NAN}); }), "target error");
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "engine/collide/exact_class.h"
 #include "tests/accel/accel_fixture.h"
 #include "tests/collide/triangle_pairs.h"
+#include "tests/points/point_reference.h"
 #include "tests/validation/reference/meshes.h"
 
 namespace twinray {
@@ -39,32 +40,19 @@ class NarrowPhaseTest : public test::VulkanTest {
     std::unique_ptr<NarrowPhase> narrow_phase_;
 };
 
-dvec3 placed(const Transform& m, vec3 p) {
-    const auto row = [&](std::size_t i) {
-        const dvec4 r(m.rows[i]);
-        return ((r.x * p.x + r.y * p.y) + r.z * p.z) + r.w;
-    };
-    return {row(0), row(1), row(2)};
-}
-
-WorldTriangle placed(const Transform& m, const MeshView& mesh, const uvec3& t) {
-    return {placed(m, mesh.positions[t.x]), placed(m, mesh.positions[t.y]), placed(m, mesh.positions[t.z])};
-}
-
-// Of different instances.
+// Contacts of different instances.
 std::vector<TriangleContact> brute_force(const std::vector<MeshView>& meshes,
                                          const std::vector<MeshInstance>& instances) {
+    std::vector<std::vector<test::PlacedTriangle>> placed;
+    for (const MeshInstance& instance : instances)
+        placed.push_back(test::placed_triangles(meshes, std::span(&instance, 1)));
     std::vector<TriangleContact> contacts;
     for (uint i = 0; i < instances.size(); ++i)
         for (uint j = i + 1; j < instances.size(); ++j)
-            for (uint s = 0; s < meshes[instances[i].mesh].triangles.size(); ++s)
-                for (uint t = 0; t < meshes[instances[j].mesh].triangles.size(); ++t) {
-                    const auto vertices = [&](uint instance, uint triangle) {
-                        const MeshView& mesh = meshes[instances[instance].mesh];
-                        return placed(instances[instance].transform, mesh, mesh.triangles[triangle]);
-                    };
-                    const PairClass found = exact_class(vertices(i, s), vertices(j, t));
-                    if (found != PairClass::separate) contacts.push_back({i, j, s, t, found});
+            for (const test::PlacedTriangle& a : placed[i])
+                for (const test::PlacedTriangle& b : placed[j]) {
+                    const PairClass found = exact_class(a.vertices, b.vertices);
+                    if (found != PairClass::separate) contacts.push_back({i, j, a.triangle, b.triangle, found});
                 }
     return contacts;
 }
@@ -94,7 +82,6 @@ TEST_F(NarrowPhaseTest, NoPairOfInstancesIsLost) {
 
 TEST_F(NarrowPhaseTest, CoordinatesOfManySizesAreAlike) {
     for (const int exponent : {-100, -40, 30, 60}) {
-        std::mt19937 random(3);
         const Soup ball = test::sphere(1);
         const float scale = std::ldexp(1.0f, exponent);
         const auto instances_at = [&](float size) {
@@ -225,11 +212,8 @@ TEST_F(NarrowPhaseTest, WrongUseIsAnError) {
     EXPECT_EQ(error_if_any([&] { find({ball.view()}, {{0, {}}, {1, {}}}); }), "collide: instance 1 is of mesh 1 of 1");
     narrow_phase().set_max_pairs(100);
     EXPECT_NE(error_if_any([&] { find({ball.view()}, {{0, {}}, {0, {}}}); }).find("at most 100"), std::string::npos);
-    EXPECT_NE(error_if_any([&] {
-                  const TrianglePair pair{test::triangle_of(dvec3(NAN), dvec3(0), dvec3(1)), {}};
-                  narrow_phase().classify(std::span(&pair, 1));
-              }).find("pair 0"),
-              std::string::npos);
+    const TrianglePair pair{test::triangle_of(dvec3(NAN), dvec3(0), dvec3(1)), {}};
+    EXPECT_NE(error_if_any([&] { narrow_phase().classify(std::span(&pair, 1)); }).find("pair 0"), std::string::npos);
 }
 
 }  // namespace

@@ -1,34 +1,31 @@
 // SPDX-License-Identifier: MIT
+// A device that the host made: both accelerators trace on it, and submissions wait on a timeline of the host.
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <cstring>
+#include <memory>
 #include <mutex>
 #include <thread>
+#include <utility>
 
-#include "engine/core/context.h"
-#include "engine/core/error.h"
 #include <twinray/geometry.h>
 #include <twinray/queries.h>
 #include <twinray/tlas.h>
+#include "engine/core/commands.h"
+#include "engine/core/context.h"
+#include "engine/core/error.h"
 #include "tests/core/host_device.h"
+#include "tests/scene/temp_dir.h"
 
 namespace twinray {
 namespace {
 
 class AdoptedDeviceTest : public test::HostTest {
   protected:
-    // What the adoption is refused with.
-    std::string refusal() {
-        try {
-            const Context context(host_.device);
-        } catch (const Error& error) {
-            return error.what();
-        }
-        return "adopted";
-    }
+    // An Error that says this, where the device is adopted.
     void expect_refusal(const std::string& part) {
-        const std::string found = refusal();
-        EXPECT_NE(found.find(part), std::string::npos) << found;
+        test::expect_contains(test::error_of([&] { const Context context(host_.device); }), part);
     }
 };
 
@@ -115,17 +112,9 @@ TEST_F(AdoptedDeviceTest, DistancesAndContactsNeedFloat64) {
     host_.wants_float64 = false;
     ASSERT_TRUE(host_.create());
     Context context(host_.device);
-    const auto error_of = [](auto make) -> std::string {
-        try {
-            make();
-        } catch (const Error& error) {
-            return error.what();
-        }
-        return "made";
-    };
     const std::string need = "need float64 (shaderFloat64), which device";
-    EXPECT_NE(error_of([&] { PointQuery query(context); }).find(need), std::string::npos);
-    EXPECT_NE(error_of([&] { NarrowPhase phase(context); }).find(need), std::string::npos);
+    test::expect_contains(test::error_of([&] { PointQuery query(context); }), need);
+    test::expect_contains(test::error_of([&] { NarrowPhase phase(context); }), need);
 }
 
 // A host that tells what the driver supports instead of what it enabled.
@@ -165,6 +154,69 @@ TEST_F(AdoptedDeviceTest, PipelinesGoIntoTheHostsCache) {
     EXPECT_EQ(Context(host_.device).state().pipeline_cache(), cache);
     expect_both_trace(host_.device);
     vkDestroyPipelineCache(host_.device.device, cache, nullptr);
+}
+
+class WaitTest : public test::HostTest {
+  protected:
+    void SetUp() override {
+        test::HostTest::SetUp();
+        if (IsSkipped()) return;
+        ASSERT_TRUE(host_.create());
+        context_ = std::make_unique<Context>(host_.device);
+        VkSemaphoreTypeCreateInfo type{};
+        type.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO;
+        type.semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE;
+        VkSemaphoreCreateInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO;
+        info.pNext = &type;
+        ASSERT_EQ(vkCreateSemaphore(host_.device.device, &info, nullptr, &timeline_), VK_SUCCESS);
+    }
+    void TearDown() override {
+        context_.reset();
+        if (timeline_) vkDestroySemaphore(host_.device.device, timeline_, nullptr);
+    }
+    void signal(std::uint64_t value) {
+        VkSemaphoreSignalInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SIGNAL_INFO;
+        info.semaphore = timeline_;
+        info.value = value;
+        EXPECT_EQ(vkSignalSemaphore(host_.device.device, &info), VK_SUCCESS);
+    }
+    Context& context() { return *context_; }
+    std::unique_ptr<Context> context_;
+    VkSemaphore timeline_ = VK_NULL_HANDLE;
+};
+
+TEST_F(WaitTest, ASubmissionSeesWhatTheHostWroteBeforeItsSignal) {
+    const Buffer from(context(), {.name = "from", .bytes = 4, .memory = Memory::upload});
+    const Buffer to(context(), {.name = "to", .bytes = 4, .memory = Memory::readback});
+    const auto write = [&](uint value) { std::memcpy(from.mapped(), &value, 4); };
+    write(1);
+    Commands commands(context(), "copy");
+    {
+        const auto pass = commands.pass("copy");
+        commands.copy(from, 0, to, 0, 4);
+    }
+    context().wait_before_next_submission({timeline_, 7}, VK_PIPELINE_STAGE_TRANSFER_BIT);
+    const SyncPoint copied = commands.submit();
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    EXPECT_FALSE(context().is_reached(copied));
+    write(2);
+    signal(7);
+    context().wait(copied);
+    uint value = 0;
+    std::memcpy(&value, to.mapped(), 4);
+    EXPECT_EQ(value, 2u);
+    // The next one does not wait again: the layer would complain of a semaphore that is gone.
+    vkDestroySemaphore(host_.device.device, std::exchange(timeline_, VK_NULL_HANDLE), nullptr);
+    context().wait(Commands(context(), "does not wait").submit());
+}
+
+TEST_F(WaitTest, AWaitForNothingIsRefused) {
+    EXPECT_THROW(context().wait_before_next_submission({}), Error);
+    EXPECT_THROW(context().wait_before_next_submission({timeline_, 0}), Error);
+    EXPECT_THROW(context().wait_before_next_submission({timeline_, 1}, 0), Error);
+    context().wait(Commands(context(), "does not wait").submit());
 }
 
 }  // namespace

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
-// What fails in Vulkan without an accelerator: see tests/accel/fault_test.cpp.
+// Failures of Vulkan without an accelerator: see tests/accel/fault_test.cpp for those with one.
 #include <chrono>
 #include <thread>
 
 #include "engine/core/commands.h"
 #include "engine/core/error.h"
 #include "engine/core/vma.h"
+#include "engine/core/vulkan.h"
+#include "report/faults/fault_injection.h"
 #include "tests/support/caller.h"
 #include "tests/support/device.h"
-#include "report/faults/fault_injection.h"
 
 namespace twinray {
 namespace {
@@ -127,6 +128,33 @@ TEST_F(FaultsOfCore, ListingTheDevices) {
         EXPECT_EQ(outcome, faults().injected() ? Outcome::error : Outcome::done);
         if (!faults().injected()) return;
     }
+}
+
+// No driver hangs on demand: waiting for it is made to time out.
+TEST(HungDevice, IsLostAndNotWaitedForAgain) {
+    faults::FaultInjector driver;
+    {
+        const std::unique_ptr<Context> context =
+            test::make_context({.most_wait_seconds = 0.01, .get_instance_proc_addr = driver.entry()});
+        if (!context) return;
+        driver.inject({"vkWaitSemaphores", 1, faults::every_call, VK_TIMEOUT});
+        const SyncPoint point = Commands(*context, "hangs").submit();
+        const std::string said = faults::what_is_thrown_by([&] { context->wait(point); });
+        EXPECT_NE(said.find("in flight: 'hangs'"), std::string::npos) << said;
+        EXPECT_NE(said.find("ended none of its submissions for 0.01 s"), std::string::npos) << said;
+        const std::uint64_t calls = driver.calls();
+        EXPECT_THROW(context->wait_for_gpu(), DeviceLost);
+        EXPECT_EQ(driver.calls(), calls);
+        driver.heal();
+        // Else what it runs would be left to it.
+        const auto reached = [&] {
+            std::uint64_t value = 0;
+            context->state().vk().vkGetSemaphoreCounterValue(context->device(), point.semaphore, &value);
+            return value;
+        };
+        while (reached() < point.value) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    EXPECT_TRUE(driver.live().empty());
 }
 
 }  // namespace

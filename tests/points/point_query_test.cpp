@@ -9,12 +9,14 @@
 #include "engine/core/parallel.h"
 #include "tests/accel/accel_fixture.h"
 #include "tests/points/point_reference.h"
+#include "tests/scene/temp_dir.h"
 #include "tests/validation/reference/meshes.h"
 
 namespace twinray {
 namespace {
 
 using test::PlacedTriangle;
+using test::random_points;
 using test::Soup;
 
 class PointQueryTest : public test::VulkanTest {
@@ -104,20 +106,13 @@ class PointQueryTest : public test::VulkanTest {
     std::vector<double> sides_;  // the longest of each
 };
 
-std::vector<dvec3> random_points(std::size_t count, float size, unsigned seed) {
-    std::mt19937 random(seed);
-    std::vector<dvec3> points(count);
-    for (dvec3& point : points) point = dvec3(test::uniform3(random, -size, size));
-    return points;
-}
-
 // TWINRAY_POINTS, or as many as take a second.
 std::size_t point_count() {
     const char* asked = std::getenv("TWINRAY_POINTS");
     return asked ? std::stoul(asked) : 2'000;
 }
 
-// Of every shape: without area, without length, needles.
+// Triangles of every shape: without area, without length, needles.
 Soup mixed_soup(std::size_t count, unsigned seed) {
     Soup soup = test::random_soup(count, 0.3f, seed);
     for (std::size_t i = 0; i < count; ++i) {
@@ -269,12 +264,7 @@ TEST_F(PointQueryTest, AllTrianglesWithinTheRadius) {
     EXPECT_GT(count, 4 * points.size());  // more than there was room for at first
 
     query().set_max_found(count - 1);
-    try {
-        query().within(points, 0.6);
-        FAIL();
-    } catch (const Error& error) {
-        EXPECT_NE(std::string(error.what()).find(std::to_string(count) + " pairs"), std::string::npos) << error.what();
-    }
+    test::expect_contains(test::error_of([&] { query().within(points, 0.6); }), std::to_string(count) + " pairs");
 }
 
 TEST_F(PointQueryTest, NotFiniteIsNearToNothing) {

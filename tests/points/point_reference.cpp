@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <random>
+
+#include "tests/validation/reference/meshes.h"
 
 namespace twinray::test {
 namespace {
@@ -53,6 +56,13 @@ std::vector<PlacedTriangle> placed_triangles(std::span<const MeshView> meshes,
         }
     }
     return all;
+}
+
+std::vector<dvec3> random_points(std::size_t count, float size, unsigned seed) {
+    std::mt19937 random(seed);
+    std::vector<dvec3> points(count);
+    for (dvec3& point : points) point = dvec3(uniform3(random, -size, size));
+    return points;
 }
 
 long double distance(const dvec3& point, const WorldTriangle& triangle) {

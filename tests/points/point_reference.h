@@ -17,6 +17,9 @@ struct PlacedTriangle {
 };
 std::vector<PlacedTriangle> placed_triangles(std::span<const MeshView> meshes, std::span<const MeshInstance> instances);
 
+// Uniform in the cube [-size, size]^3.
+std::vector<dvec3> random_points(std::size_t count, float size, unsigned seed);
+
 // By Voronoi regions (Ericson, "Real-Time Collision Detection", 2005, 5.1.5), in numbers of 113 bits of mantissa; of
 // triangles without area, the least of the distances from their edges.
 long double distance(const dvec3& point, const WorldTriangle& triangle);

@@ -8,7 +8,7 @@
 #include "engine/points/boundary.h"
 #include "tests/accel/accel_fixture.h"
 #include "tests/points/point_reference.h"
-#include "tests/validation/reference/meshes.h"
+#include "tests/scene/temp_dir.h"
 
 namespace twinray {
 namespace {
@@ -51,13 +51,11 @@ Mesh torus(uint n, uint m, float radius, float tube) {
 
 TEST_F(WindingTest, EqualsTheSolidAngleOverTheSphere) {
     const Mesh ball = make_icosphere(3), ring = torus(40, 20, 1, 0.6f);
-    std::mt19937 random(2);
     const Transform mirrored = Transform::scaling(vec3(1, -1, 1.5f));
     const std::vector<MeshView> meshes = {ball, ring};
     const std::vector<MeshInstance> instances = {{0, {}}, {1, {}}, {1, mirrored}};
     const auto placed = test::placed_triangles(meshes, instances);
-    std::vector<dvec3> points(3000);
-    for (dvec3& p : points) p = dvec3(test::uniform3(random, -1.8f, 1.8f));
+    const std::vector<dvec3> points = test::random_points(3000, 1.8f, 2);
     const std::vector<int> found = windings(meshes, instances, points);
     std::array<int, 4> seen{};
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -89,14 +87,12 @@ double furthest_from_solid_angle(PointQuery& query, const std::vector<MeshView>&
 }
 
 TEST_F(WindingTest, OfOpenMeshesIsTheSolidAngle) {
-    std::mt19937 random(3);
     const Mesh ball = with_holes(make_icosphere(3), [&](uint i) { return i < 80 || i % 97 == 0; });
     const Mesh ring = with_holes(torus(40, 20, 1, 0.6f), [&](uint i) { return i % 31 < 4; });
     const std::vector<MeshView> meshes = {ball, ring};
     const std::vector<MeshInstance> instances = {
         {0, {}}, {1, {}}, {1, Transform::scaling(vec3(1, -1, 1.5f))}, {0, Transform::translation(vec3(0.5f, 0, 0))}};
-    std::vector<dvec3> points(3000);
-    for (dvec3& p : points) p = dvec3(test::uniform3(random, -1.8f, 1.8f));
+    const std::vector<dvec3> points = test::random_points(3000, 1.8f, 3);
     PointQuery query(context());
     EXPECT_LT(furthest_from_solid_angle(query, meshes, instances, points), 1e-11);
     query.set({&meshes[0], 1}, {instances.data(), 1});
@@ -127,9 +123,7 @@ TEST_F(WindingTest, OfSurfacesThatAreNoManifolds) {
     mesh.triangles.emplace_back(second.x, second.z, second.y);
     mesh.positions.emplace_back(3.0f, 0.25f, 0.125f);
     mesh.triangles.emplace_back(first.x, first.y, static_cast<uint>(mesh.positions.size() - 1));
-    std::mt19937 random(4);
-    std::vector<dvec3> points(2000);
-    for (dvec3& p : points) p = dvec3(test::uniform3(random, -2, 2));
+    const std::vector<dvec3> points = test::random_points(2000, 2, 4);
     PointQuery query(context());
     EXPECT_LT(furthest_from_solid_angle(query, {mesh}, {{0, {}}}, points), 1e-13);
 }
@@ -192,12 +186,7 @@ TEST_F(WindingTest, OpenMeshesAndPointsOutOfRangeAreRefused) {
     const std::vector<MeshInstance> instances = {{0, {}}};
     query.set(meshes, instances);
     EXPECT_FALSE(query.closest(points).empty());  // needs no inside
-    try {
-        query.signed_distances(points);
-        FAIL();
-    } catch (const Error& error) {
-        EXPECT_NE(std::string(error.what()).find("'open box' is not closed"), std::string::npos) << error.what();
-    }
+    test::expect_contains(test::error_of([&] { query.signed_distances(points); }), "'open box' is not closed");
     const Mesh box = make_box(vec3(-1), vec3(1));
     query.set(std::vector<MeshView>{box}, instances);
     for (const double bad : {double(NAN), double(INFINITY), 1e300, 1e-200})

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: MIT
+// BSDFs: what sampling and evaluation agree on; and of light of the same radiance from everywhere, surfaces never
+// return more than they get.
 #include <gtest/gtest.h>
+
+#include <numbers>
 
 #include "tests/samples/bsdf_samples.h"
 
@@ -90,6 +94,171 @@ TEST(Bsdf, NearlySmoothSurfacesStayFinite) {
                     EXPECT_TRUE(std::isfinite(s.pdf) && s.weight.x >= 0 && s.weight.x <= 11) << alpha << ' ' << cosine;
                     return 0;
                 });
+}
+
+constexpr float cosines[] = {1.0f, 0.7f, 0.4f, 0.2f, 0.1f, 0.05f, 0.02f, 0.01f};
+constexpr float roughnesses[] = {0.0f, 0.04f, 0.1f, 0.2f, 0.35f, 0.5f, 0.7f, 0.85f, 1.0f};
+
+Bsdf dielectric(float roughness, float ior = 1.5f) { return opaque_of(vec3(1), 0, roughness, ior); }
+
+// The red channel is the strongest.
+Bsdf reddish(float roughness, float weight, vec3 color) {
+    return with_specular(dielectric(roughness), vec3(1), 0, 1.5f, weight, color);
+}
+
+void expect_no_more_than_all(const Bsdf& bsdf, const std::string& name) {
+    for (const float cosine : cosines)
+        EXPECT_LE(albedo_of(bsdf, direction(cosine, 0.2f)), 1.01) << name << ", cosine " << cosine;
+}
+
+TEST(Furnace, NoBaseReturnsMoreThanItGets) {
+    for (const float roughness : roughnesses) {
+        const std::string name = " of roughness " + std::to_string(roughness);
+        for (const float ior : {1.1f, 1.5f, 2.5f})
+            expect_no_more_than_all(dielectric(roughness, ior), "dielectric" + name);
+        for (const float metallic : {0.25f, 0.75f, 1.0f})
+            expect_no_more_than_all(opaque_of(vec3(1), metallic, roughness, 1.5f), "metal in part" + name);
+        expect_no_more_than_all(reddish(roughness, 0.5f, vec3(1)), "half specular" + name);
+        expect_no_more_than_all(reddish(roughness, 1, vec3(20, 5, 1)), "strong red specular" + name);
+        expect_no_more_than_all(thin_glass(roughness * roughness, 1.5f), "wall" + name);
+        for (const float eta : {1.5f, 1 / 1.5f})
+            expect_no_more_than_all(glass(roughness * roughness, eta), "glass" + name);
+    }
+}
+
+TEST(Furnace, NoLayersReturnMoreThanTheyGet) {
+    for (const float roughness : roughnesses) {
+        const float alpha = roughness * roughness, sheen = std::max(roughness, SHEEN_LEAST_ROUGHNESS);
+        const std::string name = " of roughness " + std::to_string(roughness);
+        expect_no_more_than_all(with_coat(white(), 1, alpha), "coat" + name);
+        expect_no_more_than_all(with_coat(dielectric(0.3f), 1, alpha), "coat over a dielectric" + name);
+        expect_no_more_than_all(with_coat(mirror(0), 1, alpha), "coat over a mirror" + name);
+        expect_no_more_than_all(with_coat(glass(0, 1.5f), 1, alpha), "coat over glass" + name);
+        expect_no_more_than_all(with_coat(thin_glass(0, 1.5f), 1, alpha), "coat over a pane" + name);
+        expect_no_more_than_all(with_sheen(white(), vec3(1), sheen), "sheen" + name);
+        expect_no_more_than_all(with_sheen(dielectric(0.1f), vec3(1), sheen), "sheen over a dielectric" + name);
+        expect_no_more_than_all(with_sheen(mirror(0.3f), vec3(0.5f), sheen), "half sheen" + name);
+        expect_no_more_than_all(with_coat(with_sheen(dielectric(0.3f), vec3(1), sheen), 1, alpha), "both" + name);
+    }
+}
+
+// Along, aside and across.
+TEST(Furnace, NoGrainReturnsMoreThanItGets) {
+    for (const float roughness : {0.04f, 0.1f, 0.3f, 0.6f})
+        for (const float strength : {0.3f, 1.0f})
+            for (const float turns : {0.0f, 0.125f, 0.1875f, 0.22f, 0.25f})
+                for (const float metallic : {0.0f, 0.5f}) {
+                    const Bsdf even = opaque_of(vec3(1), metallic, roughness, 1.5f);
+                    const Bsdf bsdf = with_grain(even, mix(even.alpha, 1.0f, strength * strength), 0.2f - turns);
+                    expect_no_more_than_all(bsdf, "grain of " + std::to_string(roughness) + ' ' +
+                                                      std::to_string(strength) + ' ' + std::to_string(turns));
+                }
+}
+
+// Least and most of what a white surface returns, as docs/path-tracer.md has it in a table, by roughness.
+TEST(Furnace, IsAsDocumented) {
+    struct Range {
+        double least = 2, most = 0;
+    };
+    const auto range_of = [](std::initializer_list<Bsdf> bsdfs) {
+        Range range;
+        for (const Bsdf& bsdf : bsdfs)
+            for (const float cosine : {1.0f, 0.4f, 0.25f, 0.1f, 0.03f}) {
+                const double albedo = albedo_of(bsdf, direction(cosine, 0.2f));
+                range = {std::min(range.least, albedo), std::max(range.most, albedo)};
+            }
+        return range;
+    };
+    const auto expect = [](const Range& found, const Range& documented, const std::string& what) {
+        EXPECT_NEAR(found.least, documented.least, 0.0006) << what;
+        EXPECT_NEAR(found.most, documented.most, 0.0006) << what;
+    };
+    struct Row {
+        float roughness;
+        Range metal, coat, glass;
+    };
+    for (const Row& row : {Row{0, {1, 1}, {0.954, 1}, {1, 1}}, Row{0.2f, {0.898, 0.998}, {0.705, 0.973}, {0.888, 1}},
+                           Row{0.5f, {0.840, 0.955}, {0.342, 0.951}, {0.795, 0.992}},
+                           Row{1, {0.307, 0.894}, {0.207, 0.924}, {0.418, 0.893}}}) {
+        const float alpha = row.roughness * row.roughness;
+        const std::string name = " of roughness " + std::to_string(row.roughness);
+        expect(range_of({mirror(alpha), thin_glass(alpha, 1.5f)}), row.metal, "metal, thin wall" + name);
+        expect(range_of({with_coat(white(), 1, alpha)}), row.coat, "coat" + name);
+        expect(range_of({glass(alpha, 1.5f), glass(alpha, 1 / 1.5f)}), row.glass, "glass" + name);
+    }
+}
+
+TEST(Furnace, AWhiteDielectricReturnsNearlyAll) {
+    for (const float roughness : roughnesses)
+        for (const float cosine : cosines)
+            EXPECT_GE(albedo_of(dielectric(roughness), direction(cosine, 0.2f)), roughness == 0 ? 0.998 : 0.955)
+                << roughness << ' ' << cosine;
+}
+
+// Below a colored interface the diffuse part does not take the complement.
+TEST(Furnace, AColoredInterfaceReturnsNoMoreThanAWhiteOne) {
+    for (const float roughness : {0.1f, 0.4f, 1.0f})
+        for (const float cosine : cosines) {
+            const Bsdf red = reddish(roughness, 1, vec3(1, 0.5f, 0.25f));
+            const vec3 wo = direction(cosine, 0.2f);
+            EXPECT_LE(albedo_of(red, wo), albedo_of(dielectric(roughness), wo) + 1e-6) << roughness << ' ' << cosine;
+            EXPECT_LE(mean_of_samples(
+                          red, wo, [](const BsdfSample& s) { return s.weight.z; }, samples / 4),
+                      albedo_of(red, wo))
+                << roughness << ' ' << cosine;
+        }
+}
+
+// Albedo of a white mirror and Schlick's part of it, in double, over the microfacets that wo sees (Dupuy and Benyoub
+// 2023).
+dvec2 mirror_albedo_by_quadrature(double cosine, double alpha) {
+    constexpr int steps = 200;
+    const double sine = std::sqrt(1 - cosine * cosine);
+    const dvec3 wo(sine, 0, cosine), stretched = normalize(dvec3(alpha * sine, 0, cosine));
+    const auto lambda = [&](dvec3 w) {
+        return 0.5 * (std::sqrt(1 + alpha * alpha * (w.x * w.x + w.y * w.y) / (w.z * w.z)) - 1);
+    };
+    dvec2 sum(0);
+    for (int i = 0; i < steps * steps; ++i) {
+        const double z = (1 - (i / steps + 0.5) / steps) * (1 + stretched.z) - stretched.z;
+        const double angle = 2 * std::numbers::pi * (i % steps + 0.5) / steps, radius = std::sqrt(1 - z * z);
+        const dvec3 cap = dvec3(radius * std::cos(angle), radius * std::sin(angle), z) + stretched;
+        const dvec3 h = normalize(dvec3(alpha * cap.x, alpha * cap.y, cap.z));
+        const dvec3 wi = 2 * dot(wo, h) * h - wo;
+        if (wi.z <= 0) continue;
+        const double shadowing = (1 + lambda(wo)) / (1 + lambda(wo) + lambda(wi));
+        sum += dvec2(shadowing, shadowing * std::pow(1 - dot(wo, h), 5));
+    }
+    return sum / static_cast<double>(steps * steps);
+}
+
+TEST(Furnace, TheFitsBoundTheAlbedoOfAMirror) {
+    for (const float alpha : {0.0015f, 0.008f, 0.03f, 0.13f, 0.37f, 0.9f})
+        for (const float cosine : {0.97f, 0.63f, 0.31f, 0.11f, 0.06f, 0.023f}) {
+            const dvec2 exact = mirror_albedo_by_quadrature(double{cosine}, double{alpha});
+            const dvec2 found(mirror_albedo(mirror(alpha), direction(cosine)));
+            for (const int part : {0, 1}) {
+                EXPECT_GE(found[part], exact[part] - (part == 0 ? 0.012 : 0.005))
+                    << alpha << ' ' << cosine << ' ' << part;
+                EXPECT_LE(found[part], exact[part] + (part == 0 ? 0.15 : 0.035))
+                    << alpha << ' ' << cosine << ' ' << part;
+            }
+        }
+}
+
+// What is diffuse is divided by what the means leave: they must not be greater than the means of what it is dimmed by.
+TEST(Furnace, MeansAreThoseOfTheFits) {
+    for (const float alpha : {0.0f, 0.0015f, 0.02f, 0.1f, 0.37f, 0.9f, 1.0f}) {
+        dvec2 sum(0);
+        constexpr int steps = 20000;
+        for (int i = 0; i < steps; ++i)
+            sum += dvec2(mirror_albedo(mirror(alpha), direction(std::sqrt((static_cast<float>(i) + 0.5f) / steps))));
+        const dvec2 mean(mean_mirror_albedo(mirror(alpha)));
+        for (const int part : {0, 1}) {
+            EXPECT_LE(mean[part], sum[part] / steps + 1e-5) << alpha << ' ' << part;
+            EXPECT_GE(mean[part], sum[part] / steps - 0.002) << alpha << ' ' << part;
+        }
+    }
 }
 
 }  // namespace

@@ -81,30 +81,26 @@ TEST_F(Energy, ALightSmallForItsDistanceDoesNotHideItself) {
 // A 2 x 2 light one above the middle of a floor: view factor 0.554126.
 TEST_F(Energy, ARectangularLightGivesItsAnalyticIrradianceByEveryStrategy) {
     Scene scene;
-    add(scene, make_quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}), lambert(1));
-    add(scene, make_quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}), lamp(1));
+    add(scene, wide_floor(), lambert(1));
+    add(scene, square_above(), lamp(1));
     for (const uint strategy : strategies) {
-        RenderSetup setup;
-        setup.settings.max_depth = 1;
+        RenderSetup setup = of_the_floor();
         setup.settings.strategy = strategy;
-        setup.settings.camera = camera_rays(look({0, 0.5f, 0}, vec3(0), 1e-4f), 1);
-        expect_mean(render(context(), scene, setup), 0.554126423979571987, name_of_strategy(strategy));
+        expect_mean(render(context(), scene, setup), factor_of_square_above, name_of_strategy(strategy));
     }
 }
 
 // The same lamp before a sky, and a point light: each is chosen with its share.
 TEST_F(Energy, AnEnvironmentALampAndAPointLightAddUpByEveryStrategy) {
-    const double view_factor = 0.554126423979571987;
+    const double view_factor = factor_of_square_above;
     for (const uint strategy : strategies) {
         Scene scene;
-        add(scene, make_quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}), lambert(1));
-        add(scene, make_quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}), lamp(2));
+        add(scene, wide_floor(), lambert(1));
+        add(scene, square_above(), lamp(2));
         scene.lights = {{.name = "light", .kind = Light::Kind::point, .color = vec3(0.5f), .position = {0, 0.5f, 0}}};
-        RenderSetup setup;
+        RenderSetup setup = of_the_floor();
         setup.environment = sky(0.5f);
-        setup.settings.max_depth = 1;
         setup.settings.strategy = strategy;
-        setup.settings.camera = camera_rays(look({0, 0.5f, 0}, vec3(0), 1e-4f), 1);
         const double by_point = strategy == STRATEGY_BSDF ? 0 : 0.5 / 0.25 / static_cast<double>(PI);
         expect_mean(render(context(), scene, setup), 2 * view_factor + 0.5 * (1 - view_factor) + by_point,
                     name_of_strategy(strategy));
@@ -116,28 +112,23 @@ TEST_F(Energy, ALightShinesFromItsFrontOnlyUnlessItIsTwoSided) {
         Scene scene;
         Material light = lamp(1);
         light.double_sided = is_two_sided;
-        add(scene, make_quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}), lambert(1));
+        add(scene, wide_floor(), lambert(1));
         add(scene, make_quad({-1, 1, -1}, {0, 0, 2}, {2, 0, 0}), light);  // faces up
-        RenderSetup setup;
-        setup.settings.max_depth = 1;
-        setup.settings.camera = camera_rays(look({0, 0.5f, 0}, vec3(0), 1e-4f), 1);
-        expect_mean(render(context(), scene, setup), is_two_sided ? 0.554126423979571987 : 0, "two-sided");
+        expect_mean(render(context(), scene, of_the_floor()), is_two_sided ? factor_of_square_above : 0, "two-sided");
     }
 }
 
 TEST_F(Energy, AnUnevenEnvironmentGivesTheSameByEveryStrategy) {
     Scene scene;
-    add(scene, make_quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}), lambert(0.8f));
+    add(scene, wide_floor(), lambert(0.8f));
     HdrImage image{16, 8, std::vector<vec3>(128, vec3(0.1f))};
     image.rgb[2 * 16 + 5] = vec3(40);
     image.rgb[1 * 16 + 12] = vec3(7);
     Statistics found[3];
     for (const uint strategy : strategies) {
-        RenderSetup setup;
-        setup.settings.max_depth = 1;
+        RenderSetup setup = of_the_floor();
         setup.settings.strategy = strategy;
         setup.environment = std::make_unique<EnvironmentMap>(image);
-        setup.settings.camera = camera_rays(look({0, 0.5f, 0}, vec3(0), 1e-4f), 1);
         found[strategy] = statistics(render(context(), scene, setup));
     }
     for (const uint strategy : {STRATEGY_LIGHTS, STRATEGY_BSDF})
@@ -162,12 +153,9 @@ TEST_F(Energy, PunctualLightsGiveTheirAnalyticIrradiance) {
     } cases[] = {{sun, 3 * std::sqrt(0.5)}, {point, 1.25}, {faded, 1.25 * (1 - 1.0 / 16)}, {spot, 1.25}, {aside, 0}};
     for (const auto& c : cases) {
         Scene scene;
-        add(scene, make_quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}), lambert(1));
+        add(scene, wide_floor(), lambert(1));
         scene.lights = {c.light};
-        RenderSetup setup;
-        setup.settings.max_depth = 1;
-        setup.settings.camera = camera_rays(look({0, 0.5f, 0}, vec3(0), 1e-4f), 1);
-        expect_mean(render(context(), scene, setup), c.irradiance / pi, "punctual");
+        expect_mean(render(context(), scene, of_the_floor()), c.irradiance / pi, "punctual");
     }
 }
 
@@ -191,8 +179,7 @@ TEST_F(Energy, AGlassSphereVanishesInAWhiteFurnace) {
 
 TEST_F(Energy, AWhiteRoughMirrorReflectsItsSingleScatteringAlbedo) {
     Scene scene;
-    add(scene, make_quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}),
-        {.name = "metal", .metallic = 1, .roughness = std::sqrt(0.5f)});
+    add(scene, wide_floor(), {.name = "metal", .metallic = 1, .roughness = std::sqrt(0.5f)});
     RenderSetup setup;
     setup.environment = sky(1);
     setup.settings.camera = camera_rays(look({0, 1, 0}, vec3(0), 1e-3f), 1);

@@ -206,7 +206,7 @@ TEST_F(LayersRender, WhatLiesInsideAVolumeIsDimmedByTheWayToIt) {
 TEST_F(LayersRender, WithoutAThicknessGlassIsAPane) {
     Scene scene;
     Material pane{.name = "pane", .base_color = {0.5f, 1, 0.25f, 1}, .metallic = 0, .roughness = 0, .transmission = 1};
-    add(scene, make_quad({-5, 1, -5}, {0, 0, 10}, {10, 0, 0}), pane);
+    add(scene, wide_floor(1), pane);
     add(scene, make_quad({-0.01f, 0, -0.01f}, {0, 0, 0.02f}, {0.02f, 0, 0}), lamp(1));
     RenderSetup setup;
     setup.settings.width = setup.settings.height = 8;

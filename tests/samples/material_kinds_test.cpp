@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: MIT
+// Kinds of materials, by what kernels need for them, and the lights without size that materials stop.
+#include "renderer/material_kinds.h"
+
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -6,7 +9,7 @@
 #include <twinray/geometry.h>
 #include <twinray/scene.h>
 
-#include "renderer/material_kinds.h"
+#include "renderer/stopped_lights.h"
 
 namespace twinray::path_tracer {
 namespace {
@@ -21,17 +24,21 @@ Material material_with(uint needs) {
     return material;
 }
 
-// A triangle of each.
-Scene scene_with(const std::vector<uint>& needs) {
+// A quad of each.
+Scene scene_of(const std::vector<Material>& materials) {
     Scene scene;
-    for (const uint kind : needs) {
-        Mesh mesh = make_quad(vec3(0), {1, 0, 0}, {0, 1, 0});
-        mesh.materials.assign(mesh.triangles.size(), static_cast<uint>(scene.materials.size()));
-        scene.instances.push_back({"quad", static_cast<uint>(scene.meshes.size()), {}});
-        scene.meshes.push_back(std::move(mesh));
-        scene.materials.push_back(material_with(kind));
+    scene.materials = materials;
+    for (uint i = 0; i < materials.size(); ++i) {
+        scene.meshes.push_back(make_quad(vec3(0), {1, 0, 0}, {0, 1, 0}));
+        scene.meshes.back().materials.assign(2, i);
+        scene.instances.push_back({"quad", i, {}});
     }
     return scene;
+}
+Scene scene_with(const std::vector<uint>& needs) {
+    std::vector<Material> materials;
+    for (const uint kind : needs) materials.push_back(material_with(kind));
+    return scene_of(materials);
 }
 
 TEST(MaterialKinds, MaterialsThatNeedTheSameAreOfOneKind) {
@@ -92,7 +99,8 @@ TEST(MaterialKinds, LayersAreNeeds) {
     EXPECT_EQ(needs_of(mapped), textures | 1u << PT_HAS_COAT);
 }
 
-// Of meshes, by the materials that show them; of lights all kernels need them where alpha tells what arrives.
+// Colours of meshes are needs of the materials that show them; all kernels need those of lights, where alpha tells what
+// arrives.
 TEST(MaterialKinds, ColorsAreNeedsOfWhatIsSeenOnColoredMeshes) {
     constexpr uint colors = 1u << PT_HAS_COLORS;
     Scene scene = scene_with({0, 0, glass});
@@ -126,6 +134,55 @@ TEST(MaterialKinds, HaveNames) {
     EXPECT_EQ(name_of_needs(textures | glass), "textures, glass");
     EXPECT_EQ(std::size(material_needs), 10u);
     for (const uint need : material_needs) EXPECT_NE(name_of_needs(1u << need), "plain") << need;
+}
+
+Material glass_material(const char* name) { return {.name = name, .metallic = 0, .roughness = 0, .transmission = 1}; }
+
+struct Glasses {
+    Material pane = glass_material("pane"), rough = glass_material("rough"), thick = glass_material("thick"),
+             combed = glass_material("combed"), mapped = glass_material("mapped"), metal = glass_material("metal"),
+             unlit = glass_material("unlit");
+
+    Glasses() {
+        rough.roughness = 0.2f;
+        thick.thickness = 0.1f;
+        combed.anisotropy = 0.5f;
+        mapped.roughness = 1;
+        mapped.metallic = 1;
+        mapped.metallic_roughness_texture.image = 0;
+        metal.metallic = 1;
+        unlit.unlit = true;
+    }
+};
+
+TEST(MaterialKinds, TellPanesFromOtherGlass) {
+    const Glasses all;
+    for (const Material& material : {all.pane, all.mapped}) EXPECT_TRUE(may_be_pane(material)) << material.name;
+    for (const Material& material : {all.rough, all.thick, all.metal, all.unlit, Material{}})
+        EXPECT_FALSE(may_be_pane(material)) << material.name;
+    for (const Material& material : {all.rough, all.thick, all.combed, all.mapped})
+        EXPECT_TRUE(may_be_other_glass(material)) << material.name;
+    for (const Material& material : {all.pane, all.metal, all.unlit, Material{}})
+        EXPECT_FALSE(may_be_other_glass(material)) << material.name;
+}
+
+TEST(StoppedLights, AreNamedWithWhatStopsThem) {
+    const Glasses all;
+    Scene scene = scene_of({all.pane, all.rough, all.thick});
+    scene.materials.push_back(all.rough);  // of nothing
+    EXPECT_TRUE(stopped_lights(scene).empty()) << "no light without size";
+    scene.lights = {{.name = "sun"}};
+    const std::vector<std::string> said = stopped_lights(scene);
+    ASSERT_EQ(said.size(), 2u);
+    EXPECT_EQ(said[0],
+              "light of 'sun' cannot pass material 'rough': rough glass scatters it, and no path finds a light without "
+              "size");
+    EXPECT_NE(said[1].find("'thick': the boundary of a volume bends it"), std::string::npos) << said[1];
+    scene.lights = {{.name = "sun"}, {.name = "bulb"}, {.name = "lamp"}};
+    EXPECT_NE(stopped_lights(scene)[0].find("light of 'sun' and 2 others cannot"), std::string::npos);
+    scene = scene_of({all.pane, Material{}});
+    scene.lights = {{.name = "sun"}};
+    EXPECT_TRUE(stopped_lights(scene).empty()) << "panes let it pass";
 }
 
 }  // namespace

@@ -58,11 +58,7 @@ class MovingSceneTest : public test::VulkanTest {
         const LocalLights lights = collect_lights(scene);
         DeviceScene device_scene(context(), scene, lights, nullptr);
         Renderer renderer(context(), device_scene, setup.settings);
-        std::unique_ptr<AbstractAccel> accel;
-        if (hardware)
-            accel = std::make_unique<HwTlas>(context());
-        else
-            accel = std::make_unique<SwTlas>(context());
+        const std::unique_ptr<AbstractAccel> accel = make_accel(context(), hardware);
         push_scene(*accel, scene);
         accel->sync();
         Pictures result;
@@ -186,8 +182,8 @@ TEST_F(MovingSceneTest, InstancesMayHaveMaterialsOfTheirOwn) {
 TEST_F(MovingSceneTest, MaterialsOfTheirOwnAreOfTheirOwnKind) {
     Scene scene;
     Material white{.name = "white", .unlit = true};
-    add(scene, make_quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}), white);
-    add(scene, make_quad({-5, 1, -5}, {0, 0, 10}, {10, 0, 0}), {.name = "black", .base_color = vec4(0), .unlit = true});
+    add(scene, wide_floor(), white);
+    add(scene, wide_floor(1), {.name = "black", .base_color = vec4(0), .unlit = true});
     scene.materials.push_back({.name = "clear", .base_color = vec4(0), .alpha_mode = AlphaMode::blend});
     RenderSetup setup;
     setup.settings.samples = 1;

@@ -22,14 +22,6 @@ Scene floor_below(const std::vector<Material>& panes) {
     return scene;
 }
 
-// Of the floor, below what lies above it.
-RenderSetup below(uint max_depth = 1) {
-    RenderSetup setup;
-    setup.settings.max_depth = max_depth;
-    setup.settings.camera = camera_rays(look({0, 0.5f, 0}, vec3(0), 1e-4f), 1);
-    return setup;
-}
-
 double passed(double cosine) { return 1 - static_cast<double>(fresnel_dielectric(static_cast<float>(cosine), 1.5f)); }
 
 std::vector<Light> lights_at(double cosine) {
@@ -47,11 +39,11 @@ std::vector<Light> lights_at(double cosine) {
     return {sun, bulb, spot};
 }
 
-// What a floor shows of a light that gives it a radiance of 1 without panes.
+// The radiance of a floor under a light that gives it 1 without panes.
 vec3 lit_through(Context& context, const std::vector<Material>& panes, const Light& light) {
     Scene scene = floor_below(panes);
     scene.lights = {light};
-    RenderSetup setup = below();
+    RenderSetup setup = of_the_floor();
     setup.settings.width = setup.settings.height = 1;
     setup.settings.samples = 1;
     return render(context, scene, setup).rgb[0];
@@ -101,7 +93,7 @@ TEST_F(Panes, LightsWithSizeAreFoundOnceByEveryStrategy) {
         if (!has_sky) add(scene, make_quad({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}), lamp(1));
         Statistics found[3];
         for (const uint strategy : strategies) {
-            RenderSetup setup = below();
+            RenderSetup setup = of_the_floor();
             if (has_sky) setup.environment = sky(1);
             setup.settings.strategy = strategy;
             found[strategy] = statistics(render(context(), scene, setup));

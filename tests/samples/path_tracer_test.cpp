@@ -86,36 +86,32 @@ TEST_F(PathTracer, TheCrossCheckFindsAMissingWall) {
 
 TEST_F(PathTracer, AMaskedSurfaceLetsLightThroughWhereItsTextureIsClear) {
     Scene scene;
-    add(scene, make_quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}), lambert(1));
-    add(scene, make_quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}), lamp(1));
-    RenderSetup setup;
-    setup.settings.max_depth = 1;
-    setup.settings.camera = camera_rays(look({0, 0.5f, 0}, vec3(0), 1e-4f), 1);
+    add(scene, wide_floor(), lambert(1));
+    add(scene, square_above(), lamp(1));
+    RenderSetup setup = of_the_floor();
     const HdrImage open = render(context(), scene, setup);
     scene.images.push_back({"clear", 2, 2, std::vector<std::uint8_t>(16, 100)});
     Material screen = lambert(1);
     screen.base_color_texture.image = 0;
     screen.alpha_mode = AlphaMode::mask;
-    add(scene, make_quad({-5, 0.75f, -5}, {0, 0, 10}, {10, 0, 0}), screen);
+    add(scene, wide_floor(0.75f), screen);
     EXPECT_TRUE(same_bits(open, render(context(), scene, setup))) << "clear, in the way of shadow rays";
-    add(scene, make_quad({-5, 0.25f, -5}, {0, 0, 10}, {10, 0, 0}), screen);
-    expect_mean(render(context(), scene, setup), 0.554126423979571987, "clear, in the way of camera rays too");
+    add(scene, wide_floor(0.25f), screen);
+    expect_mean(render(context(), scene, setup), factor_of_square_above, "clear, in the way of camera rays too");
     scene.materials[2].alpha_cutoff = 0.2f;
     EXPECT_EQ(statistics(render(context(), scene, setup)).mean, 0) << "opaque";
 }
 
 TEST_F(PathTracer, ABlendedSurfaceDimsLightByItsAlpha) {
     Scene scene;
-    add(scene, make_quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}), lambert(1));
+    add(scene, wide_floor(), lambert(1));
     scene.lights = {{.name = "light", .kind = Light::Kind::directional, .color = vec3(PI), .direction = {0, -1, 0}}};
     Material screen = lambert(0);
     screen.base_color.w = 0.25f;
     screen.alpha_mode = AlphaMode::blend;
     for (int i = 0; i < 3; ++i)
         add(scene, make_quad({-5, 1 + static_cast<float>(i), -5}, {0, 0, 10}, {10, 0, 0}), screen);
-    RenderSetup setup;
-    setup.settings.max_depth = 1;
-    setup.settings.camera = camera_rays(look({0, 0.5f, 0}, vec3(0), 1e-4f), 1);
+    RenderSetup setup = of_the_floor();
     expect_mean(render(context(), scene, setup), 0.75 * 0.75 * 0.75, "three screens before the light");
     setup.settings.camera = camera_rays(look({0, 9, 0}, vec3(0), 1e-4f), 1);
     setup.settings.samples = 256;
@@ -127,13 +123,13 @@ TEST_F(PathTracer, AnyNumberOfTransparentSurfacesIsPassed) {
     for (const float alpha : {0.0f, 0.02f})
         for (const AlphaMode mode : {AlphaMode::blend, AlphaMode::mask}) {
             Scene scene;
-            add(scene, make_quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}), lambert(1));
+            add(scene, wide_floor(), lambert(1));
             scene.lights = {
                 {.name = "light", .kind = Light::Kind::directional, .color = vec3(PI), .direction = {0, -1, 0}}};
             Material screen = lambert(0);
             screen.base_color.w = alpha;
             screen.alpha_mode = mode;
-            add(scene, make_quad({-5, 1, -5}, {0, 0, 10}, {10, 0, 0}), screen);
+            add(scene, wide_floor(1), screen);
             for (int i = 1; i < 100; ++i)
                 scene.instances.push_back({"sheet", 1, Transform::translation({0, 0.01f * static_cast<float>(i), 0})});
             RenderSetup setup;
@@ -150,7 +146,7 @@ TEST_F(PathTracer, AnyNumberOfTransparentSurfacesIsPassed) {
 
 TEST_F(PathTracer, TiltedShadingNormalsLetNoLightThrough) {
     Scene scene;
-    Mesh floor = make_quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0});
+    Mesh floor = wide_floor();
     floor.normals.assign(4, normalize(vec3(1, 0.05f, 0)));
     add(scene, floor, {.name = "plastic", .metallic = 0, .roughness = 0.5f});
     // From below the floor, but above the tilted shading horizon.
@@ -198,14 +194,14 @@ TEST_F(PathTracer, MirroredAndScaledInstancesShadeAsTheirTransformSays) {
     const auto mean = [&](const Transform& transform) {
         Scene scene;
         add(scene, make_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}), lambert(1), transform);
-        add(scene, make_quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}), lamp(1), transform);
+        add(scene, square_above(), lamp(1), transform);
         RenderSetup setup;
         setup.settings.max_depth = 1;
         setup.settings.camera =
             camera_rays(look(transform_point(transform, {0, 0.5f, 0}), transform_point(transform, vec3(0)), 1e-4f), 1);
         return render(context(), scene, setup);
     };
-    const double expected = 0.554126423979571987;
+    const double expected = factor_of_square_above;
     expect_mean(mean(Transform::scaling({-1, 1, 1})), expected, "mirrored");
     expect_mean(mean(Transform::scaling(vec3(1e3f))), expected, "enlarged");
     expect_mean(mean(Transform::translation({0, 0, 1}) * Transform::scaling(vec3(1e-2f))), expected, "shrunk, moved");

@@ -43,15 +43,16 @@ inline std::unique_ptr<EnvironmentMap> sky(float radiance) {
     return std::make_unique<EnvironmentMap>(constant_sky(vec3(radiance)));
 }
 
+inline std::unique_ptr<AbstractAccel> make_accel(Context& context, bool hardware) {
+    if (hardware) return std::make_unique<HwTlas>(context);
+    return std::make_unique<SwTlas>(context);
+}
+
 inline HdrImage render(Context& context, const Scene& scene, const RenderSetup& setup) {
     const LocalLights lights = collect_lights(scene);
     const DeviceScene device_scene(context, scene, lights, setup.environment.get());
     Renderer renderer(context, device_scene, setup.settings);
-    std::unique_ptr<AbstractAccel> accel;
-    if (setup.hardware)
-        accel = std::make_unique<HwTlas>(context);
-    else
-        accel = std::make_unique<SwTlas>(context);
+    const std::unique_ptr<AbstractAccel> accel = make_accel(context, setup.hardware);
     push_scene(*accel, scene);
     HdrImage picture = render_picture(renderer, setup.settings, *accel, true);
     EXPECT_EQ(renderer.stats().non_finite, 0u);
@@ -72,6 +73,19 @@ inline Material lambert(float albedo) {
 
 inline Material lamp(float radiance) {
     return {.name = "lamp", .base_color = vec4(0, 0, 0, 1), .metallic = 0, .emission = vec3(radiance), .ior = 1};
+}
+
+// A floor, a square that looks down on its middle from 1 above it, and the factor by which that is seen from there.
+inline Mesh wide_floor(float height = 0) { return make_quad({-5, height, -5}, {0, 0, 10}, {10, 0, 0}); }
+inline Mesh square_above() { return make_quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}); }
+inline constexpr double factor_of_square_above = 0.554126423979571987;
+
+// The middle of the floor from close by, under what is above it.
+inline RenderSetup of_the_floor() {
+    RenderSetup setup;
+    setup.settings.max_depth = 1;
+    setup.settings.camera = camera_rays(look({0, 0.5f, 0}, vec3(0), 1e-4f), 1);
+    return setup;
 }
 
 // Over the pixels, whose values are independent of each other and have the same expectation.

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Which samples come next, and what adaptive sampling does to the picture.
+// Which samples come next, on which devices, and what adaptive sampling does to the picture.
 #include "renderer/rounds.h"
 
 #include <algorithm>
+#include <random>
 
 #include <gtest/gtest.h>
 
+#include "renderer/ranks.h"
 #include "renderer/renderer.h"
 
 namespace twinray::path_tracer {
@@ -139,6 +141,26 @@ TEST(PixelOrder, GoesThroughEachPixelOnceInSquaresOfEight) {
     for (uint i = 0; i < 64; ++i) EXPECT_TRUE(order[i] % 20 < 8 && order[i] / 20 < 8);
     std::sort(order.begin(), order.end());
     for (uint i = 0; i < 360; ++i) ASSERT_EQ(order[i], i);
+}
+
+DeviceProperties device(DeviceKind kind) {
+    DeviceProperties properties;
+    properties.kind = kind;
+    properties.api_version = VK_API_VERSION_1_3;
+    properties.has_compute_queue = properties.timeline_semaphore = properties.buffer_device_address = true;
+    properties.scalar_block_layout = properties.shader_int64 = true;
+    properties.group_invocations = 1024;
+    return properties;
+}
+
+TEST(Ranks, TakeTurnsOnTheBestDevices) {
+    const std::vector<DeviceProperties> machine = {device(DeviceKind::cpu), device(DeviceKind::discrete),
+                                                   device(DeviceKind::integrated), device(DeviceKind::discrete)};
+    EXPECT_EQ(device_of_rank(machine, 0), 1u);
+    EXPECT_EQ(device_of_rank(machine, 1), 3u);
+    EXPECT_EQ(device_of_rank(machine, 2), 1u);
+    EXPECT_EQ(device_of_rank(std::span(machine).first(1), 5), 0u);
+    EXPECT_EQ(device_of_rank({}, 1), 0u);
 }
 
 }  // namespace

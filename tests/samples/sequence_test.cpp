@@ -8,9 +8,9 @@
 
 #include <twinray/scene.h>
 
-#include "engine/core/error.h"
 #include <twinray/geometry.h>
 #include "engine/scene/rig.h"
+#include "tests/scene/temp_dir.h"
 
 namespace twinray::path_tracer {
 namespace {
@@ -30,15 +30,6 @@ Scene carried_box() {
     rig->animations = {ride, {.name = "bad", .keyframes = {}, .channels = {}, .fault = "broken"}};
     scene.rig = rig;
     return scene;
-}
-
-std::string error_of(const SequenceOptions& options, const Scene& scene) {
-    try {
-        make_sequence(options, scene);
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return "";
 }
 
 TEST(Sequence, FramesShareTheRangeOrKeepToTheirRate) {
@@ -65,18 +56,17 @@ TEST(Sequence, AnimationsAreChosenByNameOrIndex) {
 
 TEST(Sequence, WhatCannotBePlayedIsNamed) {
     const Scene scene = carried_box();
-    const auto expect = [](const std::string& error, const char* part) {
-        EXPECT_NE(error.find(part), std::string::npos) << error;
+    const auto expect = [](const SequenceOptions& options, const Scene& of, const char* part) {
+        test::expect_contains(test::error_of([&] { make_sequence(options, of); }), part);
     };
-    expect(error_of({.frames = 1}, Scene()), "has no animations");
-    expect(error_of({.frames = 1, .animation = "walk"}, scene),
-           "'walk': does not exist; the scene has 0 'ride', 1 'bad'");
-    expect(error_of({.frames = 1, .animation = "2"}, scene), "does not exist");
-    expect(error_of({.frames = 1, .animation = "bad"}, scene), "cannot be played: broken");
-    expect(error_of({.frames = 1, .time_range = "2:1"}, scene), "must be A:B");
-    expect(error_of({.frames = 1, .time_range = "2"}, scene), "must be A:B");
-    expect(error_of({.frames = 1, .time_range = "1:2x"}, scene), "must be A:B");
-    expect(error_of({.frames = 1, .fps = 24.0, .turntable = true}, scene), "unless --animation names it");
+    expect({.frames = 1}, Scene(), "has no animations");
+    expect({.frames = 1, .animation = "walk"}, scene, "'walk': does not exist; the scene has 0 'ride', 1 'bad'");
+    expect({.frames = 1, .animation = "2"}, scene, "does not exist");
+    expect({.frames = 1, .animation = "bad"}, scene, "cannot be played: broken");
+    expect({.frames = 1, .time_range = "2:1"}, scene, "must be A:B");
+    expect({.frames = 1, .time_range = "2"}, scene, "must be A:B");
+    expect({.frames = 1, .time_range = "1:2x"}, scene, "must be A:B");
+    expect({.frames = 1, .fps = 24.0, .turntable = true}, scene, "unless --animation names it");
 }
 
 TEST(Sequence, FilesAreNumberedFromOne) {

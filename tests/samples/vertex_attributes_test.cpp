@@ -114,24 +114,22 @@ TEST_F(VertexAttributes, AlphaOfColoursMasks) {
 
 // A lamp above a floor, both 2 x 2, one apart: what of its light arrives is its alpha, however it is found.
 TEST_F(VertexAttributes, AlphaOfColoursDimsLampsAndShadows) {
-    const double expected = 0.554126423979571987;  // of an opaque lamp, in path_tracer_test.cpp
-    Mesh veil = make_quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2});
+    const double expected = factor_of_square_above;  // of an opaque lamp
+    Mesh veil = square_above();
     veil.colors.assign(4, vec4(1, 1, 1, 0.25f));
     Material lamp_of_glass = lamp(1), glass = lambert(0);
     lamp_of_glass.alpha_mode = glass.alpha_mode = AlphaMode::blend;
     Scene scene = scene_of(floor_quad(), lambert(1));
     add(scene, veil, lamp_of_glass);
-    RenderSetup setup;
-    setup.settings.max_depth = 1;
+    RenderSetup setup = of_the_floor();
     setup.settings.samples = 256;
-    setup.settings.camera = camera_rays(look({0, 0.5f, 0}, vec3(0), 1e-4f), 1);
     for (const uint strategy : {STRATEGY_LIGHTS, STRATEGY_BSDF}) {
         setup.settings.strategy = strategy;
         expect_mean(render(context(), scene, setup), 0.25 * expected, "a lamp");
     }
     scene = scene_of(floor_quad(), lambert(1));
     add(scene, veil, glass, Transform::translation({0, -0.25f, 0}));
-    add(scene, make_quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}), lamp(1));
+    add(scene, square_above(), lamp(1));
     setup.settings.strategy = STRATEGY_LIGHTS;
     expect_mean(render(context(), scene, setup), 0.75 * expected, "a shadow");
 }
@@ -162,7 +160,7 @@ TEST_F(VertexAttributes, EachTextureTakesItsOwnCoordinates) {
 
 // Light that is chosen by what its texture shows there: dark where the first coordinates are.
 TEST_F(VertexAttributes, LampsShineByTheSecondCoordinates) {
-    Mesh mesh = make_quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2});
+    Mesh mesh = square_above();
     mesh.uvs.assign(4, vec2(0.25f, 0.5f));
     mesh.second_uvs.assign(4, vec2(0.75f, 0.5f));
     Material material = lamp(1);
@@ -177,10 +175,7 @@ TEST_F(VertexAttributes, LampsShineByTheSecondCoordinates) {
     EXPECT_LT(collect_lights(scene).densities[1][0], 0.01f);
     scene.materials[1].emission_texture.uv_set = 1;
     scene.instances.pop_back();
-    RenderSetup setup;
-    setup.settings.max_depth = 1;
-    setup.settings.camera = camera_rays(look({0, 0.5f, 0}, vec3(0), 1e-4f), 1);
-    expect_mean(render(context(), scene, setup), 0.554126423979571987, "lamp");
+    expect_mean(render(context(), scene, of_the_floor()), factor_of_square_above, "lamp");
 }
 
 TEST_F(VertexAttributes, TheNearestTexelIsShownUnfiltered) {

@@ -8,6 +8,8 @@
 namespace twinray::test {
 namespace {
 
+json& animation(GltfBuilder& gltf) { return gltf.root["animations"][0]; }
+
 // The triangle of one_triangle() on two joints, of which the second, at (0, 1, 0), carries the vertex (0, 1, 0) and is
 // turned by 90 degrees about x within a second. Nodes: 0 the mesh, moved aside in vain, 1 and 2 the joints.
 GltfBuilder skinned_triangle() {
@@ -24,15 +26,10 @@ GltfBuilder skinned_triangle() {
     gltf.root["nodes"][0]["translation"] = {100, 0, 0};
     gltf.add_node({{"name", "hip"}, {"translation", {5, 0, 0}}, {"children", {2}}});
     gltf.append("nodes", {{"name", "knee"}, {"translation", {0, 1, 0}}});
-    const int times = gltf.add_floats("SCALAR", {0, 1});
-    const int turns = gltf.add_floats("VEC4", {0, 0, 0, 1, 0.70710678f, 0, 0, 0.70710678f});
-    gltf.root["animations"] = {{{"name", "kick"},
-                                {"samplers", {{{"input", times}, {"output", turns}}}},
-                                {"channels", {{{"sampler", 0}, {"target", {{"node", 2}, {"path", "rotation"}}}}}}}};
+    gltf.animate(2, "rotation", {0, 1}, "VEC4", {0, 0, 0, 1, 0.70710678f, 0, 0, 0.70710678f});
+    animation(gltf)["name"] = "kick";
     return gltf;
 }
-
-json& animation(GltfBuilder& gltf) { return gltf.root["animations"][0]; }
 
 void expect_near(vec3 found, vec3 expected) {
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(found[i], expected[i], 1e-6);
@@ -103,9 +100,7 @@ TEST(GltfMorph, DrivenWeightsMoveOneNodeAlone) {
     GltfBuilder gltf = one_triangle();
     gltf.primitive()["targets"] = {{{"POSITION", gltf.add_floats("VEC3", {0, 0, 0, 0, 0, 0, 0, 0, 4})}}};
     gltf.add_node({{"mesh", 0}});
-    const int times = gltf.add_floats("SCALAR", {0, 2}), weights = gltf.add_floats("SCALAR", {0, 1});
-    gltf.root["animations"] = {{{"samplers", {{{"input", times}, {"output", weights}}}},
-                                {"channels", {{{"sampler", 0}, {"target", {{"node", 1}, {"path", "weights"}}}}}}}};
+    gltf.animate(1, "weights", {0, 2}, "SCALAR", {0, 1});
     const Scene scene = gltf.load();
     const Rig& rig = *scene.rig;
     ASSERT_EQ(rig.meshes.size(), 2u);
@@ -139,9 +134,7 @@ GltfBuilder growing_triangle(int driven) {
     gltf.add_node({{"name", "pot"}, {"translation", {3, 0, 0}}, {"children", {2}}});
     gltf.append("nodes", {{"name", "plant"}, {"mesh", 0}});
     gltf.root["nodes"][std::size_t(driven)]["scale"] = {0, 0, 0};
-    const int times = gltf.add_floats("SCALAR", {0, 1}), sizes = gltf.add_floats("VEC3", {0, 0, 0, 2, 2, 2});
-    gltf.root["animations"] = {{{"samplers", {{{"input", times}, {"output", sizes}}}},
-                                {"channels", {{{"sampler", 0}, {"target", {{"node", driven}, {"path", "scale"}}}}}}}};
+    gltf.animate(driven, "scale", {0, 1}, "VEC3", {0, 0, 0, 2, 2, 2});
     return gltf;
 }
 

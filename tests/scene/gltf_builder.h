@@ -8,9 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <twinray/scene.h>
-
-#include "tests/scene/temp_dir.h"
+#include "tests/scene/load_text.h"
 
 namespace twinray::test {
 
@@ -66,6 +64,14 @@ struct GltfBuilder {
         return index;
     }
 
+    // Adds an animation in which a node's `path` takes these values, of this type, at these times.
+    void animate(int node, const std::string& path, const std::vector<float>& times, const std::string& type,
+                 const std::vector<float>& values) {
+        const int input = add_floats("SCALAR", times), output = add_floats(type, values);
+        append("animations", {{"samplers", {{{"input", input}, {"output", output}}}},
+                              {"channels", {{{"sampler", 0}, {"target", {{"node", node}, {"path", path}}}}}}});
+    }
+
     json& primitive(std::size_t index = 0) { return root["meshes"][0]["primitives"][index]; }
 
     std::string with_data_uri() const {
@@ -88,10 +94,7 @@ struct GltfBuilder {
                word(buffer.size()) + std::string("BIN\0", 4) + buffer;
     }
 
-    Scene load() const {
-        const TempDir dir;
-        return load_scene(dir.write("test.gltf", with_data_uri()));
-    }
+    Scene load() const { return load_text(with_data_uri(), "test.gltf"); }
     std::string error() const {
         return error_of([&] { load(); });
     }

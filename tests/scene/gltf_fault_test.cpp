@@ -205,50 +205,42 @@ const Fault file_faults[] = {
 };
 INSTANTIATE_TEST_SUITE_P(File, GltfFault, testing::ValuesIn(file_faults), fault_name);
 
-// For what cannot be said by bending the JSON: the bytes around it.
-std::string error_of_file(const std::string& name, const std::string& content) {
-    const TempDir dir;
-    const std::string message = error_of([&] { load_scene(dir.write(name, content)); });
-    expect_contains(message, name);
-    return message;
-}
-
+// Faults that bending the JSON cannot make: in the bytes around it.
 TEST(GltfFile, DamagedJsonIsNamed) {
-    expect_contains(error_of_file("a.gltf", "{\"asset\": "), "not valid JSON");
-    expect_contains(error_of_file("a.gltf", ""), "not valid JSON");
-    expect_contains(error_of_file("a.gltf", "[]"), "the JSON is not an object");
-    expect_contains(error_of_file("a.gltf", "{\"asset\": {\"version\": \"2.0\"}, \"scene\": 1e999}"), "not valid JSON");
-    expect_contains(error_of_file("a.gltf", std::string(100000, '[')), "nested deeper than 100 levels");
+    expect_load_error("{\"asset\": ", "a.gltf", "not valid JSON");
+    expect_load_error("", "a.gltf", "not valid JSON");
+    expect_load_error("[]", "a.gltf", "the JSON is not an object");
+    expect_load_error("{\"asset\": {\"version\": \"2.0\"}, \"scene\": 1e999}", "a.gltf", "not valid JSON");
+    expect_load_error(std::string(100000, '['), "a.gltf", "nested deeper than 100 levels");
 }
 
 TEST(GltfFile, DamagedGlbIsNamed) {
     const std::string glb = one_triangle().as_glb();
-    expect_contains(error_of_file("a.glb", glb.substr(0, 10)), "header is truncated");
-    expect_contains(error_of_file("a.glb", glb.substr(0, glb.size() - 8)), "the GLB is truncated");
-    expect_contains(error_of_file("a.glb", "glTF" + std::string("\x01\0\0\0", 4) + glb.substr(8)), "GLB version 1");
+    expect_load_error(glb.substr(0, 10), "a.glb", "header is truncated");
+    expect_load_error(glb.substr(0, glb.size() - 8), "a.glb", "the GLB is truncated");
+    expect_load_error("glTF" + std::string("\x01\0\0\0", 4) + glb.substr(8), "a.glb", "GLB version 1");
     std::string long_chunk = glb;
     long_chunk[14] = '\x7f';
-    expect_contains(error_of_file("a.glb", long_chunk), "chunk at byte 12");
+    expect_load_error(long_chunk, "a.glb", "chunk at byte 12");
     std::string no_json = glb;
     no_json[16] = 'X';
-    expect_contains(error_of_file("a.glb", no_json), "no JSON chunk");
+    expect_load_error(no_json, "a.glb", "no JSON chunk");
 }
 
 TEST(GltfFile, DamagedBuffersAreNamed) {
     GltfBuilder gltf = one_triangle();
-    const auto error_with = [&](const json& buffer) {
+    const auto expect_error = [&](const json& buffer, const std::string& part) {
         gltf.root["buffers"] = json::array({buffer});
-        return error_of_file("a.gltf", gltf.root.dump());
+        expect_load_error(gltf.root.dump(), "a.gltf", part);
     };
-    expect_contains(error_with({{"byteLength", 44}, {"uri", "gone.bin"}}), "gone.bin': file not found");
-    expect_contains(error_with({{"byteLength", 44}, {"uri", "data:;base64,AAAA"}}),
-                    "buffer 0: byteLength is 44, but its data URI has only 3 bytes");
-    expect_contains(error_with({{"byteLength", 44}, {"uri", "data:;base64,!"}}), "foreign to base64");
-    expect_contains(error_with({{"uri", "data:;base64,AAAA"}}), "byteLength is missing");
-    expect_contains(error_with({{"byteLength", 44}}), "binary chunk has only 0 bytes");
-    expect_contains(
-        error_with({{"byteLength", 44}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}}),
-        "EXT_meshopt_compression");
+    expect_error({{"byteLength", 44}, {"uri", "gone.bin"}}, "gone.bin': file not found");
+    expect_error({{"byteLength", 44}, {"uri", "data:;base64,AAAA"}},
+                 "buffer 0: byteLength is 44, but its data URI has only 3 bytes");
+    expect_error({{"byteLength", 44}, {"uri", "data:;base64,!"}}, "foreign to base64");
+    expect_error({{"uri", "data:;base64,AAAA"}}, "byteLength is missing");
+    expect_error({{"byteLength", 44}}, "binary chunk has only 0 bytes");
+    expect_error({{"byteLength", 44}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}},
+                 "EXT_meshopt_compression");
 }
 
 TEST(GltfFile, AMissingFileIsNamed) {

@@ -8,10 +8,10 @@
 
 namespace twinray::test {
 
-// Of a file of that name; what it refers to is not there.
-inline Scene load_text(const std::string& content, const std::string& name) {
+// From a file of that name; what it refers to is not there.
+inline Scene load_text(const std::string& content, const std::string& name, const std::optional<dvec3>& origin = {}) {
     const TempDir dir;
-    return load_scene(dir.write(name, content));
+    return load_scene(dir.write(name, content), origin);
 }
 
 // The Error names the file and says `part`.

@@ -5,7 +5,9 @@
 
 #include <twinray/scene.h>
 
+#include "engine/scene/mesh.h"
 #include "tests/scene/temp_dir.h"
+#include "twinray/glsl/vector_math.h"
 
 namespace twinray::test {
 namespace {

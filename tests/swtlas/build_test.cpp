@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
+// Trees that SwTlas builds are sound, equal to those of the CPU reference, and no higher than they may be.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -23,6 +25,23 @@ class SwBuild : public SwBuildTest {
         expect_reference(tree, mesh, quality());
         return tree;
     }
+    // Inner nodes on the longest way down.
+    uint checked_depth(const Mesh& mesh) {
+        const BuiltTree tree = checked_tree(mesh);
+        const std::vector<LeafBox> boxes = leaf_boxes(tree, mesh);
+        return has_records(tree) ? check_tree(tree.bvh, tree.records, boxes).depth
+                                 : check_tree(tree.bvh, tree.nodes, boxes).depth;
+    }
+    // Trees of meshes that are built together.
+    void expect_references(std::span<const Mesh> meshes) {
+        SwTlas accel(context(), options());
+        std::vector<AccelHandle> handles;
+        for (const Mesh& mesh : meshes) handles.push_back(accel.push(mesh));
+        accel.sync();
+        for (std::size_t i = 0; i < meshes.size(); ++i)
+            expect_reference(download_geometry(accel, handles[i]), meshes[i], quality());
+    }
+    bool is_binary() const { return std::get<Layout>(GetParam()) == Layout::bvh2; }
 };
 INSTANTIATE_TEST_SUITE_P(Every, SwBuild, builds_of_the_default_layout(), name_of_build);
 INSTANTIATE_TEST_SUITE_P(Full, SwBuild, builds_of_other_layouts(), name_of_build);
@@ -72,22 +91,11 @@ std::size_t count_equal_codes(const Mesh& mesh) {
 
 TEST_P(SwBuild, EqualCodesThatAreNoCrowdKeepTheirOrder) {
     EXPECT_GT(count_equal_codes(pairs_of_equal_codes(1)), 80u);
-    SwTlas accel(context(), options());
-    const Mesh meshes[] = {pairs_of_equal_codes(1), pairs_of_equal_codes(2), pairs_of_equal_codes(3)};
-    std::vector<AccelHandle> handles;
-    for (const Mesh& mesh : meshes) handles.push_back(accel.push(mesh));
-    accel.sync();
-    for (std::size_t i = 0; i < 3; ++i) expect_reference(download_geometry(accel, handles[i]), meshes[i], quality());
+    expect_references(std::array{pairs_of_equal_codes(1), pairs_of_equal_codes(2), pairs_of_equal_codes(3)});
 }
 
 TEST_P(SwBuild, ATreeDoesNotDependOnTheOthersOfItsBatch) {
-    SwTlas accel(context(), options());
-    const Mesh meshes[] = {make_soup(5, 1), equal_triangles(1000), make_soup(3, 2), equal_triangles(77)};
-    std::vector<AccelHandle> handles;
-    for (const Mesh& mesh : meshes) handles.push_back(accel.push(mesh));
-    accel.sync();
-    for (std::size_t i = 0; i < handles.size(); ++i)
-        expect_reference(download_geometry(accel, handles[i]), meshes[i], quality());
+    expect_references(std::array{make_soup(5, 1), equal_triangles(1000), make_soup(3, 2), equal_triangles(77)});
 }
 
 TEST_P(SwBuild, ATreeDoesNotDependOnTheScratchBudget) {
@@ -110,16 +118,9 @@ TEST_P(SwBuild, ATreeDoesNotDependOnTheScratchBudget) {
 
 TEST_P(SwBuild, TreesOfABatchWithLevelsAndSubtreesAreEqualToTheirReferences) {
     const uint most = plan_build({}, Layout::compressed4, context().state().tuning()).subtree_leaves;
-    SwTlas accel(context(), options());
     std::vector<Mesh> meshes;
-    std::vector<AccelHandle> handles;
-    for (const uint n : {most - 1, 3u, 5 * most, most, 2u, most + 1, 7u}) {
-        meshes.push_back(make_soup(n, n, 0.05f));
-        handles.push_back(accel.push(meshes.back()));
-    }
-    accel.sync();
-    for (std::size_t i = 0; i < meshes.size(); ++i)
-        expect_reference(download_geometry(accel, handles[i]), meshes[i], quality());
+    for (const uint n : {most - 1, 3u, 5 * most, most, 2u, most + 1, 7u}) meshes.push_back(make_soup(n, n, 0.05f));
+    expect_references(meshes);
 }
 
 // A triangle beside each power of two, along the axes in turn, and behind these `count` that lie close together.
@@ -161,14 +162,7 @@ TEST_P(SwBuild, LargeMeshesAreSound) {
     }
 }
 
-TEST_P(SwBuild, EqualCentroidsAreSplitByPosition) {
-    const Mesh mesh = equal_triangles(1000);
-    const BuiltTree tree = checked_tree(mesh);
-    const std::vector<LeafBox> boxes = leaf_boxes(tree, mesh);
-    EXPECT_LE(has_records(tree) ? check_tree(tree.bvh, tree.records, boxes).depth
-                                : check_tree(tree.bvh, tree.nodes, boxes).depth,
-              10u);
-}
+TEST_P(SwBuild, EqualCentroidsAreSplitByPosition) { EXPECT_LE(checked_depth(equal_triangles(1000)), 10u); }
 
 TEST_P(SwBuild, NonFiniteTrianglesAreInactiveAndKeepTheirIndex) {
     Mesh mesh = make_soup(500, 11);
@@ -250,8 +244,7 @@ TEST_P(SwBuild, AStrayTriangleDoesNotSpoilTheOrderOfTheOthers) {
     expect_sound(tree, mesh);
     expect_reference(tree, mesh, quality());
     // In planes of grids its topmost boxes lie far apart.
-    const bool is_exact = std::get<Layout>(GetParam()) == Layout::bvh2;
-    EXPECT_LT(area_below_root(tree, mesh), is_exact ? 1.2 * area : INFINITY);
+    EXPECT_LT(area_below_root(tree, mesh), is_binary() ? 1.2 * area : INFINITY);
 
     // Beside others in a batch, of which it is a small part, and which keep their order.
     SwTlas of_many(context(), options());
@@ -265,45 +258,103 @@ TEST_P(SwBuild, AStrayTriangleDoesNotSpoilTheOrderOfTheOthers) {
     EXPECT_TRUE(same_bytes(download_geometry(of_many, handles[1]).nodes, tree.nodes));
 }
 
-// Triangles of many sizes and shapes, as architecture has: long walls, panels, small parts.
-Mesh mixed_triangles(std::size_t count) {
-    std::mt19937 random(8);
-    std::uniform_real_distribution<float> unit(-1, 1);
+// Builds of quality ploc where nearest neighbours are of little use, or would make trees too high.
+using SwPloc = SwBuild;
+INSTANTIATE_TEST_SUITE_P(Every, SwPloc,
+                         testing::Values(How{Layout::compressed4, BuildQuality::ploc, KernelShape::of_device},
+                                         How{Layout::compressed8, BuildQuality::ploc, KernelShape::of_device},
+                                         How{Layout::bvh2, BuildQuality::ploc, KernelShape::of_device},
+                                         How{Layout::bvh2, BuildQuality::ploc, KernelShape::of_gpu}),
+                         name_of_build);
+
+// With a box of 2 * size around `center`.
+void add_triangle(Mesh& mesh, vec3 center, float size) {
+    const auto first = static_cast<uint>(mesh.positions.size());
+    for (const vec3& corner : {vec3(1, -1, 1), vec3(-1, 1, 1), vec3(1, 1, -1)})
+        mesh.positions.push_back(center + size * corner);
+    mesh.triangles.push_back({first, first + 1, first + 2});
+}
+
+// Each box is within the next one, so that the nearest neighbour is always the smallest: a chain. One lies apart, for
+// areas are measured in the extent of the centres.
+Mesh nested(uint count, float growth) {
     Mesh mesh;
-    for (uint i = 0; i < count; ++i) {
-        const float size = std::ldexp(1.0f, -static_cast<int>(random() % 10));
-        const vec3 place(unit(random), unit(random), unit(random));
-        for (uint corner = 0; corner < 3; ++corner) {
-            vec3 offset(unit(random), unit(random), unit(random));
-            offset[static_cast<int>(i % 3)] = 0;
-            mesh.positions.push_back(place + size * offset);
-        }
-        mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
-    }
+    mesh.name = text("nested ", count);
+    for (uint i = 0; i < count; ++i)
+        add_triangle(mesh, vec3(0), std::pow(growth, static_cast<float>(i) - static_cast<float>(count) / 2));
+    add_triangle(mesh, vec3(1), 1);
     return mesh;
 }
 
-class SwQuality : public test::VulkanTest, public testing::WithParamInterface<Layout> {};
-INSTANTIATE_TEST_SUITE_P(Every, SwQuality, testing::ValuesIn(all_layouts),
-                         [](const auto& layout) { return std::string(name_of(layout.param)); });
-
-TEST_P(SwQuality, HighAndPlocCostRaysLess) {
-    for (const Mesh& mesh : {mixed_triangles(20'000), make_icosphere(6)}) {
-        double sah[all_build_qualities.size()];
-        for (const BuildQuality quality : all_build_qualities) {
-            SwTlas accel(context(), {.layout = GetParam(), .build_quality = quality});
-            const AccelHandle handle = accel.push(mesh);
-            accel.sync();
-            const BuiltTree tree = download_geometry(accel, handle);
-            sah[static_cast<std::size_t>(quality)] = sah_of(tree, leaf_boxes(tree, mesh));
-        }
-        std::printf("surface-area cost of %zu triangles: fast %.2f, high %.2f, ploc %.2f\n", mesh.triangles.size(),
-                    sah[0], sah[1], sah[2]);
-        // On a sphere, whose triangles are alike, nodes of eight leave little to gain.
-        const bool is_wide = GetParam() == Layout::compressed8;
-        EXPECT_LT(sah[1], (is_wide ? 0.99 : 0.97) * sah[0]);
-        EXPECT_LT(sah[2], (is_wide ? 0.995 : 0.99) * sah[0]);
+TEST_P(SwPloc, ATreeOfNestedBoxesIsAsHighAsItMayBeAndNoHigher) {
+    for (const uint count : {17u, 32u, 33u, 100u, 300u, 3000u}) {
+        const uint depth = checked_depth(nested(count, count == 3000 ? 1.01f : 1.2f));
+        if (!is_binary()) continue;
+        // Centres are split by 25 bits of places, then what was kept of them from the one that lies apart.
+        EXPECT_LE(depth, 25 + KEPT_CLUSTERS) << count;
+        EXPECT_GE(depth, std::min(count - 1, 20u)) << count << ": the limit is not met";
     }
+}
+
+// On ever lower bits of the codes, then of their lower halves, then of positions.
+TEST_P(SwPloc, NestedBoxesAtTheEndOfALongWayDownStayWithinTheDeepestTree) {
+    for (const uint places : {20u, 200u}) {
+        Mesh mesh = nested(places, 1.05f);
+        for (vec3& position : mesh.positions) position *= std::ldexp(1.0f, -40);
+        for (uint i = 0; i < 57; ++i) {
+            vec3 center(0);
+            center[static_cast<int>(2 - i % 3)] = std::ldexp(1.0f, -static_cast<int>(i / 3));
+            add_triangle(mesh, center, std::ldexp(1.0f, -25));
+            add_triangle(mesh, center, std::ldexp(2.0f, -static_cast<int>(i / 3)));
+        }
+        EXPECT_GT(checked_depth(mesh), 0u);
+    }
+}
+
+TEST_P(SwPloc, RandomNestedBoxesAreSoundAndEqualToTheirReferences) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> unit(0, 1);
+    for (uint round = 0; round < 12; ++round) {
+        Mesh mesh;
+        mesh.name = text("round ", round);
+        const auto places = static_cast<uint>(1 + random() % 5), count = static_cast<uint>(20 + random() % 400);
+        for (uint i = 0; i < count; ++i)
+            add_triangle(mesh, vec3(static_cast<float>(random() % places), 0, 0), std::exp2(-30 * unit(random)));
+        EXPECT_GT(checked_depth(mesh), 0u);
+    }
+}
+
+TEST_P(SwPloc, EqualBoxesMakeABalancedTree) {
+    Mesh mesh;
+    mesh.name = "equal";
+    for (uint i = 0; i < 4096; ++i) add_triangle(mesh, vec3(1), 1);
+    EXPECT_LE(checked_depth(mesh), 12u);
+}
+
+// Of no area, so that all pairs are the same.
+TEST_P(SwPloc, LeavesInALineAreSoundAndEqualToTheirReferences) {
+    Mesh even, growing;
+    even.name = "even";
+    growing.name = "growing";
+    for (uint i = 0; i < 2000; ++i) {
+        const auto x = static_cast<float>(i);
+        for (const float end : {x, x + 1, x}) even.positions.emplace_back(end, 0, 0);
+        for (const float end : {x, x + 1, x}) growing.positions.emplace_back(std::pow(1.02f, end), 0, 0);
+        even.triangles.push_back(uvec3(3 * i) + uvec3(0, 1, 2));
+    }
+    growing.triangles = even.triangles;
+    EXPECT_GT(checked_depth(even), 0u);
+    EXPECT_GT(checked_depth(growing), 0u);
+}
+
+TEST_P(SwPloc, AreasBeyondTheRangeOfFloatsAreSoundAndEqualToTheirReferences) {
+    Mesh mesh = make_soup(500, 1);
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+        mesh.positions[i] *= std::ldexp(1.0f, 120 - static_cast<int>(i / 3 % 60) * 4);
+    EXPECT_GT(checked_depth(mesh), 0u);
+    for (vec3& position : mesh.positions) position *= std::ldexp(1.0f, -100);  // a huge one among tiny ones
+    add_triangle(mesh, vec3(0), std::ldexp(1.0f, 126));
+    EXPECT_GT(checked_depth(mesh), 0u);
 }
 
 }  // namespace

@@ -12,12 +12,14 @@
 #include <twinray/geometry.h>
 #include "validation/cpu_reference/reference.h"
 #include "tests/scene/temp_dir.h"
+#include "tests/support/sw_build.h"
 
 namespace twinray {
 namespace {
 
 using test::error_of;
 using test::expect_contains;
+using test::same_bytes;
 
 SavedGeometry saved(Layout layout, const Mesh& mesh, std::size_t instances) {
     const Geometry geometry(mesh);
@@ -101,11 +103,6 @@ Bytes resealed(Bytes file, const std::function<void(SavedHeader&, SavedEntry&)>&
 
 std::string refusal(const Bytes& file) {
     return error_of([&] { decode_save(file, "a.file"); });
-}
-
-template <class T>
-bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
-    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
 }
 
 class SavedFile : public testing::TestWithParam<Layout> {};

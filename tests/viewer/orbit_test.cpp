@@ -4,13 +4,13 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <numbers>
 #include <set>
 
 #include <gtest/gtest.h>
 
 #include "engine/core/error.h"
+#include "tests/scene/temp_dir.h"
 
 #include "viewer/events.h"
 #include "viewer/keys.h"
@@ -130,35 +130,26 @@ TEST(Events, AreWhatTheirTextSays) {
     const std::string text =
         "key F2\nkeyup A\ndown left 320 200 shift\nup middle\nmove 330 210.5\ndouble 3 4\nscroll -1\n"
         "resize 800 600\ndrop a b.glb\nframes 10\nshot x.png\nclose\n";
-    const std::filesystem::path file = std::filesystem::temp_directory_path() / "twinray_events_test.txt";
-    std::ofstream(file) << "# recorded\n\n" << text;
+    const test::TempDir folder;
+    const std::filesystem::path file = folder.write("events.txt", "# recorded\n\n" + text);
     std::string again;
     for (const Event& event : read_events(file)) again += text_of(event) + '\n';
     EXPECT_EQ(again, text);
     for (const char* bad : {"fly", "down both 1 2", "move 1", "resize 1 2 3", "scroll up", "frames -", "frames -1",
                             "key Foo", "keyup F99", "resize -1 5"}) {
-        std::ofstream(file) << "key A\n" << bad << '\n';
-        try {
-            (void)read_events(file);
-            ADD_FAILURE() << bad;
-        } catch (const Error& error) {
-            EXPECT_NE(std::string(error.what()).find("line 2"), std::string::npos) << error.what();
-        }
+        SCOPED_TRACE(bad);
+        folder.write("events.txt", std::string("key A\n") + bad + '\n');
+        test::expect_contains(test::error_of([&] { (void)read_events(file); }), "line 2");
     }
     EXPECT_THROW((void)read_events("nowhere.txt"), Error);
-    std::filesystem::remove(file);
 }
 
 TEST(RecentFiles, TheLastComesFirst) {
-    const std::filesystem::path folder = std::filesystem::temp_directory_path() / "twinray_recent_test";
-    std::filesystem::remove_all(folder);
-    std::filesystem::create_directories(folder);
-    const std::filesystem::path list = folder / "state" / "recent";
+    const test::TempDir folder;
+    const std::filesystem::path list = folder / "state/recent";
     EXPECT_TRUE(recent_files(list).empty());
     for (int i = 0; i < 12; ++i) {
-        const std::filesystem::path file = folder / (std::to_string(i) + ".glb");
-        std::ofstream(file) << "x";
-        keep_recent(list, file);
+        keep_recent(list, folder.write(std::to_string(i) + ".glb", "x"));
     }
     keep_recent(list, folder / "9.glb");
     std::vector<std::filesystem::path> files = recent_files(list);
@@ -170,7 +161,6 @@ TEST(RecentFiles, TheLastComesFirst) {
     std::filesystem::remove(folder / "11.glb");
     EXPECT_EQ(recent_files(list)[1], folder / "10.glb");
     keep_recent({}, folder / "9.glb");  // nowhere to keep it
-    std::filesystem::remove_all(folder);
 }
 
 TEST(Layers, AgreementIsOfWhatIsHit) {

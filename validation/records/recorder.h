@@ -1,17 +1,36 @@
 // SPDX-License-Identifier: MIT
-// Writes the records of one run.
+// Writes the records of one run, and tells how busy the machine was meanwhile.
 #pragma once
 
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <span>
 #include <vector>
 
-#include "validation/records/machine_load.h"
 #include "validation/records/record.h"
 
 namespace twinray {
+
+// How busy other programs keep the processors while something is timed.
+class MachineLoad {
+  public:
+    MachineLoad();  // from now on
+
+    // Seconds of all processors together since then; nothing where the system does not tell (/proc/stat).
+    std::optional<double> seconds() const;
+    // The share of them, 0 to 1, that other programs than this one and its children took.
+    std::optional<double> of_others() const;
+
+  private:
+    struct Times {
+        double all = 0, busy = 0, own = 0;  // seconds
+    };
+    static std::optional<Times> now();
+
+    std::optional<Times> start_;
+};
 
 // Appends each record to a file of JSON lines at once, so that a run that is cut short leaves what it has measured.
 class Recorder {

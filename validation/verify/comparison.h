@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Both accelerators on one scene, compared with the reference, a set of rays at a time.
+// Both accelerators on one scene, compared with the reference, a set of rays at a time; the result as text and records.
 #pragma once
 
 #include <functional>
 #include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <ostream>
 #include <string>
 #include <vector>
 
-#include "validation/records/progress.h"
 #include <twinray/tlas.h>
+#include "validation/records/progress.h"
 #include "validation/reference/classify.h"
 
 namespace twinray {
@@ -64,5 +66,11 @@ class Verifier {
     SwTlas software_;
     std::unique_ptr<HwTlas> hardware_;
 };
+
+void print(std::ostream& out, const RaySet& set, const Comparison& comparison, bool has_hardware);
+
+// One an accelerator, added to the fields of `base`. `hardware` may be null.
+std::vector<nlohmann::json> records_of(const nlohmann::json& base, const RaySet& set, const Comparison& comparison,
+                                       const HwTlas* hardware);
 
 }  // namespace twinray

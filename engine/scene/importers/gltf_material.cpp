@@ -1,13 +1,225 @@
 // SPDX-License-Identifier: MIT
 #include "engine/scene/importers/gltf_material.h"
 
-#include "engine/scene/importers/gltf_factors.h"
-#include "engine/scene/importers/gltf_layers.h"
-#include "engine/scene/importers/gltf_texture.h"
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "engine/scene/importers/placeholder.h"
 #include "twinray/glsl/vector_math.h"
 
 namespace twinray {
 namespace {
+
+// These keep factors of glTF materials within what glTF allows: outside of it, surfaces would emit by reflecting.
+float clamped_factor(double factor, double lo, double hi) {
+    return static_cast<float>(factor >= lo ? std::min(factor, hi) : lo);  // NaN becomes lo
+}
+
+float unit_factor(double factor) { return clamped_factor(factor, 0, 1); }
+
+template <int N>
+Vec<N, float> color_factor(const std::vector<double>& factors, Vec<N, float> fallback, double most = 1) {
+    if (factors.size() != N) return fallback;
+    Vec<N, float> color;
+    for (int i = 0; i < N; ++i) color[i] = clamped_factor(factors[std::size_t(i)], 0, most);
+    return color;
+}
+
+Wrap wrap_of(int mode) {
+    if (mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return Wrap::clamp_to_edge;
+    return mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? Wrap::mirrored_repeat : Wrap::repeat;
+}
+
+// KHR_texture_transform: scale, then rotate, then offset. A positive rotation turns uv counter-clockwise as seen
+// with v pointing down. The GLSL in the extension's text turns the other way and is known to be wrong
+// (KhronosGroup/glTF issue 1563); the sample model, which this follows, is what implementations agree on.
+void set_transform(Texture& texture, const tinygltf::Value& transform) {
+    std::vector<double> offset = numbers_of(transform, "offset"), scale = numbers_of(transform, "scale");
+    if (offset.size() != 2) offset = {0, 0};
+    if (scale.size() != 2) scale = {1, 1};
+    const double angle = number_or(transform, "rotation", 0);
+    const double c = std::cos(angle), s = std::sin(angle);
+    texture.uv_row0 = vec3(c * scale[0], s * scale[1], offset[0]);
+    texture.uv_row1 = vec3(-s * scale[0], c * scale[1], offset[1]);
+}
+
+tinygltf::ExtensionMap extensions_of(const tinygltf::Value& reference) {
+    tinygltf::ExtensionMap extensions;
+    if (const tinygltf::Value* members = find_member(reference, "extensions"))
+        for (const std::string& key : members->Keys()) extensions[key] = members->Get(key);
+    return extensions;
+}
+
+// Turns glTF texture references into Textures, decoding each image on its first use.
+class GltfTextures {
+  public:
+    GltfTextures(GltfFile& file, std::vector<Image>& images);
+
+    // `object` names the user in errors and warnings: "material 3 'wood' baseColorTexture".
+    Texture read(int texture, int texcoord, const tinygltf::ExtensionMap& extensions, const std::string& object);
+
+    // A reference inside an extension: member `key` of `parent`; no texture when it is absent.
+    Texture read(const tinygltf::Value& parent, const std::string& key, const std::string& object);
+
+    // Whether its image could not be decoded.
+    bool is_placeholder(const Texture& texture) const {
+        return texture.image >= 0 && images_[std::size_t(texture.image)].is_placeholder;
+    }
+
+  private:
+    std::int32_t image_of(const tinygltf::Texture& texture, const std::string& object);
+    Image decode(std::size_t image) const;
+    void set_sampler(Texture& result, int sampler, const std::string& object) const;
+
+    GltfFile& file_;
+    std::vector<Image>& images_;
+    std::vector<std::int32_t> decoded_;  // glTF image -> index into images_, -1 = not yet
+};
+
+GltfTextures::GltfTextures(GltfFile& file, std::vector<Image>& images)
+    : file_(file), images_(images), decoded_(file.model.images.size(), -1) {}
+
+Texture GltfTextures::read(int texture, int texcoord, const tinygltf::ExtensionMap& extensions,
+                           const std::string& object) {
+    if (texture == -1) return {};
+    const auto& textures = file_.model.textures;
+    if (texture < 0 || std::size_t(texture) >= textures.size())
+        file_.fail(object, ": texture ", texture, " does not exist; the file has ", textures.size());
+    Texture result;
+    result.image = image_of(textures[std::size_t(texture)], object);
+    set_sampler(result, textures[std::size_t(texture)].sampler, object);
+    if (const tinygltf::Value* transform = find_extension(extensions, "KHR_texture_transform")) {
+        set_transform(result, *transform);
+        if (const int own = index_of(*transform, "texCoord"); own >= 0) texcoord = own;
+    }
+    if (texcoord != 0 && texcoord != 1)
+        file_.warn(text(object, ": asks for TEXCOORD_", texcoord, ", shown with TEXCOORD_0"));
+    result.uv_set = texcoord == 1 ? 1 : 0;
+    return result;
+}
+
+Texture GltfTextures::read(const tinygltf::Value& parent, const std::string& key, const std::string& object) {
+    const tinygltf::Value* reference = find_member(parent, key);
+    if (!reference) return {};
+    const int texcoord = std::max(index_of(*reference, "texCoord"), 0);
+    return read(index_of(*reference, "index"), texcoord, extensions_of(*reference), text(object, " ", key));
+}
+
+std::int32_t GltfTextures::image_of(const tinygltf::Texture& texture, const std::string& object) {
+    int source = texture.source;
+    for (const char* name : {"KHR_texture_basisu", "EXT_texture_webp", "MSFT_texture_dds"})
+        if (const tinygltf::Value* extension = find_extension(texture.extensions, name); extension && source < 0)
+            source = index_of(*extension, "source");
+    if (source == -1) return -1;
+    if (source < 0 || std::size_t(source) >= file_.model.images.size())
+        file_.fail(object, ": image ", source, " does not exist; the file has ", file_.model.images.size());
+    std::int32_t& index = decoded_[std::size_t(source)];
+    if (index < 0) {
+        index = static_cast<std::int32_t>(images_.size());
+        try {
+            images_.push_back(decode(std::size_t(source)));
+        } catch (const Error& e) {
+            const std::string name =
+                gltf_name("image", std::size_t(source), file_.model.images[std::size_t(source)].name);
+            file_.warn(text(e.what(), "; ", name, " is shown as a checkerboard"));
+            images_.push_back(checkerboard_image(name));
+        }
+    }
+    return index;
+}
+
+Image GltfTextures::decode(std::size_t index) const {
+    const tinygltf::Image& image = file_.model.images[index];
+    const std::string name = gltf_name("image", index, image.name.empty() ? image.uri.substr(0, 40) : image.name);
+    if (!image.uri.empty()) return decode_image(read_uri(file_, image.uri), name);
+    if (image.bufferView < 0) fail(name, " has neither a uri nor a bufferView");
+    return decode_image(view_bytes(file_, image.bufferView, name), name);
+}
+
+// A picture has one level, so that minFilter is of no effect.
+void GltfTextures::set_sampler(Texture& result, int sampler, const std::string& object) const {
+    if (sampler == -1) return;
+    const auto& samplers = file_.model.samplers;
+    if (sampler < 0 || std::size_t(sampler) >= samplers.size())
+        file_.fail(object, ": sampler ", sampler, " does not exist; the file has ", samplers.size());
+    result.wrap_u = wrap_of(samplers[std::size_t(sampler)].wrapS);
+    result.wrap_v = wrap_of(samplers[std::size_t(sampler)].wrapT);
+    if (samplers[std::size_t(sampler)].magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST) result.filter = Filter::nearest;
+}
+
+constexpr double no_limit = 1e30;
+
+// Reads members of one extension.
+struct Reader {
+    const tinygltf::Value& extension;
+    const std::string& object;
+    GltfTextures& textures;
+
+    double number(const char* key, double fallback) const { return number_or(extension, key, fallback); }
+    vec3 color(const char* key, vec3 fallback, double most = 1) const {
+        return color_factor<3>(numbers_of(extension, key), fallback, most);
+    }
+    Texture texture(const char* key) const { return textures.read(extension, key, object); }
+
+    // A map that cannot be read would only spoil the shape.
+    Texture normal_texture(const char* key) const {
+        const Texture normal = texture(key);
+        return textures.is_placeholder(normal) ? Texture{} : normal;
+    }
+};
+
+void read_specular(const Reader& from, Material& material) {
+    material.specular = unit_factor(from.number("specularFactor", 1));
+    material.specular_color = from.color("specularColorFactor", vec3(1), no_limit);
+    material.specular_texture = from.texture("specularTexture");
+    material.specular_color_texture = from.texture("specularColorTexture");
+}
+
+void read_clearcoat(const Reader& from, Material& material) {
+    material.clearcoat = unit_factor(from.number("clearcoatFactor", 0));
+    material.clearcoat_roughness = unit_factor(from.number("clearcoatRoughnessFactor", 0));
+    material.clearcoat_texture = from.texture("clearcoatTexture");
+    material.clearcoat_roughness_texture = from.texture("clearcoatRoughnessTexture");
+    material.clearcoat_normal_texture = from.normal_texture("clearcoatNormalTexture");
+    if (const tinygltf::Value* normal = find_member(from.extension, "clearcoatNormalTexture"))
+        material.clearcoat_normal_scale = clamped_factor(number_or(*normal, "scale", 1), -no_limit, no_limit);
+}
+
+void read_sheen(const Reader& from, Material& material) {
+    material.sheen_color = from.color("sheenColorFactor", vec3(0));
+    material.sheen_roughness = unit_factor(from.number("sheenRoughnessFactor", 0));
+    material.sheen_color_texture = from.texture("sheenColorTexture");
+    material.sheen_roughness_texture = from.texture("sheenRoughnessTexture");
+}
+
+void read_anisotropy(const Reader& from, Material& material) {
+    material.anisotropy = unit_factor(from.number("anisotropyStrength", 0));
+    material.anisotropy_rotation = clamped_factor(from.number("anisotropyRotation", 0), -no_limit, no_limit);
+    material.anisotropy_texture = from.texture("anisotropyTexture");
+}
+
+// How thick is what rays tell: only whether there is a volume counts, of which a texture says nothing.
+void read_volume(const Reader& from, Material& material) {
+    material.thickness = clamped_factor(from.number("thicknessFactor", 0), 0, no_limit);
+    material.attenuation_color = from.color("attenuationColor", vec3(1));
+    if (find_member(from.extension, "attenuationDistance"))
+        material.attenuation_distance =
+            clamped_factor(from.number("attenuationDistance", 1), std::numeric_limits<float>::min(), no_limit);
+}
+
+// Takes KHR_materials_{anisotropy, clearcoat, sheen, specular, volume} into `material`; other extensions are none of
+// its business. `object` names the material in errors and warnings.
+void read_gltf_layer(const std::string& name, const tinygltf::Value& extension, const std::string& object,
+                     GltfTextures& textures, Material& material) {
+    const Reader from{extension, object, textures};
+    if (name == "KHR_materials_specular") read_specular(from, material);
+    if (name == "KHR_materials_clearcoat") read_clearcoat(from, material);
+    if (name == "KHR_materials_sheen") read_sheen(from, material);
+    if (name == "KHR_materials_anisotropy") read_anisotropy(from, material);
+    if (name == "KHR_materials_volume") read_volume(from, material);
+}
 
 AlphaMode alpha_mode_of(const std::string& mode) {
     if (mode == "MASK") return AlphaMode::mask;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Materials of glTF.
+// Materials of glTF, with their layers KHR_materials_* and their textures.
 #pragma once
 
 #include <twinray/scene.h>

@@ -2,16 +2,144 @@
 #include "engine/scene/importers/gltf_mesh.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "engine/scene/importers/gltf_accessor.h"
 #include "engine/scene/importers/gltf_variants.h"
-#include "engine/scene/importers/gltf_vertices.h"
+#include "engine/scene/mesh.h"
 
 namespace twinray {
 namespace {
 
 using tinygltf::Primitive;
+
+// The arrays that a mesh as a whole has.
+struct VertexLayout {
+    bool normals = false, tangents = false, uvs = false, second_uvs = false, colors = false;
+    MotionLayout motion;
+};
+
+// Arrays as those of Mesh.
+struct GltfVertices {
+    std::vector<vec3> positions, normals;
+    std::vector<vec4> tangents;
+    std::vector<vec2> uvs, second_uvs;
+    std::vector<vec4> colors;
+    VertexMotion motion;
+};
+
+// An accessor's index, or -1.
+int attribute_of(const Primitive& primitive, const std::string& name) {
+    const auto found = primitive.attributes.find(name);
+    return found == primitive.attributes.end() ? -1 : found->second;
+}
+
+void check_count(const GltfFile& file, std::size_t count, std::size_t vertex_count, const std::string& object,
+                 const char* name) {
+    if (count != vertex_count)
+        file.fail(object, ": ", name, " has ", count, " elements, but POSITION has ", vertex_count);
+}
+
+template <int N>
+std::vector<Vec<N, float>> read_attribute(const GltfFile& file, const Primitive& primitive, const char* name,
+                                          std::size_t vertex_count, const std::string& object) {
+    const int accessor = attribute_of(primitive, name);
+    if (accessor < 0) return std::vector<Vec<N, float>>(vertex_count, Vec<N, float>(0));
+    auto values = read_vectors<N>(file, accessor, text(object, " ", name));
+    check_count(file, values.size(), vertex_count, object, name);
+    return values;
+}
+
+bool has_alpha(const GltfFile& file, int accessor) {
+    const auto& accessors = file.model.accessors;
+    return std::size_t(accessor) < accessors.size() && accessors[std::size_t(accessor)].type == TINYGLTF_TYPE_VEC4;
+}
+
+// Colours have 3 or 4 components and are clamped as glTF 2.0 (3.7.2.1) says.
+std::vector<vec4> read_colors(GltfFile& file, const Primitive& primitive, std::size_t vertex_count,
+                              const std::string& object) {
+    std::vector<vec4> colors(vertex_count, vec4(1));
+    const int accessor = attribute_of(primitive, "COLOR_0");
+    if (accessor < 0) return colors;
+    const int components = has_alpha(file, accessor) ? 4 : 3;
+    const std::vector<float> values = read_floats(file, accessor, components, object + " COLOR_0");
+    const std::size_t width = std::size_t(components);
+    check_count(file, values.size() / width, vertex_count, object, "COLOR_0");
+    std::size_t unknown = 0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        unknown += std::isnan(values[i]);
+        colors[i / width][int(i % width)] = std::isnan(values[i]) ? 1 : std::clamp(values[i], 0.0f, 1.0f);
+    }
+    if (unknown) file.warn(text(object, " COLOR_0: ", unknown, " numbers are NaN, and taken as 1"));
+    return colors;
+}
+
+// All accessors that the vertices are made from.
+std::vector<int> accessors_of(const Primitive& primitive) {
+    std::vector<int> accessors;
+    for (const char* name : {"POSITION", "NORMAL", "TANGENT", "TEXCOORD_0", "TEXCOORD_1", "COLOR_0"})
+        accessors.push_back(attribute_of(primitive, name));
+    for (const auto& [name, accessor] : primitive.attributes)
+        if (name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_")) accessors.push_back(accessor);
+    for (const auto& target : primitive.targets)
+        for (const auto& [name, accessor] : target) accessors.push_back(accessor);
+    return accessors;
+}
+
+// is_skinned: whether a node with a skin shows the mesh.
+VertexLayout vertex_layout(const GltfFile& file, const std::vector<const Primitive*>& primitives,
+                           const std::string& object, bool is_skinned) {
+    VertexLayout layout;
+    layout.tangents = !primitives.empty();
+    for (const Primitive* primitive : primitives) {
+        const auto has = [&](const char* name) { return attribute_of(*primitive, name) >= 0; };
+        layout.normals |= has("NORMAL");
+        layout.uvs |= has("TEXCOORD_0");
+        layout.second_uvs |= has("TEXCOORD_1");
+        layout.colors |= has("COLOR_0");
+        // Shading derives tangents where a mesh has none, so all or none is right and a mixture is not.
+        layout.tangents &= has("TANGENT") && has("NORMAL");
+    }
+    layout.motion = motion_layout(file, primitives, object, is_skinned);
+    layout.motion.normals &= layout.normals;
+    layout.motion.tangents &= layout.tangents;
+    return layout;
+}
+
+// The vertices of one primitive: their attributes, and what moves them. What it lacks of the layout is 0, of colours
+// white, of the second texture coordinates the first.
+GltfVertices read_gltf_vertices(GltfFile& file, const Primitive& primitive, const VertexLayout& layout,
+                                const std::string& object) {
+    GltfVertices v;
+    v.positions = read_vectors<3>(file, attribute_of(primitive, "POSITION"), object + " POSITION");
+    const std::size_t count = v.positions.size();
+    const char* second = attribute_of(primitive, "TEXCOORD_1") < 0 ? "TEXCOORD_0" : "TEXCOORD_1";
+    if (layout.normals) v.normals = read_attribute<3>(file, primitive, "NORMAL", count, object);
+    if (layout.tangents) v.tangents = read_attribute<4>(file, primitive, "TANGENT", count, object);
+    if (layout.uvs) v.uvs = read_attribute<2>(file, primitive, "TEXCOORD_0", count, object);
+    if (layout.second_uvs) v.second_uvs = read_attribute<2>(file, primitive, second, count, object);
+    if (layout.colors) v.colors = read_colors(file, primitive, count, object);
+    v.motion = read_gltf_motion(file, primitive, layout.motion, count, object);
+    return v;
+}
+
+GltfVertices picked_vertices(const GltfVertices& all, const std::vector<uint>& vertices) {
+    return {picked(all.positions, 1, vertices), picked(all.normals, 1, vertices),    picked(all.tangents, 1, vertices),
+            picked(all.uvs, 1, vertices),       picked(all.second_uvs, 1, vertices), picked(all.colors, 1, vertices),
+            picked(all.motion, vertices)};
+}
+
+// Appends to the arrays of a mesh and its motion.
+void append_to(Mesh& mesh, VertexMotion& motion, const GltfVertices& vertices) {
+    append(mesh.positions, vertices.positions);
+    append(mesh.normals, vertices.normals);
+    append(mesh.tangents, vertices.tangents);
+    append(mesh.uvs, vertices.uvs);
+    append(mesh.second_uvs, vertices.second_uvs);
+    append(mesh.colors, vertices.colors);
+    append(motion, vertices.motion);
+}
 
 bool makes_triangles(const Primitive& primitive) {
     return attribute_of(primitive, "POSITION") >= 0 &&
@@ -72,7 +200,7 @@ class MeshReader {
     uint append_vertices(const GltfVertices& vertices) {
         const std::size_t base = mesh_.positions.size();
         if (base + vertices.positions.size() > UINT32_MAX) file_.fail(name_, ": has over 2^32 vertices");
-        append(mesh_, motion_, vertices);
+        append_to(mesh_, motion_, vertices);
         return static_cast<uint>(base);
     }
 
@@ -112,7 +240,7 @@ class MeshReader {
         std::vector<uint> indices;
         for (const uvec3& t : read_triangles(primitive, shared.positions.size(), object))
             indices.insert(indices.end(), {t.x, t.y, t.z});
-        GltfVertices own = picked(shared, indices);
+        GltfVertices own = picked_vertices(shared, indices);
         std::vector<uvec3> own_triangles;
         for (uint i = 0; i + 2 < own.positions.size(); i += 3) {
             const dvec3 a(own.positions[i]), b(own.positions[i + 1]), c(own.positions[i + 2]);

@@ -28,13 +28,6 @@ std::vector<Transform> transforms_of(const Scene& scene, std::size_t model) {
 }
 // [/mesh]
 
-// [accel]
-std::unique_ptr<AbstractAccel> make_accel(Context& context, const AccelChoice& choice) {
-    if (choice.is_software) return std::make_unique<SwTlas>(context);
-    return std::make_unique<HwTlas>(context);
-}
-// [/accel]
-
 }  // namespace
 
 // [adopt]

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The search for a fault's least case: which parts are asked for, by what numbers, and what is left at its end.
 #include "report/reproducer/simplify.h"
 
 #include <gtest/gtest.h>
@@ -8,9 +9,108 @@
 #include <limits>
 
 #include <twinray/geometry.h>
+#include "report/reproducer/ddmin.h"
+#include "report/reproducer/short_numbers.h"
 
 namespace twinray::reproducer {
 namespace {
+
+// Shows a fault where all of `needed` are there; counts questions.
+struct Needs {
+    Indices needed;
+    std::size_t questions = 0;
+
+    bool operator()(const Indices& kept) {
+        ++questions;
+        EXPECT_TRUE(std::ranges::is_sorted(kept));
+        return std::ranges::includes(kept, needed);
+    }
+};
+
+Indices reduced(std::size_t count, Needs& needs) {
+    return ddmin(count, [&](const Indices& kept) { return needs(kept); });
+}
+
+TEST(Ddmin, FindsExactlyWhatIsNeeded) {
+    for (const Indices& needed : {Indices{0}, Indices{99}, Indices{37}, Indices{0, 99}, Indices{3, 4, 5, 50, 51, 98}}) {
+        Needs needs{needed};
+        EXPECT_EQ(reduced(100, needs), needed);
+    }
+}
+
+TEST(Ddmin, OneOfManyTakesTwoQuestionsAHalving) {
+    for (const std::size_t where : {0u, 12345u, 65535u}) {
+        Needs needs{{where}};
+        EXPECT_EQ(reduced(65536, needs), Indices{where});
+        EXPECT_LE(needs.questions, 2u * 16u);
+    }
+}
+
+TEST(Ddmin, TheWorstCaseKeepsToItsBound) {
+    Needs needs{Indices(64)};
+    for (std::size_t i = 0; i < 64; ++i) needs.needed[i] = i;
+    EXPECT_EQ(reduced(64, needs).size(), 64u);
+    EXPECT_LE(needs.questions, 64u * 64u + 3u * 64u);
+}
+
+TEST(Ddmin, NothingCanBeLeftOutOfWhatComesBack) {
+    // Neither monotonic nor of one least answer: an even number of indices, one of which is divisible by 7.
+    const auto shows_fault = [](const Indices& kept) {
+        return kept.size() % 2 == 0 && std::ranges::any_of(kept, [](std::size_t i) { return i % 7 == 3; });
+    };
+    const Indices kept = ddmin(90, shows_fault);
+    ASSERT_TRUE(shows_fault(kept));
+    for (std::size_t left_out = 0; left_out < kept.size(); ++left_out) {
+        Indices fewer = kept;
+        fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(left_out));
+        EXPECT_FALSE(shows_fault(fewer));
+    }
+    EXPECT_EQ(ddmin(90, shows_fault), kept);
+}
+
+TEST(Ddmin, OneOrNoneIsLeftAsItIs) {
+    Needs needs{{}};
+    EXPECT_EQ(reduced(1, needs), Indices{0});
+    EXPECT_EQ(reduced(0, needs), Indices{});
+    EXPECT_EQ(needs.questions, 0u);
+}
+
+TEST(ShortNumbers, LengthOrdersThemAsAReaderWould) {
+    EXPECT_EQ(length_of(0), 0);
+    EXPECT_EQ(length_of(INFINITY), 0);
+    EXPECT_LT(length_of(0), length_of(1));
+    EXPECT_EQ(length_of(1), length_of(2));
+    EXPECT_LT(length_of(1), length_of(-1));
+    EXPECT_LT(length_of(4), length_of(3));
+    EXPECT_LT(length_of(3), length_of(0.1f));
+    EXPECT_LT(length_of(1), length_of(0x1p-60f));
+}
+
+TEST(ShortNumbers, AreShorterTheShortestFirstAndNear) {
+    for (const float value : {0.1f, -7.3f, 123456.7f, 1e-30f, -3e38f, std::numeric_limits<float>::denorm_min() * 5}) {
+        const std::vector<float> shorter = shorter_numbers(value);
+        ASSERT_FALSE(shorter.empty()) << value;
+        EXPECT_EQ(shorter.front(), 0);
+        EXPECT_TRUE(std::ranges::is_sorted(shorter, {}, length_of)) << value;
+        for (const float candidate : shorter) {
+            EXPECT_TRUE(std::isfinite(candidate)) << value;
+            EXPECT_LT(length_of(candidate), length_of(value)) << value << " -> " << candidate;
+        }
+        // The nearest of them has nearly as many bits, but of denormals, whose bits are few.
+        const auto nearest = std::ranges::min(shorter, {}, [&](float c) { return std::abs(c - value); });
+        const bool is_denormal = std::abs(value) < std::numeric_limits<float>::min();
+        EXPECT_TRUE(is_denormal || std::abs(nearest - value) <= std::abs(value) * 0x1p-18f) << value;
+    }
+    EXPECT_EQ(shorter_numbers(3.0009f)[1], 4);
+    EXPECT_EQ(std::ranges::count(shorter_numbers(3.0009f), 3), 1);
+}
+
+TEST(ShortNumbers, NothingIsShorterThanZeroAndNoEnd) {
+    EXPECT_TRUE(shorter_numbers(0).empty());
+    EXPECT_TRUE(shorter_numbers(INFINITY).empty());
+    EXPECT_TRUE(shorter_numbers(NAN).empty());
+    EXPECT_EQ(shorter_numbers(1), std::vector<float>{0});
+}
 
 Scene grids(std::size_t instances) {
     Scene scene;

@@ -1,19 +1,23 @@
 // SPDX-License-Identifier: MIT
-// The suite's runner, on a device.
+// The suite's runner, on a device, and cases that count crossings.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include <twinray/geometry.h>
+#include <twinray/scene.h>
+
+#include "engine/core/error.h"
+#include "report/page/verdict.h"
 #include "report/replay/replay.h"
 #include "report/replay/scene_file.h"
-#include "report/page/verdict.h"
 #include "report/suite/case_run.h"
 #include "report/suite/checks.h"
-#include "engine/core/error.h"
-#include <twinray/geometry.h>
-#include "validation/reference/aimed_rays.h"
+#include "report/suite/scenes.h"
 #include "tests/scene/temp_dir.h"
 #include "tests/support/device.h"
+#include "validation/leaks/inside_rays.h"
+#include "validation/reference/aimed_rays.h"
 
 namespace twinray::suite {
 namespace {
@@ -21,10 +25,9 @@ namespace {
 class SuiteRun : public ::testing::Test {
   protected:
     void SetUp() override {
-        if (!test::make_context()) return;
-        devices_ = std::make_unique<Devices>(ContextDesc{.validation = true});
-        can_run_ = true;
+        if (test::make_context()) devices_ = std::make_unique<Devices>(ContextDesc{.validation = true});
     }
+    bool can_run() const { return devices_ != nullptr; }
     std::vector<Record> run(const std::vector<SuiteCase>& cases, const Settings& settings = {}) {
         Recorder recorder({"now", "0.1", {}});
         SuiteState state;
@@ -32,7 +35,6 @@ class SuiteRun : public ::testing::Test {
         EXPECT_TRUE(devices_->context(Backend::software).validation_messages().empty());
         return recorder.records();
     }
-    bool can_run_ = false;
     std::unique_ptr<Devices> devices_;
 };
 
@@ -40,13 +42,17 @@ SuiteCase make_case(const char* id, std::function<void(CaseRun&)> run) {
     return {id, "title", "measures", "criterion", std::move(run)};
 }
 
-// Of every second triangle, so that a reference of the whole finds leaks.
-World world_with_holes() {
-    World world = world_of(make_icosphere(3));
-    Mesh holes = make_icosphere(3);
-    for (std::size_t i = 0; i < holes.triangles.size(); i += 2) holes.triangles[i] = uvec3(0);
-    world.fill = [holes](AbstractAccel& accel) { accel.push(holes); };
+// Traced without the triangles that `is_hole` names, so that a reference of the whole finds leaks.
+template <class IsHole>
+World world_with_holes(Mesh mesh, const IsHole& is_hole) {
+    World world = world_of(mesh);
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+        if (is_hole(i)) mesh.triangles[i] = uvec3(0);
+    world.fill = [mesh](AbstractAccel& accel) { accel.push(mesh); };
     return world;
+}
+World world_with_holes() {
+    return world_with_holes(make_icosphere(3), [](std::size_t i) { return i % 2 == 0; });
 }
 
 std::vector<Ray> rays() { return random_rays({vec3(-1), vec3(1)}, 500, 1); }
@@ -55,7 +61,7 @@ const std::function<void(CaseRun&)> sound = [](CaseRun& run) { run.measure(world
 
 // What is computed alike from the answers of both is the driver's fault where it is right by SwTlas.
 TEST_F(SuiteRun, WhatIsRightBySoftwareIsTheDriversFault) {
-    if (!can_run_) return;
+    if (!can_run()) return;
     const auto computed = [](CaseRun& run) {
         for (const char* backend : {"sw", "hw"})
             for (const int setting : {1, 2}) {
@@ -75,7 +81,7 @@ TEST_F(SuiteRun, WhatIsRightBySoftwareIsTheDriversFault) {
 }
 
 TEST_F(SuiteRun, EndsWhereTheDeviceIsLost) {
-    if (!can_run_) return;
+    if (!can_run()) return;
     const auto lost = [](CaseRun&) { throw DeviceLost("gone"); };
     Recorder recorder({"now", "0.1", {}});
     SuiteState state;
@@ -90,7 +96,7 @@ TEST_F(SuiteRun, EndsWhereTheDeviceIsLost) {
 }
 
 TEST_F(SuiteRun, MeasuresEveryAbleConfigurationAndListsTheOthers) {
-    if (!can_run_) return;
+    if (!can_run()) return;
     const std::vector<Record> records = run({make_case("W01", sound)});
     std::size_t configurations = 0;
     for (const Record& record : records) {
@@ -110,7 +116,7 @@ TEST_F(SuiteRun, MeasuresEveryAbleConfigurationAndListsTheOthers) {
 }
 
 TEST_F(SuiteRun, LeaksOfOursAndOfTheDriverAreToldApart) {
-    if (!can_run_) return;
+    if (!can_run()) return;
     const test::TempDir folder;
     const std::vector<Record> records =
         run({make_case("W01", [](CaseRun& here) { here.measure(world_with_holes(), rays()); })},
@@ -134,7 +140,7 @@ TEST_F(SuiteRun, LeaksOfOursAndOfTheDriverAreToldApart) {
 }
 
 TEST_F(SuiteRun, AControlThatShowsNothingIsAFaultOfOurs) {
-    if (!can_run_) return;
+    if (!can_run()) return;
     const Settings software{.backends = {Backend::software}, .levels = {Level::watertight, Level::fast}};
     Control control = without_precise();
     control.must_show = true;
@@ -158,7 +164,7 @@ TEST_F(SuiteRun, AControlThatShowsNothingIsAFaultOfOurs) {
 }
 
 TEST_F(SuiteRun, ACaseThatThrowsIsRecordedAndTheRestGoesOn) {
-    if (!can_run_) return;
+    if (!can_run()) return;
     const std::vector<Record> records =
         run({make_case("W01", [](CaseRun&) { fail("broken"); }), make_case("W03", sound)});
     ASSERT_GE(records.size(), 2u);
@@ -170,7 +176,7 @@ TEST_F(SuiteRun, ACaseThatThrowsIsRecordedAndTheRestGoesOn) {
 }
 
 TEST_F(SuiteRun, OnlyWhatIsAskedForRuns) {
-    if (!can_run_) return;
+    if (!can_run()) return;
     const Settings settings{.backends = {Backend::software}, .levels = {Level::watertight}, .only = {"W0?"}};
     const std::vector<Record> records = run({make_case("W01", sound), make_case("S02", sound)}, settings);
     ASSERT_EQ(records.size(), 1u);
@@ -178,7 +184,7 @@ TEST_F(SuiteRun, OnlyWhatIsAskedForRuns) {
 }
 
 TEST_F(SuiteRun, WhatIsLeftOfTheTimeGoesToWhatIsLeastCertain) {
-    if (!can_run_) return;
+    if (!can_run()) return;
     const auto amounts = [](std::size_t full) {
         return [full](CaseRun& here) { here.expect({}, {.n = here.amount(10, full)}); };
     };
@@ -189,7 +195,7 @@ TEST_F(SuiteRun, WhatIsLeftOfTheTimeGoesToWhatIsLeastCertain) {
 }
 
 TEST_F(SuiteRun, WhatIsDoneIsNotDoneAgain) {
-    if (!can_run_) return;
+    if (!can_run()) return;
     Recorder recorder({"now", "0.1", {}});
     SuiteState state{.cases = {{"W01", {}}}};
     suite::run(std::vector{make_case("W01", sound), make_case("S02", sound)}, {}, *devices_, recorder, state, true);
@@ -198,7 +204,7 @@ TEST_F(SuiteRun, WhatIsDoneIsNotDoneAgain) {
 }
 
 TEST_F(SuiteRun, EveryCaseRunsHoweverShortTheTime) {
-    if (!can_run_) return;
+    if (!can_run()) return;
     for (const double seconds : {0.0, 1e-9}) {
         const std::vector<Record> records =
             run({make_case("W01", sound), make_case("S02", sound)}, {.seconds = seconds});
@@ -210,11 +216,108 @@ TEST_F(SuiteRun, EveryCaseRunsHoweverShortTheTime) {
 }
 
 TEST_F(SuiteRun, ACaseThatAsksWhatTheTableOfClaimsDoesNotSayIsAFault) {
-    if (!can_run_) return;
+    if (!can_run()) return;
     const std::vector<Record> records = run({make_case("D01", sound)});
     ASSERT_EQ(records.size(), 1u);
     EXPECT_EQ(records[0].fault_of, "twinray");
     EXPECT_NE(records[0].reason.find("claims"), std::string::npos) << records[0].reason;
+}
+
+class CrossingsTest : public SuiteRun {
+  protected:
+    void SetUp() override {
+        SuiteRun::SetUp();
+        if (!can_run()) return;
+        for (const Configuration configuration : {Configuration{Backend::software, Level::fast},
+                                                  {Backend::software, Level::watertight},
+                                                  {Backend::software, Level::refined},
+                                                  {Backend::ray_query, Level::watertight},
+                                                  {Backend::ray_query, Level::refined}})
+            if (devices_->why_not(configuration).empty()) configurations_.push_back(configuration);
+    }
+    std::vector<uint> count(const Configuration& configuration, const World& world, std::span<const Ray> rays) {
+        AbstractAccel& accel = devices_->empty_accel(configuration);
+        world.fill(accel);
+        accel.sync();
+        return devices_->crossing_counter(configuration).count(accel, rays);
+    }
+    std::vector<Record> run(const std::function<void(CaseRun&)>& body) {
+        return SuiteRun::run({make_case("W02", body)}, {.levels = {Level::fast, Level::watertight}});
+    }
+    std::vector<Configuration> configurations_;  // none without a device
+};
+
+// Walls at z = 0, 1, ..., 11, two copies of each in two instances.
+World twelve_double_walls() {
+    Mesh walls;
+    for (uint i = 0; i < 12; ++i) append(walls, make_quad(vec3(-1, -1, i), vec3(2, 0, 0), vec3(0, 2, 0)));
+    World world = world_of(walls);
+    world.fill = [walls](AbstractAccel& accel) {
+        const std::vector<Transform> twice(2);
+        accel.push(walls, twice, std::vector<InstanceOptions>(2, {.non_opaque = true}));
+    };
+    return world;
+}
+
+TEST_F(CrossingsTest, EveryTriangleWithinTheIntervalCounts) {
+    constexpr float inf = std::numeric_limits<float>::infinity();
+    const Ray rays[] = {{{0.1f, 0.2f, -1}, 0, {0, 0, 1}, inf},     // all
+                        {{0.1f, 0.2f, -1}, 0, {0, 0, 1}, 3.5f},    // z = 0, 1, 2
+                        {{0.1f, 0.2f, -1}, 2.5f, {0, 0, 2}, inf},  // from beyond z = 4 on
+                        {{0.1f, 0.2f, 20}, 0, {0, 0, 1}, inf},     // away
+                        {{0.1f, 0.2f, 5.5f}, 0, {0, 0, -1}, inf},  // z = 5 to 0
+                        {{3, 0.2f, -1}, 0, {0, 0, 1}, inf}};       // beside
+    const std::vector<uint> expected = {24, 6, 14, 0, 12, 0};
+    for (const Configuration& configuration : configurations_)
+        EXPECT_EQ(count(configuration, twelve_double_walls(), rays), expected)
+            << name_of(configuration.backend) << name_of(configuration.level);
+}
+
+TEST_F(CrossingsTest, AMissingTriangleIsALeakOfItsBackend) {
+    if (configurations_.empty()) return;
+    const Mesh sphere = make_icosphere(2);
+    const ClosedMesh closed(sphere);
+    const std::vector<Ray> rays = InsideRays(closed, Aim::edges, 1).rays(0, 2'000);
+    Mesh holed = sphere;
+    holed.triangles[7] = uvec3(0);
+    const auto count_on = [&](const Mesh& mesh, bool fast_is_control) {
+        return run([&](CaseRun& here) {
+            here.count_crossings(world_of(mesh, {}, {.non_opaque = true}), rays,
+                                 [](const Ray&, uint count) { return count == 1; },
+                                 {.fast_is_control = fast_is_control});
+        });
+    };
+    for (const Record& record : count_on(holed, false)) {
+        if (!record.was_run || record.level == "fast") continue;
+        EXPECT_EQ(record.pass, false);
+        EXPECT_EQ(record.fault_of, record.backend == "sw" ? "twinray" : "driver");
+        EXPECT_GT(record.counts.at("CROSSED_0"), 0u);
+        EXPECT_EQ(record.counts.at("AGREE") + record.faults, 2'000u);
+        if (record.backend == "sw") {
+            EXPECT_EQ(record.example.substr(0, 16), "crossed 0 times ");
+        }
+    }
+    for (const Record& record : count_on(sphere, true)) {
+        if (record.backend != "sw" || !record.was_run) continue;
+        EXPECT_EQ(record.pass, true) << record.level << " " << record.faults;
+        EXPECT_EQ(record.level == "fast", record.faults > 0);
+    }
+}
+
+// Of 512 rays, a known kernel loses some.
+TEST_F(CrossingsTest, AControlMustShowMoreThanItsRate) {
+    if (configurations_.empty()) return;
+    const World world = world_with_holes(make_icosphere(2), [](std::size_t i) { return i < 32; });  // of 320
+    const ClosedMesh closed(make_icosphere(2));
+    const std::vector<Ray> rays = InsideRays(closed, Aim::edges, 1).rays(0, 512);
+    const auto passes = [&](double least_rate) {
+        Control control = without_precise();
+        control.must_show = true;
+        control.least_rate = least_rate;
+        return run([&](CaseRun& here) { here.measure(world, rays, {.control = control}); }).at(0).pass.value();
+    };
+    EXPECT_TRUE(passes(0.01));
+    EXPECT_FALSE(passes(0.5));
 }
 
 }  // namespace

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: MIT
+// Closed meshes, what lies inside them, and rays from there.
 #include "validation/leaks/closed_mesh.h"
 
 #include <gtest/gtest.h>
 
+#include <cstring>
+
 #include "engine/core/error.h"
+#include "tests/scene/temp_dir.h"
 #include "tests/validation/reference/meshes.h"
+#include "validation/leaks/inside_rays.h"
 
 namespace twinray {
 namespace {
@@ -33,13 +38,8 @@ Soup hollow_sphere() {
     return soup;
 }
 
-std::string error_of(const Soup& soup) {
-    try {
-        ClosedMesh{soup.view()};
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return "";
+std::string refusal_of(const Soup& soup) {
+    return error_of([&] { ClosedMesh{soup.view()}; });
 }
 
 TEST(ClosedMesh, VerticesAreEqualIfTheirPositionsAre) {
@@ -71,11 +71,9 @@ TEST(ClosedMesh, AnEdgeOfAMissingTriangleIsOpen) {
     EXPECT_EQ(edge->primitive, 1u);
     EXPECT_EQ(edge->vertices[0], vec3(0, 1, 0));
     EXPECT_EQ(edge->vertices[1], vec3(1, 0, 0));
-    EXPECT_NE(
-        error_of(open).find("mesh 'test' is not closed: 1 triangle(s) share the edge from (0, 1, 0) to (1, 0, 0), "
-                            "one of them triangle 1"),
-        std::string::npos)
-        << error_of(open);
+    expect_contains(refusal_of(open),
+                    "mesh 'test' is not closed: 1 triangle(s) share the edge from (0, 1, 0) to (1, 0, 0), "
+                    "one of them triangle 1");
 }
 
 TEST(ClosedMesh, TwoShellsMayTouchAlongAnEdge) {
@@ -101,11 +99,11 @@ TEST(ClosedMesh, ADegenerateTriangleClosesNoTJunction) {
 }
 
 TEST(ClosedMesh, NothingIsEnclosedByNothing) {
-    EXPECT_NE(error_of({}).find("has no triangle with an area"), std::string::npos);
+    expect_contains(refusal_of({}), "has no triangle with an area");
     Soup two_sided;
     two_sided.add({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
     two_sided.add({0, 0, 0}, {0, 1, 0}, {1, 0, 0});
-    EXPECT_EQ(error_of(two_sided), "");
+    EXPECT_NO_THROW(ClosedMesh{two_sided.view()});
     EXPECT_THROW(ClosedMesh(two_sided.view()).points_inside(16, 1), Error);
 }
 
@@ -164,6 +162,60 @@ TEST(ClosedMesh, PointsInsideKeepAwayFromTheTriangles) {
         EXPECT_LE(point.z, 1.5e-4f - 0x1p-14f);
     }
     EXPECT_THROW(ClosedMesh(too_thin.view()).points_inside(100, 1), Error);
+}
+
+double nearest_vertex(const Soup& soup, const Ray& ray) {
+    double nearest = INFINITY;
+    for (const vec3& position : soup.positions) nearest = std::min(nearest, distance_to_line(position, ray));
+    return nearest;
+}
+
+class InsideRaysTest : public ::testing::Test {
+  protected:
+    const Soup soup_ = sphere(2);
+    const ClosedMesh closed_{soup_.view()};
+};
+
+TEST_F(InsideRaysTest, StartInsideAndPassTheirTargets) {
+    std::size_t at_vertices = 0;
+    const std::vector<Ray> both = InsideRays(closed_, Aim::both, 3).rays(0, 400);
+    for (std::size_t i = 0; i < both.size(); ++i) {
+        ASSERT_TRUE(is_traceable(both[i]));
+        EXPECT_LT(length(both[i].origin), 1.0f);
+        const bool at_vertex = nearest_vertex(soup_, both[i]) < 1e-6;
+        EXPECT_TRUE(at_vertex || i % 2 == 1) << i;
+        at_vertices += at_vertex;
+    }
+    EXPECT_LT(at_vertices, 210u) << "points of edges are not vertices";
+    for (const Ray& ray : InsideRays(closed_, Aim::vertices, 3).rays(0, 100))
+        EXPECT_LT(nearest_vertex(soup_, ray), 1e-6);
+}
+
+TEST_F(InsideRaysTest, RayIDependsOnSeedAndIndexAlone) {
+    const InsideRays rays(closed_, Aim::both, 3), other(closed_, Aim::both, 4);
+    const std::vector<Ray> all = rays.rays(0, 1000), tail = rays.rays(990, 10);
+    for (std::size_t i = 0; i < tail.size(); ++i) {
+        EXPECT_EQ(std::memcmp(&tail[i], &all[990 + i], sizeof(Ray)), 0) << i;
+        const Ray of_other = other.ray(990 + i);
+        EXPECT_NE(std::memcmp(&tail[i], &of_other, sizeof(Ray)), 0) << i;
+    }
+}
+
+TEST_F(InsideRaysTest, EvenCountsAreLeaksOrDoubleHits) {
+    for (const Ray& ray : InsideRays(closed_, Aim::both, 3).rays(0, 200)) {
+        EXPECT_EQ(check_crossings(closed_, ray, 1), Parity::odd);
+        EXPECT_EQ(check_crossings(closed_, ray, 0), Parity::leak);
+        EXPECT_EQ(check_crossings(closed_, ray, 2), Parity::double_hit);
+        EXPECT_EQ(check_crossings(closed_, ray, 3), Parity::odd);  // what parity cannot see
+    }
+}
+
+TEST(InsideRays, ATriangleSeenEdgeOnAtTheOriginDecidesNothing) {
+    const Soup soup = cube();
+    const ClosedMesh closed(soup.view());
+    const vec3 direction(0.6f, 0.8f, 0);
+    EXPECT_EQ(check_crossings(closed, make_ray({0.5f, 0.4f, 1e-8f}, direction), 2), Parity::unspecified);
+    EXPECT_EQ(check_crossings(closed, make_ray({0.5f, 0.4f, 1e-3f}, direction), 2), Parity::double_hit);
 }
 
 }  // namespace

@@ -1,13 +1,55 @@
 // SPDX-License-Identifier: MIT
+// Classes of hits: their names and counts, and which of them an answer has.
 #include "validation/reference/classify.h"
 
 #include <gtest/gtest.h>
 
+#include <set>
+#include <string>
+
+#include <twinray/validation.h>
 #include "engine/core/error.h"
-#include "tests/validation/reference/float32_kernels.h"
+#include "tests/validation/reference/meshes.h"
 
 namespace twinray {
 namespace {
+
+TEST(HitClassCounts, NamesAreThoseOfTheReports) {
+    EXPECT_EQ(name_of(HitClass::agree), "AGREE");
+    EXPECT_EQ(name_of(HitClass::tie), "TIE");
+    EXPECT_EQ(name_of(HitClass::boundary), "BOUNDARY");
+    EXPECT_EQ(name_of(HitClass::boundary_hw_miss), "BOUNDARY_HW_MISS");
+    EXPECT_EQ(name_of(HitClass::unspecified), "UNSPECIFIED");
+    EXPECT_EQ(name_of(HitClass::invalid_input), "INVALID_INPUT");
+    EXPECT_EQ(name_of(HitClass::sw_leak), "SW_LEAK");
+    EXPECT_EQ(name_of(HitClass::sw_false), "SW_FALSE");
+    EXPECT_EQ(name_of(HitClass::t_err), "T_ERR");
+    EXPECT_EQ(name_of(HitClass::hw_leak), "HW_LEAK");
+    EXPECT_EQ(name_of(HitClass::hw_false), "HW_FALSE");
+    EXPECT_EQ(name_of(HitClass::hw_t_err), "HW_T_ERR");
+    EXPECT_EQ(name_of(HitClass::hw_range), "HW_RANGE");
+}
+
+TEST(HitClassCounts, OnlySoftwareLeaksFalseHitsAndTErrorsAreFaultsOfOurs) {
+    std::set<std::string> faults;
+    for (std::size_t i = 0; i < hit_class_count; ++i)
+        if (is_fault_of_ours(static_cast<HitClass>(i))) faults.emplace(name_of(static_cast<HitClass>(i)));
+    EXPECT_EQ(faults, (std::set<std::string>{"SW_LEAK", "SW_FALSE", "T_ERR"}));
+}
+
+TEST(HitClassCounts, CountsAddUp) {
+    HitClassCounts a, b;
+    a.add(HitClass::agree);
+    a.add(HitClass::sw_leak);
+    b.add(HitClass::sw_leak);
+    b.add(HitClass::t_err);
+    b.add(HitClass::hw_leak);
+    a += b;
+    EXPECT_EQ(a[HitClass::sw_leak], 2u);
+    EXPECT_EQ(a[HitClass::agree], 1u);
+    EXPECT_EQ(a.total(), 5u);
+    EXPECT_EQ(a.faults_of_ours(), 3u);
+}
 
 using namespace test;  // NOLINT
 
@@ -25,13 +67,13 @@ Hit hit_of(const ReferenceHit& hit) {
 }
 
 // Unit squares in z = 4 and z = 6: triangles 0, 1 and 2, 3, split along x = y.
-Scene32 two_sheets() {
+Soup two_sheets() {
     Soup soup;
     for (const float z : {4.0f, 6.0f}) {
         soup.add({0, 0, z}, {1, 0, z}, {1, 1, z});
         soup.add({0, 0, z}, {1, 1, z}, {0, 1, z});
     }
-    return one(soup);
+    return soup;
 }
 
 const Ray inner_ray = make_ray({0.7f, 0.2f, 0}, {0, 0, 1});
@@ -39,33 +81,33 @@ const Hit near_hit = {1, 4, 0, 0, 0.5f, 0.2f, 0, 0};
 const Hit far_hit = {1, 6, 2, 0, 0.5f, 0.2f, 0, 0};
 
 TEST(Classify, RightAnswersAgree) {
-    const ReferenceScene reference = two_sheets().reference();
+    const ReferenceScene reference = reference_of(two_sheets());
     EXPECT_EQ(check(reference, inner_ray, near_hit), both(HitClass::agree, HitClass::agree));
     EXPECT_EQ(check(reference, make_ray({2, 2, 0}, {0, 0, 1}), miss()), both(HitClass::agree, HitClass::agree));
 }
 
 TEST(Classify, AnAcceleratorWithoutAnAnswerHasNoClass) {
-    const RayResult ray_result = classify(two_sheets().reference(), inner_ray, near_hit, std::nullopt);
+    const RayResult ray_result = classify(reference_of(two_sheets()), inner_ray, near_hit, std::nullopt);
     EXPECT_EQ(ray_result.software, HitClass::agree);
     EXPECT_EQ(ray_result.hardware, std::nullopt);
 }
 
 TEST(Classify, InteriorHitReportedAsMissIsALeak) {
-    EXPECT_EQ(check(two_sheets().reference(), inner_ray, miss()), both(HitClass::sw_leak, HitClass::hw_leak));
+    EXPECT_EQ(check(reference_of(two_sheets()), inner_ray, miss()), both(HitClass::sw_leak, HitClass::hw_leak));
 }
 
 TEST(Classify, FarHitInPlaceOfANearOneIsALeak) {
-    EXPECT_EQ(check(two_sheets().reference(), inner_ray, far_hit), both(HitClass::sw_leak, HitClass::hw_leak));
+    EXPECT_EQ(check(reference_of(two_sheets()), inner_ray, far_hit), both(HitClass::sw_leak, HitClass::hw_leak));
 }
 
 TEST(Classify, FarHitThroughASharedEdgeIsALeak) {
     const Ray ray = make_ray({0.5f, 0.5f, 0}, {0, 0, 1});
     const Hit through = {1, 6, 2, 0, 0, 0.5f, 0, 0};
-    EXPECT_EQ(check(two_sheets().reference(), ray, through), both(HitClass::sw_leak, HitClass::hw_leak));
+    EXPECT_EQ(check(reference_of(two_sheets()), ray, through), both(HitClass::sw_leak, HitClass::hw_leak));
 }
 
 TEST(Classify, TriangleThatTheRayClearlyMissesIsFalse) {
-    const ReferenceScene reference = two_sheets().reference();
+    const ReferenceScene reference = reference_of(two_sheets());
     const Hit other = {1, 4, 1, 0, 0.2f, 0, 0, 0};
     EXPECT_EQ(check(reference, inner_ray, other), both(HitClass::sw_false, HitClass::hw_false));
     EXPECT_EQ(check(reference, make_ray({2, 2, 0}, {0, 0, 1}), near_hit), both(HitClass::sw_false, HitClass::hw_false));
@@ -74,13 +116,13 @@ TEST(Classify, TriangleThatTheRayClearlyMissesIsFalse) {
 TEST(Classify, HitOutsideTheIntervalIsFalse) {
     Ray ray = inner_ray;
     ray.t_min = 4.5f;
-    EXPECT_EQ(check(two_sheets().reference(), ray, near_hit), both(HitClass::sw_false, HitClass::hw_false));
+    EXPECT_EQ(check(reference_of(two_sheets()), ray, near_hit), both(HitClass::sw_false, HitClass::hw_false));
 }
 
 TEST(Classify, PrimitiveOrInstanceThatCannotBeHitIsFalse) {
-    Scene32 scene = two_sheets();
-    scene.soups[0].add(vec3(NAN), vec3(0), vec3(1));
-    const ReferenceScene reference = scene.reference();
+    Soup soup = two_sheets();
+    soup.add(vec3(NAN), vec3(0), vec3(1));
+    const ReferenceScene reference = reference_of(soup);
     for (const auto& [primitive, instance] : {std::pair{4u, 0u}, std::pair{5u, 0u}, std::pair{0u, 1u}}) {
         Hit hit = near_hit;
         hit.primitive_index = primitive;
@@ -90,7 +132,7 @@ TEST(Classify, PrimitiveOrInstanceThatCannotBeHitIsFalse) {
 }
 
 TEST(Classify, NeighbourAcrossASharedEdgeIsATie) {
-    const ReferenceScene reference = two_sheets().reference();
+    const ReferenceScene reference = reference_of(two_sheets());
     const Ray ray = make_ray({0.5f, 0.5f, 0}, {0, 0, 1});
     ASSERT_EQ(reference.closest_hit(ray).primitive, 0u);
     const Hit neighbour = {1, 4, 1, 0, 0.5f, 0, 0, 0};
@@ -98,7 +140,7 @@ TEST(Classify, NeighbourAcrossASharedEdgeIsATie) {
 }
 
 TEST(Classify, SilhouetteIsBoundary) {
-    const ReferenceScene reference = two_sheets().reference();
+    const ReferenceScene reference = reference_of(two_sheets());
     const Ray on_rim = make_ray({1, 0.5f, 0}, {0, 0, 1});
     ASSERT_TRUE(reference.closest_hit(on_rim).hit);
     EXPECT_EQ(check(reference, on_rim, {1, 6, 2, 0, 0.5f, 0.5f, 0, 0}), both(HitClass::boundary, HitClass::boundary));
@@ -109,9 +151,9 @@ TEST(Classify, SilhouetteIsBoundary) {
 }
 
 TEST(Classify, RayDownTheWallOfACubeMayHitTopOrFloor) {
-    Scene32 scene = one(cube());
-    scene.soups[0].add({-9, -9, 0}, {9, -9, 0}, {0, 9, 0});
-    const ReferenceScene reference = scene.reference();
+    Soup soup = cube();
+    soup.add({-9, -9, 0}, {9, -9, 0}, {0, 9, 0});
+    const ReferenceScene reference = reference_of(soup);
     const Ray ray = make_ray({1, 0.3f, 3}, {0, 0, -1});
     const ReferenceHit top = reference.closest_hit(ray);
     ASSERT_EQ(top.t, 2);
@@ -123,7 +165,7 @@ TEST(Classify, RayDownTheWallOfACubeMayHitTopOrFloor) {
 }
 
 TEST(Classify, WrongTIsTErr) {
-    const ReferenceScene reference = two_sheets().reference();
+    const ReferenceScene reference = reference_of(two_sheets());
     Hit hit = near_hit;
     hit.t = 4 + 1e-4f;
     EXPECT_EQ(check(reference, inner_ray, hit), both(HitClass::t_err, HitClass::hw_t_err));
@@ -133,7 +175,7 @@ TEST(Classify, WrongTIsTErr) {
 
 TEST(Classify, HardwareIsAllowedTheErrorOfItsOwnInverse) {
     const Transform nearly_singular = {{vec4(1, 1, 0, 0), vec4(1, 1 + 0x1p-10f, 0, 0), vec4(0, 0, 1, 0)}};
-    const ReferenceScene reference = one(two_sheets().soups[0], nearly_singular).reference();
+    const ReferenceScene reference = reference_of(two_sheets(), nearly_singular);
     const Ray ray = make_ray(transform_point(nearly_singular, {0.7f, 0.2f, 0}), {0, 0, 1});
     Hit hit = near_hit;
     ASSERT_EQ(check(reference, ray, hit), both(HitClass::agree, HitClass::agree));
@@ -142,7 +184,7 @@ TEST(Classify, HardwareIsAllowedTheErrorOfItsOwnInverse) {
 }
 
 TEST(Classify, WrongBarycentricsAreOutOfRange) {
-    const ReferenceScene reference = two_sheets().reference();
+    const ReferenceScene reference = reference_of(two_sheets());
     Hit swapped = near_hit;
     std::swap(swapped.u, swapped.v);
     EXPECT_EQ(check(reference, inner_ray, swapped), both(HitClass::t_err, HitClass::hw_range));
@@ -154,7 +196,7 @@ TEST(Classify, WrongBarycentricsAreOutOfRange) {
 }
 
 TEST(Classify, RaysThatNobodyMayTraceMustMiss) {
-    const ReferenceScene reference = two_sheets().reference();
+    const ReferenceScene reference = reference_of(two_sheets());
     const Ray ray = make_ray(vec3(NAN), {0, 0, 1});
     EXPECT_EQ(check(reference, ray, miss()), both(HitClass::agree, HitClass::agree));
     EXPECT_EQ(check(reference, ray, near_hit), both(HitClass::invalid_input, HitClass::invalid_input));
@@ -162,7 +204,7 @@ TEST(Classify, RaysThatNobodyMayTraceMustMiss) {
 }
 
 TEST(Classify, HitAtAnEndOfTheIntervalIsUnspecified) {
-    const ReferenceScene reference = two_sheets().reference();
+    const ReferenceScene reference = reference_of(two_sheets());
     Ray ray = inner_ray;
     ray.t_max = std::nextafter(4.0f, 5.0f);
     ASSERT_TRUE(reference.closest_hit(ray).hit);
@@ -177,13 +219,13 @@ TEST(Classify, HitAtAnEndOfTheIntervalIsUnspecified) {
 TEST(Classify, DistanceBeyondFloat32IsUnspecified) {
     Ray ray = inner_ray;
     ray.direction.z = 1e-39f;
-    ASSERT_TRUE(two_sheets().reference().closest_hit(ray).hit);
-    EXPECT_EQ(check(two_sheets().reference(), ray, miss()), both(HitClass::unspecified, HitClass::unspecified));
+    ASSERT_TRUE(reference_of(two_sheets()).closest_hit(ray).hit);
+    EXPECT_EQ(check(reference_of(two_sheets()), ray, miss()), both(HitClass::unspecified, HitClass::unspecified));
 }
 
 // No rounding excuses a miss of a closed mesh from inside.
 void expect_misses_leak(const Soup& soup, const Transform& transform = {}) {
-    const ReferenceScene reference = one(soup, transform).reference();
+    const ReferenceScene reference = reference_of(soup, transform);
     std::vector<Ray> rays = rays_from_inside(soup, transform, 1000, inside_seed);
     for (std::size_t i = 0; i < 100; ++i)  // exactly through vertices, where nothing moves them
         rays.push_back(make_ray(transform_point(transform, vec3(0)),
@@ -227,13 +269,13 @@ TEST(Classify, TJunctionIsUnspecified) {
     soup.add({0, 0, 4}, {1, 0, 4}, {1, 1, 4});
     soup.add({1, 0, 4}, {2, 0, 4}, {1, 0.3f, 4});
     soup.add({1, 0.3f, 4}, {2, 0, 4}, {1, 1, 4});
-    const ReferenceScene reference = one(soup).reference();
+    const ReferenceScene reference = reference_of(soup);
     const Ray ray = make_ray({1, 0.3f, 0}, {0, 0, 1});
     EXPECT_EQ(check(reference, ray, miss()), both(HitClass::unspecified, HitClass::unspecified));
 }
 
 TEST(Classify, SilhouetteOfAClosedMeshIsBoundary) {
-    const ReferenceScene reference = one(cube()).reference();
+    const ReferenceScene reference = reference_of(cube());
     for (const float x : {0.0f, 1.0f}) {
         const Ray down_a_wall = make_ray({x, 0.3f, 3}, {0, 0, -1});
         EXPECT_EQ(check(reference, down_a_wall, miss()), both(HitClass::boundary, HitClass::boundary_hw_miss));
@@ -243,7 +285,7 @@ TEST(Classify, SilhouetteOfAClosedMeshIsBoundary) {
 }
 
 TEST(Classify, AnyHitIsClassifiedByHitAndMiss) {
-    const ReferenceScene reference = two_sheets().reference();
+    const ReferenceScene reference = reference_of(two_sheets());
     EXPECT_EQ(classify_any(reference, inner_ray, true, false), both(HitClass::agree, HitClass::hw_leak));
     EXPECT_EQ(classify_any(reference, make_ray({2, 2, 0}, {0, 0, 1}), true, false),
               both(HitClass::sw_false, HitClass::agree));
@@ -252,7 +294,7 @@ TEST(Classify, AnyHitIsClassifiedByHitAndMiss) {
 }
 
 TEST(ClassifyAll, ClassifiesEachRayAndRejectsListsOfAnotherLength) {
-    const ReferenceScene reference = two_sheets().reference();
+    const ReferenceScene reference = reference_of(two_sheets());
     const std::vector<Ray> rays(3, inner_ray);
     const std::vector<Hit> hits = {near_hit, far_hit, miss()};
     const std::vector<RayResult> ray_results = classify_all(reference, rays, hits, {});

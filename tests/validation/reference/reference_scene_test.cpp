@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/core/error.h"
+#include "tests/scene/temp_dir.h"
 #include "validation/reference/aimed_rays.h"
 #include "tests/validation/reference/meshes.h"
 
@@ -207,21 +207,10 @@ TEST(ReferenceScene, CullingKeepsTheTrianglesWhoseNormalTellsSo) {
 TEST(ReferenceScene, WrongInputIsNamed) {
     Soup soup = cube();
     soup.triangles[3].y = 8;
-    const auto message = [](const auto& make) -> std::string {
-        try {
-            make();
-        } catch (const Error& error) {
-            return error.what();
-        }
-        return "no error";
-    };
-    EXPECT_EQ(message([&] { reference_of(soup); }),
+    EXPECT_EQ(error_of([&] { reference_of(soup); }),
               "mesh 'test': triangle 3 has vertex index 8, but the mesh has only 8 vertices");
-    EXPECT_EQ(message([] { reference_of({cube()}, {{}, {1, {}, 0}}); }), "instance 1: geometry 1 of 1");
-    EXPECT_NE(message([] {
-                  reference_of({cube()}, {{0, Transform::scaling({1, 0, 1}), 0}});
-              }).find("instance 0"),
-              std::string::npos);
+    EXPECT_EQ(error_of([] { reference_of({cube()}, {{}, {1, {}, 0}}); }), "instance 1: geometry 1 of 1");
+    expect_contains(error_of([] { reference_of({cube()}, {{0, Transform::scaling({1, 0, 1}), 0}}); }), "instance 0");
 }
 
 TEST(ReferenceScene, OfASceneFollowsItsInstances) {

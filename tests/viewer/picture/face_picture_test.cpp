@@ -18,7 +18,6 @@ constexpr Rgb mark_color = {255, 0, 0};
 // Seen along -z from z = 10, 8 x 8 wide: two triangles from x = -2 to 0 and from 0 to 2, and a larger square behind.
 class FacePictureTest : public AccelTest {
   protected:
-    AccelOptions accel_options() const override { return {.compiles_in_background = false}; }
     void SetUp() override {
         AccelTest::SetUp();
         if (IsSkipped() || HasFatalFailure()) return;

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// What SwTlas computes on the way to one triangle, beside what is true: the arithmetic of the shaders run on the CPU.
+// A faulty ray is explained by that.
+#pragma once
+
+#include <filesystem>
+#include <iosfwd>
+
+#include "report/suite/cpu_reference.h"
+#include "report/suite/devices.h"
+#include "validation/exact/exact_reference.h"
+
+namespace twinray::replay {
+
+class Explainer {
+  public:
+    // The scene is only read here; the reference must outlive it.
+    Explainer(const Scene& scene, const ReferenceScene& reference, const Ray& ray, Level level);
+
+    // The triangle test: vertices as the ray sees them, edge functions in float32 and exactly, and what each decides.
+    void print_test(std::ostream& out, exact::TriangleId triangle) const;
+    // The boxes of SwTlas's trees that lead to it, and whether the ray enters them with the padding and without.
+    void print_boxes(std::ostream& out, exact::TriangleId triangle) const;
+
+  private:
+    RaySpace object_space(uint instance) const;
+
+    const ReferenceScene& reference_;
+    Ray ray_;       // as given
+    Ray searched_;  // as the level searches with it
+    std::unique_ptr<reference::Scene> on_cpu_;
+};
+
+// Traces the ray of a replay file again on every accelerator of the device and tells step by step what each does and
+// why it is right or wrong. True: SwTlas shows a fault of ours, still. Throws Error where the scene is not the one that
+// the file names.
+bool show(const std::filesystem::path& file, suite::Devices& devices, std::ostream& out);
+
+}  // namespace twinray::replay

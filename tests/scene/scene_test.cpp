@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: MIT
+// Meshes and scenes in memory; and every scene file that this machine has loads or gives one Error that names it.
+#include <twinray/scene.h>
+
+#include "engine/scene/importers/weld.h"
+#include "engine/scene/mesh.h"
+#include "tests/scene/temp_dir.h"
+
+namespace twinray::test {
+namespace {
+
+Mesh mesh_of(std::vector<vec3> positions, std::vector<uvec3> triangles) {
+    Mesh mesh;
+    mesh.name = "m";
+    mesh.positions = std::move(positions);
+    mesh.triangles = std::move(triangles);
+    return mesh;
+}
+
+TEST(Mesh, BoundsHoldTheVerticesThatTrianglesUse) {
+    const Mesh mesh = mesh_of({{0, 0, 0}, {1, 2, 0}, {0, 0, -3}, {99, 99, 99}}, {{0, 1, 2}});
+    EXPECT_EQ(bounds_of(mesh).lo, vec3(0, 0, -3));
+    EXPECT_EQ(bounds_of(mesh).hi, vec3(1, 2, 0));
+}
+
+TEST(Mesh, BoundsLeaveOutNonFiniteVertices) {
+    const Mesh mesh = mesh_of({{0, 0, 0}, {NAN, 50, 50}, {1, 1, 1}, {INFINITY, 0, 0}}, {{0, 1, 2}, {0, 2, 3}});
+    EXPECT_EQ(bounds_of(mesh).lo, vec3(0));
+    EXPECT_EQ(bounds_of(mesh).hi, vec3(1));
+}
+
+TEST(Mesh, BoundsOfNothingAreEmpty) {
+    EXPECT_TRUE(bounds_of(mesh_of({{1, 1, 1}}, {})).is_empty());
+    EXPECT_EQ(Bounds().size(), vec3(0));
+}
+
+// Of a cube whose vertices are shared the diagonals, whichever way its squares are cut.
+TEST(Mesh, SmoothNormalsAreWeightedByAngles) {
+    const auto cube = [](bool is_cut_otherwise) {
+        std::vector<vec3> positions;
+        for (int i = 0; i < 8; ++i) positions.push_back({i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1});
+        std::vector<uvec3> triangles;
+        for (const auto& f :
+             {std::array<uint, 4>{1, 3, 7, 5}, {0, 4, 6, 2}, {2, 6, 7, 3}, {0, 1, 5, 4}, {4, 5, 7, 6}, {0, 2, 3, 1}}) {
+            const std::size_t k = is_cut_otherwise ? 1 : 0;
+            triangles.push_back({f[k], f[k + 1], f[k + 2]});
+            triangles.push_back({f[k], f[k + 2], f[(k + 3) % 4]});
+        }
+        return mesh_of(std::move(positions), std::move(triangles));
+    };
+    for (const bool is_cut_otherwise : {false, true}) {
+        const Mesh mesh = cube(is_cut_otherwise);
+        const std::vector<vec3> normals = smooth_normals(mesh);
+        for (std::size_t i = 0; i < 8; ++i)
+            for (std::size_t k = 0; k < 3; ++k)
+                EXPECT_NEAR(normals[i][k], mesh.positions[i][k] / std::sqrt(3.0f), 1e-7f);
+    }
+}
+
+TEST(Mesh, SmoothNormalsOfTinyMeshesHaveADirectionAndOfNothingNone) {
+    const float s = 1e-30f;
+    const std::vector<vec3> normals = smooth_normals(
+        mesh_of({{0, 0, 0}, {s, 0, 0}, {0, s, 0}, {9, 9, 9}, {NAN, 0, 0}}, {{0, 1, 2}, {0, 0, 1}, {0, 1, 4}}));
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(normals[static_cast<std::size_t>(i)], vec3(0, 0, 1));
+    EXPECT_EQ(normals[3], vec3(0));
+    EXPECT_EQ(normals[4], vec3(0));
+}
+
+TEST(Mesh, AnIndexOutOfRangeIsNamed) {
+    const Mesh mesh = mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {2, 1, 3}});
+    expect_contains(error_of([&] { check_indices(mesh); }),
+                    "mesh 'm': triangle 1 has vertex index 3, but the mesh has only 3 vertices");
+    EXPECT_NO_THROW(check_indices(mesh_of(mesh.positions, {{0, 1, 2}})));
+}
+
+TEST(Mesh, NonFiniteTrianglesAreCountedOnceEach) {
+    const Mesh mesh = mesh_of({{0, 0, 0}, {1, 0, 0}, {0, NAN, INFINITY}, {0, 0, -INFINITY}},
+                              {{0, 1, 1}, {0, 1, 2}, {3, 2, 3}, {2, 0, 1}});
+    EXPECT_EQ(count_non_finite_triangles(mesh), 3u);
+}
+
+TEST(Weld, ExactlyEqualVerticesBecomeOneAndTrianglesKeepTheirOrder) {
+    Mesh mesh =
+        mesh_of({{0, 0, 0}, {1, 0, 0}, {1e-30f, 0, 0}, {-0.0f, 0, 0}, {1, 0, 0}}, {{0, 1, 2}, {3, 4, 2}, {0, 3, 1}});
+    mesh.materials = {4, 5, 6};
+    const Mesh welded = weld_equal_vertices(mesh);
+    EXPECT_EQ(welded.positions, (std::vector<vec3>{{0, 0, 0}, {1, 0, 0}, {1e-30f, 0, 0}}));
+    EXPECT_EQ(welded.triangles, (std::vector<uvec3>{{0, 1, 2}, {0, 1, 2}, {0, 0, 1}}));
+    EXPECT_EQ(welded.materials, mesh.materials);
+    EXPECT_EQ(welded.name, "m");
+}
+
+TEST(Weld, VerticesThatDifferInAnyAttributeStayApart) {
+    Mesh mesh = mesh_of({{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, {{0, 1, 2}});
+    mesh.uvs = {{0, 0}, {1, 0}, {0, 0}};
+    EXPECT_EQ(weld_equal_vertices(mesh).uvs, (std::vector<vec2>{{0, 0}, {1, 0}}));
+    mesh.normals = {{0, 0, 1}, {0, 0, 1}, {0, 1, 0}};
+    EXPECT_EQ(weld_equal_vertices(mesh).positions.size(), 3u);
+    mesh.uvs.clear(), mesh.normals.clear();
+    mesh.second_uvs = {{0, 0}, {1, 0}, {0, 0}};
+    EXPECT_EQ(weld_equal_vertices(mesh).second_uvs, (std::vector<vec2>{{0, 0}, {1, 0}}));
+    mesh.colors = {vec4(1), vec4(1), vec4(1, 1, 1, 0)};
+    EXPECT_EQ(weld_equal_vertices(mesh).colors, mesh.colors);
+}
+
+TEST(Mesh, TheFirstTextureCoordinatesStandInForTheSecond) {
+    Mesh mesh = mesh_of({{0, 0, 0}}, {});
+    mesh.uvs = {{1, 2}};
+    EXPECT_EQ(mesh.uv_set(0), mesh.uvs);
+    EXPECT_EQ(mesh.uv_set(1), mesh.uvs);
+    mesh.second_uvs = {{3, 4}};
+    EXPECT_EQ(mesh.uv_set(0), mesh.uvs);
+    EXPECT_EQ(mesh.uv_set(1), mesh.second_uvs);
+}
+
+TEST(Mesh, DirectionsAreUnitVectorsOrNone) {
+    const dvec3 up(0, 0, 1), none(0);
+    EXPECT_EQ(unit_or_zero({0, 0, 1e-45}), up);
+    EXPECT_EQ(unit_or_zero({0, 0, 3e38}), up);
+    EXPECT_EQ(unit_or_zero({0, 0, 0}), none);
+    EXPECT_EQ(unit_or_zero({0, 0, INFINITY}), none);
+    EXPECT_EQ(unit_or_zero({1, NAN, 0}), none);
+}
+
+TEST(Scene, BoundsAndCountsFollowTheInstances) {
+    Scene scene;
+    scene.meshes = {mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}), mesh_of({}, {})};
+    scene.instances = {
+        {"a", 0, Transform::translation({5, 0, 0})}, {"b", 0, Transform::scaling({-2, 1, 1})}, {"c", 1, {}}};
+    EXPECT_EQ(bounds_of(scene).lo, vec3(-2, 0, 0));
+    EXPECT_EQ(bounds_of(scene).hi, vec3(6, 1, 0));
+    EXPECT_EQ(count_triangles(scene), 2u);
+}
+
+TEST(Scene, BoundsTakeAllEightCornersOfATurnedBox) {
+    Scene scene;
+    scene.meshes = {mesh_of({{0, 0, 0}, {1, 2, 4}, {1, 0, 4}}, {{0, 1, 2}})};
+    // x' = x - y + z, so that its extremes lie at corners that are neither lo nor hi.
+    scene.instances = {{"sheared", 0, {{vec4(1, -1, 1, 0), vec4(0, 1, 0, 0), vec4(0, 0, 1, 0)}}}};
+    EXPECT_EQ(bounds_of(scene).lo, vec3(-2, 0, 0));
+    EXPECT_EQ(bounds_of(scene).hi, vec3(5, 2, 4));
+}
+
+TEST(Scene, UnknownSuffixesAreRefusedWithTheKnownOnes) {
+    const TempDir dir;
+    expect_contains(error_of([&] { load_scene(dir.write("a.fbx", "x")); }),
+                    "unknown suffix '.fbx'; scenes are .gltf, .glb");
+    expect_contains(error_of([&] { load_scene(dir.write("a.glb.gz", "x")); }), "unknown suffix '.glb.gz'");
+    expect_contains(error_of([&] { load_scene(dir.write("a", "x")); }), "unknown suffix ''");
+}
+
+// $TWINRAY_ASSETS, the assets beside the sources, or what Debian's assimp-testmodels installs.
+std::filesystem::path find_assets() {
+    const char* given = std::getenv("TWINRAY_ASSETS");
+    for (const std::filesystem::path& folder :
+         {std::filesystem::path(given ? given : ""), std::filesystem::path(TWINRAY_SOURCE_DIR) / "../shared/assets",
+          std::filesystem::path("/usr/share/assimp/models/glTF2")})
+        if (!folder.empty() && std::filesystem::is_directory(folder)) return folder;
+    return {};
+}
+
+bool is_scene(const std::filesystem::path& file) {
+    const std::string name = file.filename().string();
+    for (const char* suffix : {".gltf", ".glb", ".obj", ".ply", ".stl", ".gz"})
+        if (name.ends_with(suffix)) return true;
+    return false;
+}
+
+void expect_consistent(const Scene& scene) {
+    ASSERT_FALSE(scene.materials.empty());
+    EXPECT_GT(count_triangles(scene), 0u);
+    for (const Instance& instance : scene.instances) {
+        ASSERT_LT(instance.mesh, scene.meshes.size());
+        EXPECT_NE(determinant(instance.transform), 0);
+    }
+    for (const Mesh& mesh : scene.meshes) {
+        EXPECT_NO_THROW(check_indices(mesh));
+        EXPECT_FALSE(mesh.triangles.empty());
+        for (const std::size_t size :
+             {mesh.normals.size(), mesh.tangents.size(), mesh.uvs.size(), mesh.second_uvs.size(), mesh.colors.size()})
+            EXPECT_TRUE(size == 0 || size == mesh.positions.size());
+        ASSERT_EQ(mesh.materials.size(), mesh.triangles.size());
+        for (const uint material : mesh.materials) ASSERT_LT(material, scene.materials.size());
+    }
+    for (const Material& material : scene.materials)
+        EXPECT_LT(material.base_color_texture.image, static_cast<int>(scene.images.size()));
+    for (const Image& image : scene.images) EXPECT_EQ(image.rgba.size(), std::size_t(4) * image.width * image.height);
+}
+
+TEST(AssetSweep, EveryFileLoadsOrGivesOneErrorThatNamesIt) {
+    const std::filesystem::path assets = find_assets();
+    if (assets.empty()) GTEST_SKIP() << "no assets: set TWINRAY_ASSETS or install assimp-testmodels";
+    std::size_t loaded = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(assets)) {
+        if (!entry.is_regular_file() || !is_scene(entry.path())) continue;
+        SCOPED_TRACE(entry.path().string());
+        try {
+            expect_consistent(load_scene(entry.path()));
+            ++loaded;
+        } catch (const Error& e) {
+            expect_contains(e.what(), entry.path().filename().string());
+        }
+    }
+    EXPECT_GT(loaded, 0u);
+}
+
+}  // namespace
+}  // namespace twinray::test
