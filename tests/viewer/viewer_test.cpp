@@ -29,6 +29,7 @@ class ViewerTest : public test::VulkanTest {
     }
     void TearDown() override {
         if (!folder_.empty()) std::filesystem::remove_all(folder_);
+        VulkanTest::TearDown();
     }
     void write_boxes(int count) {
         std::ofstream out(file());
