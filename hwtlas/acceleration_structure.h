@@ -74,7 +74,7 @@ class CompactedSizes {
     CompactedSizes(const CompactedSizes&) = delete;
     CompactedSizes& operator=(const CompactedSizes&) = delete;
 
-    // Of the structure at `index`; nothing while the GPU has not reached `built`, at which the commands are done.
+    // Bytes for the structure at `index`; nothing while the GPU has not reached `built`, where the commands are done.
     std::optional<std::uint64_t> of(std::size_t index, SyncPoint built);
     // The same once it has been told.
     std::uint64_t bytes_of(std::size_t index) const;

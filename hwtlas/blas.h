@@ -12,7 +12,7 @@
 
 namespace twinray {
 
-// What the driver is given for a mesh: finite positions alone, and one triangle for each triangle of the mesh. One that
+// The driver's input for a mesh: finite positions alone, and one triangle for each triangle of the mesh. One that
 // is not active (a non-finite vertex, no area) keeps its index but is collapsed to a point. Vulkan has no word for an
 // infinite vertex, and a driver may let a NaN leak into the boxes of the triangles beside it, or hit triangles without
 // area.

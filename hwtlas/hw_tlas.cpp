@@ -41,7 +41,7 @@ class PipelineProgram final : public TraceProgram {
 
     Context& context_;
     std::span<const std::uint32_t> any_hit_, intersection_;
-    // By query, and whether it refines.
+    // Indexed by query, and whether it refines.
     mutable std::array<std::array<std::unique_ptr<RayTracingPipeline>, 2>, 2> pipelines_;
 };
 

@@ -35,7 +35,7 @@ StructureBuild build_of(std::uint64_t driver_records, std::size_t count, bool ca
     return build;
 }
 
-// As the kernel writes it that gathers many.
+// Writes the same as the kernel that gathers many.
 void write_sole(Commands& commands, const Tlas& tlas, const SoleInstance& sole) {
     const auto pass = commands.pass("hwtlas instance");
     InstanceRecord record = sole.record;

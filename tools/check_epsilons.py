@@ -9,7 +9,7 @@ import re
 import sys
 
 root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).resolve().parent.parent)
-FOLDERS = ["include", "shaders", "engine", "swtlas", "hwtlas", "renderer", "samples", "validation/reference", "validation/leaks"]
+FOLDERS = "include shaders engine swtlas hwtlas renderer samples validation/reference validation/leaks".split()
 SUFFIXES = {".h", ".cpp", ".glsl", ".comp", ".rgen", ".rmiss", ".rchit", ".rahit", ".rint", ".vert", ".frag"}
 LIMIT = 1 / 64
 LITERAL = re.compile(r"(?<![\w.])(0[xX][0-9a-fA-F.]+[pP][+-]?\d+|(?:\d+\.\d*|\.\d+|\d+(?=[eE]))(?:[eE][+-]?\d+)?)(?=[fFlL]*\b|[fF]|\W)")

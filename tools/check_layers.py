@@ -145,7 +145,11 @@ size = {"headers": len(face), "lines": sum(lines_of(root, header) for header in 
 found += [f"include/twinray:1: {size[what]} {what}, at most {most}" for what, most in MOST_PUBLIC.items() if size[what] > most]
 found += [f"{header}:1: {lines_of(root, header)} lines, at most {most}"
           for header, most in MOST_LINES.items() if lines_of(root, header) > most]
-behind = f"{len(lonely)} private headers with one reader; a public face of {size['headers']} headers and {size['lines']} lines; " + ", ".join(f"{count} headers behind {header}" for header, count in counts.items())
+behind = "; ".join((
+    f"{len(lonely)} private headers with one reader",
+    f"a public face of {size['headers']} headers and {size['lines']} lines",
+    ", ".join(f"{count} headers behind {header}" for header, count in counts.items()),
+))
 print("\n".join(found) or f"check_layers: every include keeps to the table; {behind}")
 sys.exit(1 if found else 0)
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the compiler of a device makes of kernels, and what builds of SwTlas record and move: rows of `twinray kernels`.
+// Rows of `twinray kernels`: kernels as the compiler of a device makes them, and what builds of SwTlas record and move.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -19,15 +19,15 @@ struct BuildRow {
     double read = 0, written = 0;  // bytes a triangle: what a time on a device is to be compared with
 };
 
-// Of one mesh of build_triangles and one instance, by the software accelerator, in each layout and quality. The context
-// runs nothing (ContextDesc::watch_kernels).
+// Builds one mesh of build_triangles and one instance, by the software accelerator, in each layout and quality. The
+// context runs nothing (ContextDesc::watch_kernels).
 inline constexpr std::size_t build_triangles = 81'920;
 std::vector<BuildRow> list_builds(Context& context);
 
 std::string table_of(std::span<const BuildRow> rows);
 nlohmann::json to_json(const BuildRow& row, const std::string& device);
 
-// What the compiler of one device makes of the kernels of list_kernels().
+// The kernels of list_kernels(), as the compiler of one device makes them.
 struct CompiledKernels {
     std::string device;  // or its family
     std::string name, driver;

@@ -50,9 +50,6 @@ AccelBackend::AccelBackend(Context& context, std::string name, const AccelOption
 
 AccelBackend::~AccelBackend() = default;
 
-bool AccelBackend::PushedGeometry::is_synced() const { return held->built || instances.first; }
-float AccelBackend::unit_of(std::span<const vec3> positions) const { return Geometry::near_unit(positions); }
-
 AccelHandle AccelBackend::push(const MeshView& mesh, const Transform& transform, const InstanceOptions& options) {
     return push(mesh, std::span(&transform, 1), std::span(&options, 1));
 }

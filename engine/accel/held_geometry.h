@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What an accelerator holds of a geometry, and what a sync records before it is certain to run.
+// A geometry as an accelerator holds it, and a sync's records before it is certain to run.
 #pragma once
 
 #include "engine/accel/accel_backend.h"
@@ -22,7 +22,7 @@ struct AccelBackend::HeldGeometry {
     bool is_listed = false;   // among edited_
 };
 
-// What a sync recorded, to be committed once it is certain to run.
+// The records of a sync, to be committed once it is certain to run.
 struct AccelBackend::Staged {
     VertexArrays::Staged vertices;
     std::vector<HeldGeometry*> sources;  // whose GeometrySource was written

@@ -12,6 +12,8 @@ InstanceState state_of(const InstanceRecord& record) { return {transform_of(reco
 
 }  // namespace
 
+bool AccelBackend::PushedGeometry::is_synced() const { return held->built || instances.first; }
+
 void AccelBackend::update_transform(AccelHandle handle, const Transform& transform) {
     if (const std::size_t n = live(handle, "update_transform").instances.records.size(); n != 1)
         fail(name_, ": update_transform: handle ", handle.id, " has ", n, " instances, not 1; use update_transforms");

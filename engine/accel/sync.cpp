@@ -31,6 +31,8 @@ void AccelBackend::Staged::add(const Work& work, std::vector<std::unique_ptr<Bui
     }
 }
 
+float AccelBackend::unit_of(std::span<const vec3> positions) const { return Geometry::near_unit(positions); }
+
 SyncPoint AccelBackend::sync() {
     vertices_->warn_of_faults(name_);
     context_.state().check_submitted(synced_);

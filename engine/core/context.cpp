@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What hosts call, of what Context::State does, and what is checked of a device that a host created.
+// Forwards hosts' calls to Context::State, and checks a device that a host created.
 #include "engine/core/context.h"
 
 #include <algorithm>

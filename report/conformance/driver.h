@@ -20,7 +20,7 @@
 
 namespace twinray::conformance {
 
-// What vkCmdCopyAccelerationStructureToMemoryKHR writes, on the host.
+// The bytes that vkCmdCopyAccelerationStructureToMemoryKHR writes, on the host.
 struct Serialized {
     std::vector<std::byte> bytes;
 

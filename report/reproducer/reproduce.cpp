@@ -103,7 +103,7 @@ class DriverTest {
 // Whether the driver reorders this scene's triangles is known by an accelerator as users have it.
 bool reorders(suite::Devices& devices, suite::Backend backend) { return HwTlas(devices.context(backend)).reorders(); }
 
-// By the intervals that a program without twinray compares with. The answer is a fault, so a miss is none.
+// Compares by the intervals that a program without twinray uses. The answer is a fault, so a miss is none.
 bool is_allowed(const ReferenceScene& reference, const Ray& ray, const Hit& answer) {
     if (!answer.hit || answer.instance_index >= reference.instance_count()) return false;
     if (!reference.geometry(answer.instance_index).find(answer.primitive_index)) return false;

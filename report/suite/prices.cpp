@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What each level costs on scenes of an ordinary size, and what it is worth there; what features of the kernel cost a
+// Costs and worth of each level on scenes of an ordinary size, and what features of the kernel cost a
 // scene that does not need them.
 #include "report/suite/case_run.h"
 

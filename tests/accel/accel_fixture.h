@@ -79,7 +79,7 @@ class AccelTest : public VulkanTest, public ::testing::WithParamInterface<Kind> 
         return buffer;
     }
 
-    // As a kernel would, that many bytes behind where a handle's instances begin.
+    // Writes as a kernel would, that many bytes behind where a handle's instances begin.
     template <class T>
     void write_instances(const InstanceRange& range, std::uint64_t offset, const T& value) {
         Commands commands(context(), "write");

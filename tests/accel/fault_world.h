@@ -43,7 +43,7 @@ class World {
         vertices_ = {};
         context_.reset();
     }
-    // Of the validation layer, those of destroy() too.
+    // Messages of the validation layer, those of destroy() too.
     std::vector<std::string> messages() const {
         std::vector<std::string> messages;
         for (const std::string& message : log_)
@@ -85,7 +85,7 @@ class World {
         commands.submit();
         accel().update_vertices(tower_, vertices_.ref<float>(), positions.size());
     }
-    // Where no ray comes.
+    // No ray comes here.
     void push_aside() { accel().push(make_box(vec3(20, 0, 0), vec3(21, 1, 1))); }
     void sync() {
         accel().sync();

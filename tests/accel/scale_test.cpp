@@ -140,7 +140,7 @@ std::vector<Ray> rays_for(const Scene& scene, std::size_t count) {
     return rays;
 }
 
-// By its triangle and barycentrics, in the file's coordinates.
+// The point by its triangle and barycentrics, in the file's coordinates.
 dvec3 place_of(const Scene& scene, const Hit& hit) {
     const Instance& instance = scene.instances[hit.instance_index];
     const Mesh& mesh = scene.meshes[instance.mesh];

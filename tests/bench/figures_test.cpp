@@ -61,7 +61,7 @@ std::uint64_t any(const std::vector<Hit>& hits) { return hash_of(hits, Query::an
 
 TEST(HitsHash, IsFnv1a) {
     EXPECT_EQ(closest({}), 0xcbf29ce484222325u);  // its offset basis
-    // Of the bytes 01 00 00 00, from its definition.
+    // The checksum of the bytes 01 00 00 00, from its definition.
     std::uint64_t expected = 0xcbf29ce484222325u;
     for (const std::uint64_t byte : {1u, 0u, 0u, 0u}) expected = (expected ^ byte) * 0x100000001b3u;
     EXPECT_EQ(any({{1, 2, 3, 4, 0.25f, 0.5f, 7, 0}}), expected);

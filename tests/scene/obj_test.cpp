@@ -301,7 +301,7 @@ TEST(Mtl, SeveralFilesAndBlanksInNames) {
     EXPECT_EQ(scene.meshes[0].materials, std::vector<uint>{2});
 }
 
-// As in a glTF file: in the order of the file, used or not, and nothing before them.
+// Materials as in a glTF file: in the order of the file, used or not, and nothing before them.
 TEST(Mtl, MaterialsKeepTheirOrderAndCutNoMesh) {
     const TempDir dir;
     dir.write("a.mtl", "newmtl a\nnewmtl b\nnewmtl unused\nnewmtl c\n");

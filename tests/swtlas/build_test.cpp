@@ -331,7 +331,7 @@ TEST_P(SwPloc, EqualBoxesMakeABalancedTree) {
     EXPECT_LE(checked_depth(mesh), 12u);
 }
 
-// Of no area, so that all pairs are the same.
+// Triangles of no area, so that all pairs are the same.
 TEST_P(SwPloc, LeavesInALineAreSoundAndEqualToTheirReferences) {
     Mesh even, growing;
     even.name = "even";

@@ -113,7 +113,7 @@ class ObjParser {
         std::size_t count = 0;
     };
 
-    // What is behind the eighth is left alone.
+    // Bytes behind the eighth are left alone.
     Numbers read_numbers(std::size_t least) const {
         Numbers numbers;
         std::string_view rest = lines_.numbers();

@@ -304,7 +304,7 @@ TEST_F(CrossingsTest, AMissingTriangleIsALeakOfItsBackend) {
     }
 }
 
-// Of 512 rays, a known kernel loses some.
+// A known kernel loses some of 512 rays.
 TEST_F(CrossingsTest, AControlMustShowMoreThanItsRate) {
     if (configurations_.empty()) return;
     const World world = world_with_holes(make_icosphere(2), [](std::size_t i) { return i < 32; });  // of 320
