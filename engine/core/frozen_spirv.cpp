@@ -2,7 +2,6 @@
 #include "engine/core/frozen_spirv.h"
 
 #include <map>
-#include <optional>
 #include <set>
 
 #include "engine/core/spirv_words.h"
@@ -10,45 +9,8 @@
 namespace twinray {
 namespace {
 
+using spirv::evaluate, spirv::op_of, spirv::words_of, spirv::first_word;
 using spirv::Op, spirv::Words;
-using spirv::op_of, spirv::words_of, spirv::first_word;
-
-// Of operands that are whole numbers of 32 bits or booleans. Nothing: not one of those that GLSL makes.
-std::optional<std::uint32_t> evaluate(std::uint32_t op, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-    const auto less = [](std::uint32_t x, std::uint32_t y) {
-        return static_cast<std::int32_t>(x) < static_cast<std::int32_t>(y);
-    };
-    switch (op) {
-        case 128: return a + b;
-        case 130: return a - b;
-        case 132: return a * b;
-        case 134: return b == 0 ? std::nullopt : std::optional(a / b);
-        case 137: return b == 0 ? std::nullopt : std::optional(a % b);
-        case 164:
-        case 170: return a == b;  // of booleans, of numbers
-        case 165:
-        case 171: return a != b;
-        case 166: return a | b;
-        case 167: return a & b;
-        case 168: return !a;
-        case 169: return a ? b : c;
-        case 172: return a > b;
-        case 173: return less(b, a);
-        case 174: return a >= b;
-        case 175: return !less(a, b);
-        case 176: return a < b;
-        case 177: return less(a, b);
-        case 178: return a <= b;
-        case 179: return !less(b, a);
-        case 194: return a >> (b & 31);
-        case 196: return a << (b & 31);
-        case 197: return a | b;
-        case 198: return a ^ b;
-        case 199: return a & b;
-        case 200: return ~a;
-        default: return std::nullopt;
-    }
-}
 
 class Freezer {
   public:
@@ -116,7 +78,8 @@ class Freezer {
             if (i >= 3 || found == known_.end()) return keep(instruction);
             operands[i] = found->second;
         }
-        const std::optional<std::uint32_t> value = evaluate(instruction[3], operands[0], operands[1], operands[2]);
+        const std::optional<std::uint32_t> value =
+            evaluate(static_cast<Op>(instruction[3]), operands[0], operands[1], operands[2]);
         if (value)
             define(instruction, *value);
         else

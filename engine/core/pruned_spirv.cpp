@@ -2,6 +2,7 @@
 #include "engine/core/pruned_spirv.h"
 
 #include <algorithm>
+#include <numeric>
 #include <optional>
 #include <string_view>
 
@@ -35,7 +36,18 @@ struct Function {
 class Pruner {
   public:
     explicit Pruner(Words module)
-        : module_(module), ids_(module[3]), is_type_(ids_), is_gone_(ids_), truth_(ids_), index_(ids_) {}
+        : module_(module),
+          ids_(module[3]),
+          is_type_(ids_),
+          is_gone_(ids_),
+          is_vector_(ids_),
+          is_word_(ids_),
+          known_(ids_),
+          same_(ids_),
+          composite_(ids_, none),
+          index_(ids_) {
+        std::iota(same_.begin(), same_.end(), Id{0});
+    }
 
     std::vector<std::uint32_t> pruned() {
         if (!read()) return {module_.begin(), module_.end()};
@@ -71,17 +83,27 @@ class Pruner {
         switch (op) {
             using enum Op;
             case EntryPoint: entries_.push_back(instruction[2]); break;
-            case ConstantTrue: truth_[instruction[2]] = true; break;
-            case ConstantFalse: truth_[instruction[2]] = false; break;
+            case ConstantTrue: known_[instruction[2]] = 1; break;
+            case ConstantFalse: known_[instruction[2]] = 0; break;
+            case Constant:
+                if (is_word_[instruction[1]]) known_[instruction[2]] = instruction[3];
+                break;
             case GroupDecorate: return false;
             case ExtInstImport: {
                 const std::string_view name(reinterpret_cast<const char*>(&instruction[2]));
                 return name.find("DebugInfo") == std::string_view::npos;
             }
             default:
-                if (spirv::is_type(op)) is_type_[instruction[1]] = true;
+                if (spirv::is_type(op)) read_type(instruction);
         }
         return true;
+    }
+
+    void read_type(Words instruction) {
+        const Op op = op_of(instruction[0]);
+        is_type_[instruction[1]] = true;
+        is_vector_[instruction[1]] = op == Op::TypeVector;
+        is_word_[instruction[1]] = op == Op::TypeBool || (op == Op::TypeInt && instruction[2] == 32);
     }
 
     std::size_t read_function(std::size_t begin) {
@@ -97,6 +119,8 @@ class Pruner {
             }
             if (blocks.empty() || op == Op::FunctionEnd || op == Op::Line || op == Op::NoLine) continue;
             if (op == Op::SelectionMerge || op == Op::LoopMerge) blocks.back().merge = place;
+            if (op == Op::CompositeConstruct && !is_vector_[module_[place + 1]]) composite_[module_[place + 2]] = place;
+            if (op == Op::CompositeExtract) same_[module_[place + 2]] = part_of(at(place));
             blocks.back().last = place;
             blocks.back().end = place + words_of(module_[place]);
         }
@@ -105,6 +129,18 @@ class Pruner {
         functions_.push_back(std::move(function));
         return place;
     }
+
+    // The value that was put where an instruction takes one out; the instruction's own result where nothing is known.
+    Id part_of(Words extract) const {
+        Id part = same_[extract[3]];
+        for (const std::uint32_t number : extract.subspan(4)) {
+            if (composite_[part] == none || number + 3 >= at(composite_[part]).size()) return extract[2];
+            part = same_[module_[composite_[part] + 3 + number]];
+        }
+        return part;
+    }
+
+    std::optional<std::uint32_t> known(Id id) const { return known_[same_[id]]; }
 
     void visit(std::size_t index) {
         Function& function = functions_[index];
@@ -137,9 +173,9 @@ class Pruner {
     // The block that a known condition leads to. Branches back to the head of a loop stay, since a loop must have one.
     std::optional<Id> only_successor(const Block& block) const {
         const Words branch = at(block.last);
-        if (op_of(branch[0]) != Op::BranchConditional || !truth_[branch[1]]) return {};
+        if (op_of(branch[0]) != Op::BranchConditional || !known(branch[1])) return {};
         if (std::min(index_[branch[2]], index_[branch[3]]) <= index_[block.label]) return {};
-        return *truth_[branch[1]] ? branch[2] : branch[3];
+        return *known(branch[1]) ? branch[2] : branch[3];
     }
 
     // The blocks that words of a terminator name; a case of a switch may name one by chance.
@@ -152,44 +188,42 @@ class Pruner {
         return found;
     }
 
-    // Booleans that follow from those that are known. False: there was none.
+    // Booleans and whole numbers that follow from those that are known. False: there was none.
     bool learn(const Function& function) {
         bool has_learnt = false;
         for (const Block& block : function.blocks) {
             if (!block.is_live) continue;
-            each(block.begin, block.end, [&](std::size_t, Words instruction) {
-                if (instruction.size() < 4 || truth_[instruction[2]]) return;
-                truth_[instruction[2]] = truth_of(function, block, instruction);
-                has_learnt = has_learnt || truth_[instruction[2]];
+            each(block.begin, block.last, [&](std::size_t, Words instruction) {
+                if (instruction.size() < 4 || !is_word_[instruction[1]] || known(instruction[2])) return;
+                known_[instruction[2]] = value_of(function, block, instruction);
+                has_learnt = has_learnt || known_[instruction[2]];
             });
         }
         return has_learnt;
     }
 
-    std::optional<bool> truth_of(const Function& function, const Block& block, Words instruction) const {
-        const auto is = [&](std::size_t operand, bool value) { return truth_[instruction[operand]] == value; };
-        switch (op_of(instruction[0])) {
-            using enum Op;
-            case LogicalNot:
-                if (const std::optional<bool> truth = truth_[instruction[3]]) return !*truth;
-                return {};
-            case LogicalOr:
-                if (is(3, true) || is(4, true)) return true;
-                return is(3, false) && is(4, false) ? std::optional(false) : std::nullopt;
-            case LogicalAnd:
-                if (is(3, false) || is(4, false)) return false;
-                return is(3, true) && is(4, true) ? std::optional(true) : std::nullopt;
-            case Phi: {
-                std::optional<bool> truth;
-                for (std::size_t i = 3; i < instruction.size(); i += 2) {
-                    if (!is_edge(function, instruction[i + 1], block.label)) continue;
-                    if (!truth_[instruction[i]] || (truth && truth != truth_[instruction[i]])) return {};
-                    truth = truth_[instruction[i]];
-                }
-                return truth;
-            }
-            default: return {};
+    std::optional<std::uint32_t> value_of(const Function& function, const Block& block, Words instruction) const {
+        const Op op = op_of(instruction[0]);
+        if (op == Op::Phi) return value_of_phi(function, block, instruction);
+        if (op < spirv::first_operation || op > spirv::last_operation) return {};
+        std::optional<std::uint32_t> operands[3];
+        for (std::size_t i = 0; i < 3; ++i) operands[i] = i + 3 < instruction.size() ? known(instruction[i + 3]) : 0;
+        const auto& [a, b, c] = operands;
+        if ((op == Op::LogicalAnd || op == Op::BitwiseAnd) && (a == 0 || b == 0)) return 0;
+        if (op == Op::LogicalOr && (a == 1 || b == 1)) return 1;
+        if (op == Op::Select && a) return *a ? b : c;
+        return a && b && c ? spirv::evaluate(op, *a, *b, *c) : std::nullopt;
+    }
+
+    // A loop may carry a value round unchanged.
+    std::optional<std::uint32_t> value_of_phi(const Function& function, const Block& block, Words phi) const {
+        std::optional<std::uint32_t> value;
+        for (std::size_t i = 3; i < phi.size(); i += 2) {
+            if (same_[phi[i]] == phi[2] || !is_edge(function, phi[i + 1], block.label)) continue;
+            if (!known(phi[i]) || (value && value != known(phi[i]))) return {};
+            value = known(phi[i]);
         }
+        return value;
     }
 
     bool is_edge(const Function& function, Id from, Id to) const {
@@ -300,9 +334,12 @@ class Pruner {
     Words module_;
     std::uint32_t ids_;  // less than it, each
     std::size_t first_function_ = 0;
-    std::vector<bool> is_type_, is_gone_;     // by id
-    std::vector<std::optional<bool>> truth_;  // by id of a boolean, where it is known
-    std::vector<std::size_t> index_;          // of a function, and of a block in its function, by id
+    std::vector<bool> is_type_, is_gone_;    // by id
+    std::vector<bool> is_vector_, is_word_;  // by id of a type; a word: a boolean or a whole number of 32 bits
+    std::vector<std::optional<std::uint32_t>> known_;  // by id of a word
+    std::vector<Id> same_;                             // the value that an id stands for
+    std::vector<std::size_t> composite_;               // by id: the place where its parts are put together, or none
+    std::vector<std::size_t> index_;                   // of a function, and of a block in its function, by id
     std::vector<Id> entries_;
     std::vector<Function> functions_;
     std::vector<Undefined> undefined_;  // what a back edge that is never taken brings

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 namespace twinray::spirv {
@@ -46,9 +47,13 @@ enum class Op : std::uint32_t {
     Decorate = 71,
     MemberDecorate = 72,
     GroupDecorate = 74,
+    CompositeConstruct = 80,
+    CompositeExtract = 81,
     LogicalOr = 166,
     LogicalAnd = 167,
     LogicalNot = 168,
+    Select = 169,
+    BitwiseAnd = 199,
     Phi = 245,
     LoopMerge = 246,
     SelectionMerge = 247,
@@ -63,6 +68,8 @@ enum class Op : std::uint32_t {
     TypeAccelerationStructure = 5341,
     DecorateString = 5632,
 };
+// Instructions between them have a type, a result and operands that are ids.
+constexpr Op first_operation = static_cast<Op>(109), last_operation = static_cast<Op>(205);
 constexpr std::uint32_t decoration_spec_id = 1, decoration_builtin = 11, decoration_offset = 35;
 constexpr std::uint32_t storage_workgroup = 4, storage_push_constant = 9;
 
@@ -83,6 +90,43 @@ constexpr bool is_type(Op op) {
 constexpr bool is_annotation(Op op) {
     using enum Op;
     return op == Name || op == Decorate || op == DecorateId || op == DecorateString;
+}
+
+// The result of an operation on whole numbers of 32 bits or booleans; nothing for one that GLSL does not make.
+constexpr std::optional<std::uint32_t> evaluate(Op op, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    const auto less = [](std::uint32_t x, std::uint32_t y) {
+        return static_cast<std::int32_t>(x) < static_cast<std::int32_t>(y);
+    };
+    switch (static_cast<std::uint32_t>(op)) {
+        case 128: return a + b;
+        case 130: return a - b;
+        case 132: return a * b;
+        case 134: return b == 0 ? std::nullopt : std::optional(a / b);
+        case 137: return b == 0 ? std::nullopt : std::optional(a % b);
+        case 164:
+        case 170: return a == b;  // of booleans, of numbers
+        case 165:
+        case 171: return a != b;
+        case 166: return a | b;
+        case 167: return a & b;
+        case 168: return !a;
+        case 169: return a ? b : c;
+        case 172: return a > b;
+        case 173: return less(b, a);
+        case 174: return a >= b;
+        case 175: return !less(a, b);
+        case 176: return a < b;
+        case 177: return less(a, b);
+        case 178: return a <= b;
+        case 179: return !less(b, a);
+        case 194: return a >> (b & 31);
+        case 196: return a << (b & 31);
+        case 197: return a | b;
+        case 198: return a ^ b;
+        case 199: return a & b;
+        case 200: return ~a;
+        default: return std::nullopt;
+    }
 }
 
 // Whether instructions fill it, one after the other.

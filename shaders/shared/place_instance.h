@@ -100,28 +100,32 @@ FUNC LeafBox box_of_cut(SwGeometry geometry, Rows to_world)
 
 // A box around the geometry under the map, widened by rounding; a tight one if `is_tight`. Empty where the geometry's
 // is.
+//
+// It and place_instance() return at one place, so that they are inlined and a kernel has no code for what it rules out.
 FUNC LeafBox box_of_instance(SwGeometry geometry, Rows to_world, Rows to_object, bool is_tight)
 {
-    LeafBox box;
+    LeafBox box, around = empty_box();
     box.lo = geometry.bvh.lo;
     box.hi = geometry.bvh.hi;
-    if (!is_active(box)) return empty_box();
-    LeafBox world = box_under(to_world, box);
-    vec3 rounding = vec3(rounding_of_instance(to_world.r0, box, to_object, world.lo.x, world.hi.x),
-                         rounding_of_instance(to_world.r1, box, to_object, world.lo.y, world.hi.y),
-                         rounding_of_instance(to_world.r2, box, to_object, world.lo.z, world.hi.z));
-    // Else products may be infinite, and their sums no numbers.
-    bool is_in_range = largest_entry(rounding) < uintBitsToFloat(0x7f800000u);
-    if (is_tight && is_in_range && !keeps_axes(to_world) && is_inner_child(geometry, geometry.bvh.root))
+    if (is_active(box))
     {
-        // Planes of records lie farther out than the box.
-        LeafBox cut = box_of_cut(geometry, to_world);
-        world.lo = max(world.lo, cut.lo);
-        world.hi = min(world.hi, cut.hi);
+        LeafBox world = box_under(to_world, box);
+        vec3 rounding = vec3(rounding_of_instance(to_world.r0, box, to_object, world.lo.x, world.hi.x),
+                             rounding_of_instance(to_world.r1, box, to_object, world.lo.y, world.hi.y),
+                             rounding_of_instance(to_world.r2, box, to_object, world.lo.z, world.hi.z));
+        // Else products may be infinite, and their sums no numbers.
+        bool is_in_range = largest_entry(rounding) < uintBitsToFloat(0x7f800000u);
+        if (is_tight && is_in_range && !keeps_axes(to_world) && is_inner_child(geometry, geometry.bvh.root))
+        {
+            // Planes of records lie farther out than the box.
+            LeafBox cut = box_of_cut(geometry, to_world);
+            world.lo = max(world.lo, cut.lo);
+            world.hi = min(world.hi, cut.hi);
+        }
+        around.lo = world.lo - rounding;
+        around.hi = world.hi + rounding;
     }
-    world.lo = world.lo - rounding;
-    world.hi = world.hi + rounding;
-    return world;
+    return around;
 }
 
 // `record`: in built units. `absent`: the address of a tree where there is none. `box`: in world space, empty where
@@ -143,16 +147,18 @@ FUNC SwInstance place_instance(InstanceRecord record, Address absent, bool is_ti
     instance.extent = 0.0f;
     instance.reserved = 0u;
     box = empty_box();
-    if (!has_geometry(record) || !is_usable(to_world, to_object)) return instance;
-    SwGeometry geometry = AT(REF(SwGeometry)(record.geometry), 0);
-    instance.nodes = geometry.bvh.nodes;
-    instance.triangles = geometry.triangles;
-    instance.records = geometry.records;
-    instance.vertices = geometry.vertices;
-    instance.root = geometry.bvh.root;
-    instance.kind = geometry.kind;
-    instance.extent = largest_coordinate(geometry.bvh.lo, geometry.bvh.hi);
-    box = box_of_instance(geometry, to_world, to_object, is_tight);
+    if (has_geometry(record) && is_usable(to_world, to_object))
+    {
+        SwGeometry geometry = AT(REF(SwGeometry)(record.geometry), 0);
+        instance.nodes = geometry.bvh.nodes;
+        instance.triangles = geometry.triangles;
+        instance.records = geometry.records;
+        instance.vertices = geometry.vertices;
+        instance.root = geometry.bvh.root;
+        instance.kind = geometry.kind;
+        instance.extent = largest_coordinate(geometry.bvh.lo, geometry.bvh.hi);
+        box = box_of_instance(geometry, to_world, to_object, is_tight);
+    }
     return instance;
 }
 #endif

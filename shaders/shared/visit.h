@@ -187,28 +187,35 @@ FUNC bool has_box(InInstance inside, TraceOptions options)
     return (options.features & FEATURE_BOXES) != 0u && inside.has_boxes;
 }
 
-// Whether the ray's line meets the primitive on a side that counts, and where.
+// Whether the ray's line meets the primitive on a side that counts, and where. It and the next two return at one place:
+// so they are inlined, and a kernel is given to a driver without what its constants rule out.
 FUNC bool intersect_leaf(LeafVisit leaf, InInstance inside, RaySpace space, TraceOptions options,
                          INOUT(Search) search, INOUT(TriangleHit) hit)
 {
-    if (has_box(inside, options)) return intersect_box(leaf, inside, space, search, options, hit);
     bool is_met = false;
-#ifdef TWINRAY_REFINED
-    if (options.level == LEVEL_CERTIFIED)
-        is_met = intersect_in_world(leaf.primitive_index, inside.index, options, search.sign_of_t, hit);
+    bool is_culled = false;
+    if (has_box(inside, options)) is_met = intersect_box(leaf, inside, space, search, options, hit);
     else
+    {
+#ifdef TWINRAY_REFINED
+        if (options.level == LEVEL_CERTIFIED)
+            is_met = intersect_in_world(leaf.primitive_index, inside.index, options, search.sign_of_t, hit);
+        else
 #endif
-    if (options.level == LEVEL_FAST)
-        is_met = intersect_triangle_fast(leaf.primitive.v0, leaf.primitive.v1, leaf.primitive.v2, space, hit);
-    else is_met = intersect_seen(leaf.seen, space, search.sign_of_t, hit);
-    if ((options.features & FEATURE_CULLING) == 0u) return is_met;
-    return is_met && (inside.culled == 0u || inside.culled != (hit.along ? CULL_BACK : CULL_FRONT));
+        if (options.level == LEVEL_FAST)
+            is_met = intersect_triangle_fast(leaf.primitive.v0, leaf.primitive.v1, leaf.primitive.v2, space, hit);
+        else is_met = intersect_seen(leaf.seen, space, search.sign_of_t, hit);
+        if ((options.features & FEATURE_CULLING) != 0u)
+            is_culled = inside.culled == (hit.along ? CULL_BACK : CULL_FRONT);
+    }
+    return is_met && !is_culled;
 }
 
 FUNC bool comes_after(TriangleHit hit, float t_min, TraceOptions options)
 {
-    if (options.level < LEVEL_CERTIFIED) return hit.t > t_min;
-    return hit.t > t_min || (hit.t == t_min && hit.t_low > 0.0f);
+    bool is_after = hit.t > t_min;
+    if (options.level == LEVEL_CERTIFIED) is_after = is_after || (hit.t == t_min && hit.t_low > 0.0f);
+    return is_after;
 }
 
 const uint NO_ENTRY = 0x7f800000u; // infinity, and what is larger: no hit is reported there
@@ -248,9 +255,9 @@ FUNC bool comes_before(TriangleHit hit, uint instance_index, uint primitive_inde
     if ((options.features & FEATURE_INSTANCES) != 0u)
         is_lower = instance_index < search.instance_index || (instance_index == search.instance_index && is_lower);
     is_lower = is_lower && search.primitive_index != NOTHING;
-    if (options.level < LEVEL_CERTIFIED) return hit.t < search.t_best || (hit.t == search.t_best && is_lower);
-    return hit.t < search.t_best || (hit.t == search.t_best && (hit.t_low < search.t_best_low ||
-                                                                (hit.t_low == search.t_best_low && is_lower)));
+    if (options.level == LEVEL_CERTIFIED)
+        is_lower = hit.t_low < search.t_best_low || (hit.t_low == search.t_best_low && is_lower);
+    return hit.t < search.t_best || (hit.t == search.t_best && is_lower);
 }
 
 // Whether the primitive is hit before all that were found.

@@ -125,7 +125,10 @@ class PrunedSpirv : public ::testing::Test {
             %to_float = OpTypePointer StorageBuffer %float
             %true = OpConstantTrue %bool
             %false = OpConstantFalse %bool
+            %options = OpTypeStruct %uint %uint
             %zero = OpConstant %uint 0
+            %six = OpConstant %uint 6
+            %four = OpConstant %uint 4
             %one = OpConstant %float 1
             %out = OpVariable %to_block StorageBuffer
             %main = OpFunction %void None %procedure
@@ -218,6 +221,43 @@ TEST_F(PrunedSpirv, ConditionsThatFollowAreKnown) {
     EXPECT_EQ(count(left, "gone"), 0u) << left;
     EXPECT_EQ(count(left, "OpBranchConditional"), 0u) << left;
     EXPECT_EQ(count(left, "%kept = OpFAdd"), 1u) << left;
+}
+
+// A bit of a number that was put into a struct, taken out and carried round a loop unchanged.
+TEST_F(PrunedSpirv, NumbersThatFollowAreKnown) {
+    const auto loop_with = [](const std::string& carried_on) {
+        return R"(
+        %asked = OpCompositeConstruct %options %zero %six
+        %features = OpCompositeExtract %uint %asked 1
+        OpBranch %head
+        %head = OpLabel
+        %carried = OpPhi %uint %features %begin )" +
+               carried_on + R"( %again
+        OpLoopMerge %end %again None
+        OpBranch %body
+        %body = OpLabel
+        %bit = OpBitwiseAnd %uint %carried %four
+        %lacks = OpIEqual %bool %bit %zero
+        OpSelectionMerge %after None
+        OpBranchConditional %lacks %then %after
+        %then = OpLabel
+        %gone = OpFMul %float %value %one
+        OpStore %at %gone
+        OpBranch %after
+        %after = OpLabel
+        %kept = OpFAdd %float %value %one
+        OpStore %at %kept
+        OpBranch %again
+        %again = OpLabel
+        %next = OpIAdd %uint %carried %four
+        OpBranchConditional %unknown %head %end
+        %end = OpLabel
+        OpReturn)";
+    };
+    const std::string left = pruned(loop_with("%carried"));
+    EXPECT_EQ(count(left, "gone"), 0u) << left;
+    EXPECT_EQ(count(left, "%kept = OpFAdd"), 1u) << left;
+    EXPECT_EQ(count(pruned(loop_with("%next")), "%gone = OpFMul"), 1u) << "it changes from turn to turn";
 }
 
 // The loop ends at its first turn; a loop has a way back nevertheless, with a value that is never used.
