@@ -44,19 +44,13 @@ float mean_texture(const Scene& scene, const Texture& texture, const Mesh& mesh,
     return 0.01f + 0.99f * sum / static_cast<float>(std::size(points));
 }
 
-double world_area(const Mesh& mesh, const uvec3& triangle, const Transform& transform) {
-    const dvec3 a(transform_point(transform, mesh.positions[triangle.x]));
-    const dvec3 b(transform_point(transform, mesh.positions[triangle.y]));
-    const dvec3 c(transform_point(transform, mesh.positions[triangle.z]));
-    return 0.5 * length(cross(b - a, c - a));
-}
-
-// Collects weights first; probabilities follow when the sum is known.
+// Collects lights first; shares follow when all are known.
 struct Collector {
     const Scene& scene;
     LocalLights lights = {};
-    std::vector<double> weights = {};
-    std::vector<double> areas = {};  // of the emitters
+    std::vector<double> weights = {};        // by index of a light: an estimate of its power
+    std::vector<double> areas = {};          // of the emitters
+    std::vector<PlacedLight> placed = {};    // all but suns and lights without power
 
     void add_instance(uint index) {
         const Instance& instance = scene.instances[index];
@@ -65,45 +59,97 @@ struct Collector {
             const uint material_index = instance.material.value_or(mesh.material(primitive));
             const Material& material = scene.materials[material_index];
             if (material.unlit || largest(material.emission) <= 0) continue;
-            const uvec3& triangle = mesh.triangles[primitive];
-            const double area = world_area(mesh, triangle, instance.transform);
-            if (!(area > 0) || !std::isfinite(area)) continue;
-            const float mean =
-                luminance(material.emission) * mean_texture(scene, material.emission_texture, mesh, triangle);
-            lights.emitters.push_back({index, primitive, material_index});
-            areas.push_back(area);
-            weights.push_back(double{PI} * area * double{mean} * (material.double_sided ? 2 : 1));
+            add_emitter({index, primitive, material_index}, mesh, instance.transform, material);
         }
+    }
+
+    void add_emitter(const Emitter& emitter, const Mesh& mesh, const Transform& transform, const Material& material) {
+        const uvec3& triangle = mesh.triangles[emitter.primitive];
+        const vec3 a = transform_point(transform, mesh.positions[triangle.x]),
+                   b = transform_point(transform, mesh.positions[triangle.y]),
+                   c = transform_point(transform, mesh.positions[triangle.z]);
+        const dvec3 normal = cross(dvec3(b) - dvec3(a), dvec3(c) - dvec3(a)) * 0.5;
+        const double area = length(normal);
+        if (!(area > 0) || !std::isfinite(area)) return;
+        const double radiance =
+            luminance(material.emission) * mean_texture(scene, material.emission_texture, mesh, triangle);
+        const double front = determinant(transform) < 0 ? -1 : 1;
+        placed.push_back({.lo = min(a, min(b, c)),
+                          .hi = max(a, max(b, c)),
+                          .axis = vec3(normal * (front / area)),
+                          .power = static_cast<float>(radiance * area),
+                          .axes_angle = 0,
+                          .reach_angle = double{PI} / 2,
+                          .is_two_sided = material.double_sided,
+                          .light = static_cast<uint>(weights.size())});
+        lights.emitters.push_back(emitter);
+        areas.push_back(area);
+        weights.push_back(double{PI} * area * radiance * (material.double_sided ? 2 : 1));
     }
 
     void add_punctual(const Light& light, float scene_radius) {
         const float inner = std::cos(light.inner_cone), outer = std::cos(light.outer_cone);
         const float scale = 1 / std::max(inner - outer, 1e-3f);
         const bool is_spot = light.kind == Light::Kind::spot, is_sun = light.kind == Light::Kind::directional;
+        const float power = luminance(light.color);
+        if (!is_sun && power > 0)
+            placed.push_back(
+                {.lo = light.position,
+                 .hi = light.position,
+                 .axis = light.direction,
+                 .power = power,
+                 .axes_angle = is_spot ? std::min(light.inner_cone, light.outer_cone) : double{PI},
+                 .reach_angle = is_spot ? std::max(double{light.outer_cone} - light.inner_cone, 0.0) : double{PI} / 2,
+                 .is_two_sided = false,
+                 .light = static_cast<uint>(weights.size())});
+        lights.has_suns |= is_sun && power > 0;
         lights.punctual.push_back({light.position,
                                    is_sun    ? PUNCTUAL_DIRECTIONAL
                                    : is_spot ? PUNCTUAL_SPOT
                                              : PUNCTUAL_POINT,
                                    light.direction, light.range, light.color, 0, scale, -outer * scale});
         const float solid_angle = is_spot ? 2 * PI * (1 - outer) : 4 * PI;
-        weights.push_back(double{luminance(light.color)} *
-                          double{is_sun ? PI * scene_radius * scene_radius : solid_angle});
+        weights.push_back(double{power} * double{is_sun ? PI * scene_radius * scene_radius : solid_angle});
+    }
+
+    bool is_sun(std::size_t light) const {
+        return light >= areas.size() && lights.punctual[light - areas.size()].kind == PUNCTUAL_DIRECTIONAL;
+    }
+
+    // Each of the two kinds has the same share of the table, and the tree the share of the second.
+    void share() {
+        double of_suns = 0, of_placed = 0;
+        for (std::size_t i = 0; i < weights.size(); ++i) (is_sun(i) ? of_suns : of_placed) += weights[i];
+        const bool has_tree = lights.by == LightChoice::tree;
+        for (std::size_t i = 0; i < weights.size(); ++i) {
+            const double of_kind = is_sun(i) ? of_suns : of_placed;
+            weights[i] = of_kind > 0 && (is_sun(i) || !has_tree) ? weights[i] / of_kind : 0;
+        }
+        if (has_tree && lights.has_placed) lights.table_chance = lights.has_suns ? 0.5f : 0.0f;
+        const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
+        for (double& weight : weights) weight /= total > 0 ? total : 1;
     }
 
     void finish() {
-        lights.table = make_alias_table(weights);
+        lights.has_placed = !placed.empty();
         lights.densities.resize(scene.instances.size());
-        if (lights.empty()) return;
-        const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
+        lights.ways.resize(scene.instances.size());
+        share();
+        lights.table = make_alias_table(weights);
+        const bool has_tree = lights.by == LightChoice::tree;
+        if (has_tree) lights.tree = build_light_tree(placed, weights.size());
         for (std::size_t i = 0; i < lights.emitters.size(); ++i) {
             const Emitter emitter = lights.emitters[i];
-            std::vector<float>& densities = lights.densities[emitter.instance];
-            if (densities.empty())
-                densities.resize(scene.meshes[scene.instances[emitter.instance].mesh].triangles.size());
-            densities[emitter.primitive] = static_cast<float>(weights[i] / total / areas[i]);
+            const std::size_t count = scene.meshes[scene.instances[emitter.instance].mesh].triangles.size();
+            lights.densities[emitter.instance].resize(count);
+            lights.ways[emitter.instance].resize(has_tree ? count : 0);
+            lights.densities[emitter.instance][emitter.primitive] =
+                static_cast<float>((has_tree ? 1 : weights[i]) / areas[i]);
+            if (has_tree) lights.ways[emitter.instance][emitter.primitive] = lights.tree.ways[i];
         }
         for (std::size_t i = 0; i < lights.punctual.size(); ++i)
-            lights.punctual[i].chance = static_cast<float>(weights[lights.emitters.size() + i] / total);
+            lights.punctual[i].chance =
+                has_tree && !is_sun(areas.size() + i) ? 1 : static_cast<float>(weights[areas.size() + i]);
     }
 };
 
@@ -128,13 +174,30 @@ std::vector<SetKey> LightSet::put(const LocalLights& lights) {
     return keys;
 }
 
-LocalLights collect_lights(const Scene& scene) {
+namespace {
+
+Collector collect(const Scene& scene) {
     Collector collector{scene};
     for (uint i = 0; i < scene.instances.size(); ++i) collector.add_instance(i);
     const float radius = 0.5f * length(bounds_of(scene).size());
     for (const Light& light : scene.lights) collector.add_punctual(light, radius);
+    return collector;
+}
+
+LocalLights finished(Collector collector, LightChoice by) {
+    collector.lights.by = by;
     collector.finish();
     return std::move(collector.lights);
+}
+
+}  // namespace
+
+LocalLights collect_lights(const Scene& scene, LightChoice by) { return finished(collect(scene), by); }
+
+LocalLights collect_lights(const Scene& scene) {
+    Collector collector = collect(scene);
+    const LightChoice by = collector.placed.size() > 1 ? LightChoice::tree : LightChoice::table;
+    return finished(std::move(collector), by);
 }
 
 bool has_lamps(const Scene& scene) {

@@ -6,19 +6,30 @@
 
 #include <twinray/scene.h>
 
+#include "renderer/light_tree.h"
 #include "renderer/shared.h"
 
 namespace twinray::path_tracer {
 
-// The emissive triangles and punctual lights of a scene, each chosen with a probability proportional to an estimate of
-// its power (as pbrt-v4's power light sampler).
+// How a light is chosen. The environment, the suns and the lights that are somewhere have the same share each. A sun is
+// chosen from a table, by its power; the others by the place that is lit, from a tree, or by their power, too.
+enum class LightChoice { table, tree };
+
+// The emissive triangles and punctual lights of a scene.
 struct LocalLights {
     std::vector<Emitter> emitters;
-    std::vector<std::vector<float>> densities;  // per instance, then triangle: probability / world area; empty if dark
+    std::vector<std::vector<float>> densities;  // per instance, then triangle: see SurfaceInstance; empty if dark
+    std::vector<std::vector<uint>> ways;        // likewise
     std::vector<PunctualLight> punctual;
-    std::vector<AliasEntry> table;  // emitters, then punctual
+    std::vector<AliasEntry> table;  // by index: of emitters, then punctual lights; empty where the tree has all
+    LightTree tree;                 // empty where the table has all
+    LightChoice by = LightChoice::table;
+    float table_chance = 1;  // of the table in place of the tree
+    bool has_suns = false, has_placed = false;
 
-    bool empty() const { return table.empty(); }
+    bool empty() const { return emitters.empty() && punctual.empty(); }
+    // Kinds of lights that have a share beside the environment.
+    uint kind_count() const { return uint{has_suns} + uint{has_placed}; }
 };
 
 using LocalLightSet = TWINRAY_MULTI_TYPE_SET(LocalLightsView, LOCAL_LIGHTS);
@@ -28,7 +39,7 @@ class LightSet {
   public:
     explicit LightSet(Context& context) : set_(context, "local lights") {}
 
-    // Replaces what was put before. Returns the keys in the order of the table.
+    // Replaces what was put before. Returns the keys by index.
     std::vector<SetKey> put(const LocalLights& lights);
     LocalLightsView view() const { return set_.view(); }
     std::uint64_t buffer_bytes() const { return set_.buffer_bytes(); }
@@ -38,7 +49,9 @@ class LightSet {
     std::vector<SetKey> emitters_, punctual_;  // all that there ever were at once
 };
 
+// By the tree where that can gain anything: two lights or more are somewhere.
 LocalLights collect_lights(const Scene& scene);
+LocalLights collect_lights(const Scene& scene, LightChoice by);
 
 // Whether the scene brings light to see by: a punctual light, or a surface brighter than the radiance 1 that glTF
 // allows without KHR_materials_emissive_strength, which is the glow of a label or a screen rather than a lamp.

@@ -65,7 +65,8 @@ MotionTimes MovingScene::move_to(const Pose& pose) {
     const std::vector<Instance> before = scene_.instances;
     pose_scene(scene_, pose);
     move_emitters(pose);
-    device_scene_.move(scene_, collect_lights(scene_));
+    device_scene_.move(
+        scene_, collect_lights(scene_, device_scene_.features().light_tree ? LightChoice::tree : LightChoice::table));
     context_.wait_for_gpu();
     times.host = stopwatch.lap();
     move_vertices(pose);

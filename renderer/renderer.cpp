@@ -24,6 +24,7 @@ std::vector<SpecializationConstant> constants_of(const SceneFeatures& features, 
                                                  bool has_aovs) {
     std::vector<SpecializationConstant> constants = {{PT_HAS_ENVIRONMENT, features.environment},
                                                      {PT_HAS_LOCAL_LIGHTS, features.local_lights},
+                                                     {PT_HAS_LIGHT_TREE, features.light_tree},
                                                      {PT_STRATEGY, strategy},
                                                      {PT_HAS_AOVS, has_aovs},
                                                      {PT_HAS_MEDIA, features.some(PT_HAS_VOLUME)},
@@ -65,6 +66,7 @@ WaveBuffers::WaveBuffers(Context& context, const DeviceScene& scene, Ref<Radianc
         rays_.push_back(array_of<Ray>(context, "rays", capacity));
         paths_.emplace_back(context, "paths", capacity);
         if (scene.features().some(PT_HAS_VOLUME)) media_.push_back(array_of<uint>(context, "media of paths", capacity));
+        if (scene.features().light_tree) facings_.push_back(array_of<uint>(context, "facings of paths", capacity));
         // Shadow rays take a second round only behind what they pass.
         if (turn == 1 && !scene.features().passes_shadows()) break;
         shadow_rays_.push_back(array_of<Ray>(context, "shadow rays", capacity));
@@ -85,7 +87,7 @@ WaveBuffers::WaveBuffers(Context& context, const DeviceScene& scene, Ref<Radianc
 
 std::uint64_t WaveBuffers::bytes() const {
     std::uint64_t bytes = hits_.bytes() + counters_.bytes() + data_.bytes();
-    for (const auto* buffers : {&rays_, &shadow_rays_, &media_})
+    for (const auto* buffers : {&rays_, &shadow_rays_, &media_, &facings_})
         for (const Buffer& buffer : *buffers) bytes += buffer.bytes();
     for (const auto& paths : paths_) bytes += paths.buffer().bytes();
     for (const auto& shadows : shadows_) bytes += shadows.buffer().bytes();
@@ -107,6 +109,10 @@ WaveData WaveBuffers::data_of(uint turn, uint shadow_turn) const {
         data.media = media_[turn].ref<uint>();
         data.next_media = media_[1 - turn].ref<uint>();
     }
+    if (!facings_.empty()) {
+        data.facings = facings_[turn].ref<uint>();
+        data.next_facings = facings_[1 - turn].ref<uint>();
+    }
     data.shadow_rays = shadow_rays_[shadows].ref<Ray>();
     data.shadows = shadows_[shadows].view();
     data.next_shadow_rays = shadow_rays_[next_shadows].ref<Ray>();
@@ -127,7 +133,8 @@ void WaveBuffers::set_first_surfaces(Commands& commands, Ref<FirstSurface> first
             all.push_back(data_of(turn, shadow_turn));
             WaveData& data = all.back();
             data.first_surfaces = first_surfaces;
-            commands.context().fill_absent(data.media, data.next_media, data.kinds, data.queues, data.first_surfaces);
+            commands.context().fill_absent(data.media, data.next_media, data.facings, data.next_facings, data.kinds,
+                                           data.queues, data.first_surfaces);
         }
     commands.upload(data_, std::span(std::as_const(all)));
 }

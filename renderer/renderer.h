@@ -105,7 +105,8 @@ class WaveBuffers {
     std::vector<Buffer> rays_, shadow_rays_;
     std::vector<TWINRAY_SOA(PathQueue, PATH_FIELDS)> paths_;
     std::vector<TWINRAY_SOA(ShadowQueue, SHADOW_FIELDS)> shadows_;
-    std::vector<Buffer> media_;  // none where no material bounds a volume
+    std::vector<Buffer> media_;    // none where no material bounds a volume
+    std::vector<Buffer> facings_;  // none without a tree of lights
     Buffer hits_, counters_;
     std::optional<Buffer> kinds_, queues_;  // none where all materials are of one kind
     Buffer data_;

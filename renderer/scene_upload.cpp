@@ -13,8 +13,14 @@ namespace {
 void fill_absent(const Context& context, SceneData& data) {
     context.fill_absent(data.instances, data.extras, data.materials, data.layered, data.material_kinds,
                         data.textures.records, data.textures.faults, data.lights.emitters, data.lights.punctual,
-                        data.lights.faults, data.light_keys, data.light_table, data.environment.pixels,
-                        data.environment.row_sums, data.environment.column_sums);
+                        data.lights.faults, data.light_keys, data.light_table, data.light_tree,
+                        data.environment.pixels, data.environment.row_sums, data.environment.column_sums);
+}
+
+LightNode dark_leaf() {
+    LightNode leaf{};
+    leaf.child = LIGHT_LEAF;
+    return leaf;
 }
 
 }  // namespace
@@ -26,6 +32,7 @@ SceneFeatures features_of(const Scene& scene, const LocalLights& lights, const E
     features.deep_textures =
         std::ranges::any_of(scene.images, [](const Image& image) { return !image.rgba16.empty(); });
     features.local_lights = !lights.empty();
+    features.light_tree = lights.by == LightChoice::tree;
     const std::vector<bool> used = used_materials(scene);
     for (std::size_t i = 0; i < scene.materials.size(); ++i)
         features.panes |= used[i] && may_be_pane(scene.materials[i]);
@@ -37,7 +44,7 @@ SceneFeatures all_features(const Scene& scene) {
     features.kinds.needs = {0};
     for (const uint need : material_needs) features.kinds.needs[0] |= 1u << need;
     features.kinds.of.resize(scene.materials.size());
-    features.environment = features.local_lights = features.panes = features.deep_textures = true;
+    features.environment = features.local_lights = features.light_tree = features.panes = features.deep_textures = true;
     return features;
 }
 
@@ -91,18 +98,21 @@ void DeviceScene::upload_all(Commands& commands, const Scene& scene, const Local
 
 // Where all lights have gone out, kernels that look for them find a key that names nothing.
 void DeviceScene::upload_lights(Commands& commands, const LocalLights& lights) {
-    const bool is_dark = features_.local_lights && lights.empty();
+    const auto some_of = []<class T>(const std::vector<T>& values) { return values.empty() ? std::vector<T>(1) : values; };
     if (features_.local_lights) {
         if (!lights_) lights_.emplace(context_);
-        const std::vector<SetKey> keys = is_dark ? std::vector<SetKey>(1) : lights_->put(lights);
+        const std::vector<SetKey> keys = lights_->put(lights);
         record_.lights = lights_->view();
-        record_.light_keys = upload_moving(commands, "keys of lights", keys);
-        record_.light_table =
-            upload_moving(commands, "light table", is_dark ? std::vector<AliasEntry>(1) : lights.table);
-        record_.light_count = static_cast<uint>(keys.size());
+        record_.light_keys = upload_moving(commands, "keys of lights", some_of(keys));
+        record_.light_table = upload_moving(commands, "light table", some_of(lights.table));
+        record_.light_count = std::max(static_cast<uint>(keys.size()), 1u);
+        record_.table_chance = lights.table_chance;
     }
+    if (features_.light_tree)
+        record_.light_tree = upload_moving(
+            commands, "light tree", lights.tree.nodes.empty() ? std::vector{dark_leaf()} : lights.tree.nodes);
     const bool has_sky = record_.environment.density_per_luminance > 0;
-    record_.environment.chance = !has_sky ? 0 : features_.local_lights && !is_dark ? 0.5f : 1.0f;
+    record_.environment.chance = has_sky ? 1.0f / static_cast<float>(1 + lights.kind_count()) : 0;
 }
 
 std::uint64_t DeviceScene::device_bytes() const {
@@ -159,7 +169,8 @@ Ref<SurfaceInstance> DeviceScene::upload_instances(Commands& commands, const Sce
         record.vertices = meshes_[scene.instances[i].mesh].vertices;
         record.triangles = meshes_[scene.instances[i].mesh].triangles;
         record.emitter_density = upload_moving(commands, "emitter densities", lights.densities[i]);
-        context_.fill_absent(record.vertices, record.triangles, record.emitter_density);
+        if (features_.light_tree) record.emitter_ways = upload_moving(commands, "ways to emitters", lights.ways[i]);
+        context_.fill_absent(record.vertices, record.triangles, record.emitter_density, record.emitter_ways);
         records.push_back(record);
     }
     return upload_moving(commands, "surface instances", records);

@@ -21,6 +21,7 @@ struct SceneFeatures {
     MaterialKinds kinds;
     bool environment = false;
     bool local_lights = false;
+    bool light_tree = false;
     bool panes = false;
     bool deep_textures = false;  // of 16 bits a channel
 

@@ -70,6 +70,7 @@ void add_of_path_tracer(Words& words, const KernelDesc& desc) {
         {PT_HAS_SECOND_UVS, "second-uvs"},
         {PT_HAS_PANES, "panes"},
         {PT_HAS_LOCAL_LIGHTS, "lights"},
+        {PT_HAS_LIGHT_TREE, "light-tree"},
         {PT_HAS_ENVIRONMENT, "environment"},
     };
     uint chosen = 0;

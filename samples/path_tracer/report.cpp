@@ -129,6 +129,7 @@ std::string features_text(const SceneFeatures& features) {
     for (const uint need : material_needs) note(features.some(need), name_of_needs(1u << need));
     note(features.environment, "environment");
     note(features.local_lights, "local lights");
+    note(features.light_tree, "light tree");
     note(features.panes, "panes");
     note(features.deep_textures, "deep textures");
     note(features.kinds.needs.size() > 1, "queues by kind");

@@ -89,7 +89,8 @@ LightSample sample_environment(Environment env, vec2 u)
     return light;
 }
 
-LightSample sample_local(SceneData scene, Emitter emitter, vec3 from, vec2 u)
+// chance: of the environment's place and the tree, which the densities of lights leave out.
+LightSample sample_local(SceneData scene, Emitter emitter, float chance, vec3 from, vec2 u)
 {
     Placement placement = load_placement(scene.instances, emitter.instance);
     TriangleData data = load_triangle_data(scene, emitter.instance, emitter.primitive);
@@ -106,17 +107,17 @@ LightSample sample_local(SceneData scene, Emitter emitter, vec3 from, vec2 u)
     if (HAS_ALPHA)
         light.radiance *= opacity(flags, AT(scene.materials, emitter.material).alpha_cutoff,
                                   base_color(scene, surface, flags).a);
-    light.pdf = (1.0 - scene.environment.chance) * density * distance2 / abs(cosine);
+    light.pdf = chance * density * distance2 / abs(cosine);
     light.is_delta = false;
     light.has_target = true;
     light.target = spawn_position(surface.point, cosine > 0.0);
     return light;
 }
 
-LightSample sample_local(SceneData scene, PunctualLight light, vec3 from, vec2 u)
+LightSample sample_local(SceneData scene, PunctualLight light, float chance, vec3 from, vec2 u)
 {
     LightSample result;
-    result.pdf = (1.0 - scene.environment.chance) * light.chance;
+    result.pdf = chance * light.chance;
     result.is_delta = true;
     result.has_target = light.kind != PUNCTUAL_DIRECTIONAL;
     result.target = light.position;
@@ -136,26 +137,50 @@ LightSample sample_local(SceneData scene, PunctualLight light, vec3 from, vec2 u
     return result;
 }
 
-// choice: between the environment and local lights, then among these. u: on the light.
-LightSample sample_light(SceneData scene, vec3 from, uvec2 choice, vec2 u)
+// The light that u in [0, 1) chooses among those of the table and of the tree, and its chance but for its own share of
+// the table.
+ChosenLight choose_local(SceneData scene, LightReceiver at, float u, uint word)
 {
-    if (HAS_ENVIRONMENT && (!HAS_LOCAL_LIGHTS || unit_float(choice.x) < scene.environment.chance))
-        return sample_environment(scene.environment, u);
-    SetKey key = AT(scene.light_keys, sample_alias(scene.light_table, scene.light_count, choice.y));
+    ChosenLight chosen;
+    if (!HAS_LIGHT_TREE || u < scene.table_chance)
+    {
+        chosen.light = sample_alias(scene.light_table, scene.light_count, word);
+        chosen.chance = HAS_LIGHT_TREE ? scene.table_chance : 1.0;
+        return chosen;
+    }
+    chosen = choose_light(scene.light_tree, at, unit_float(word));
+    chosen.chance *= 1.0 - scene.table_chance;
+    return chosen;
+}
+
+// choice: between the environment, the lights of the table and those of the tree, then among these. u: on the light.
+LightSample sample_light(SceneData scene, LightReceiver at, uvec2 choice, vec2 u)
+{
+    float environment = HAS_ENVIRONMENT ? scene.environment.chance : 0.0;
+    float which = unit_float(choice.x);
+    if (HAS_ENVIRONMENT && (!HAS_LOCAL_LIGHTS || which < environment)) return sample_environment(scene.environment, u);
+    ChosenLight chosen = choose_local(scene, at, (which - environment) / (1.0 - environment), choice.y);
+    chosen.chance *= 1.0 - environment;
+    SetKey key = AT(scene.light_keys, chosen.light);
     LightSample light;
-    light.pdf = 0.0; // where all lights have gone out, of a key that names nothing
-#define SAMPLE_LOCAL(element) light = sample_local(scene, element, from, u)
+    light.pdf = 0.0; // where all lights have gone out, of a key that names nothing, and where none of the tree lights it
+    if (!(chosen.chance > 0.0)) return light;
+#define SAMPLE_LOCAL(element) light = sample_local(scene, element, chosen.chance, at.position, u)
     WITH_INDEX(LOCAL_LIGHTS, scene.lights, key, SAMPLE_LOCAL)
     return light;
 }
 
 // Density with which sample_light would have found this point of an emitter.
-float emitter_pdf(SceneData scene, Hit hit, Surface surface, vec3 from, vec3 direction)
+float emitter_pdf(SceneData scene, Hit hit, Surface surface, LightReceiver at, vec3 direction)
 {
-    Floats density = AT(scene.instances, hit.instance_index).emitter_density;
-    if (is_absent(density)) return 0.0;
-    vec3 way = surface.point.position - from;
-    return (1.0 - scene.environment.chance) * AT(density, hit.primitive_index) * dot(way, way) /
+    SurfaceInstance instance = AT(scene.instances, hit.instance_index);
+    if (is_absent(instance.emitter_density)) return 0.0;
+    vec3 way = surface.point.position - at.position;
+    float chance = 1.0 - scene.environment.chance;
+    if (HAS_LIGHT_TREE)
+        chance *= (1.0 - scene.table_chance) *
+            chance_of_way(scene.light_tree, at, AT(instance.emitter_ways, hit.primitive_index));
+    return chance * AT(instance.emitter_density, hit.primitive_index) * dot(way, way) /
            abs(dot(surface.point.normal, direction));
 }
 #endif

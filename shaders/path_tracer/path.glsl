@@ -15,6 +15,7 @@ struct PathState
     uint pixel;
     uint progress;
     uint medium; // of WaveData::media
+    uint facing; // of WaveData::facings
 };
 
 PathState load_path(uint i)
@@ -25,6 +26,7 @@ PathState load_path(uint i)
     path.pixel = AT(wave.paths.pixel, i);
     path.progress = AT(wave.paths.progress, i);
     path.medium = HAS_MEDIA ? AT(wave.media, i) : 0u;
+    path.facing = HAS_LIGHT_TREE ? AT(wave.facings, i) : 0u;
     return path;
 }
 
@@ -37,6 +39,7 @@ void go_on(Ray ray, PathState path)
     AT(wave.next_paths.pixel, slot) = path.pixel;
     AT(wave.next_paths.progress, slot) = path.progress;
     if (HAS_MEDIA) AT(wave.next_media, slot) = path.medium;
+    if (HAS_LIGHT_TREE) AT(wave.next_facings, slot) = path.facing;
 }
 
 void add(uint pixel, vec3 radiance)

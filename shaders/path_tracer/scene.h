@@ -2,6 +2,7 @@
 // The scene as the path tracer's kernels read it from device memory.
 #ifndef TWINRAY_PATH_TRACER_SCENE_H
 #define TWINRAY_PATH_TRACER_SCENE_H
+#include "shaders/path_tracer/light_tree.h"
 #include "twinray/glsl/multi_type_set.h"
 #include "twinray/glsl/textures.h"
 #include "twinray/glsl/transform.h"
@@ -27,6 +28,7 @@ const uint PT_HAS_COLORS = 15u;      // vertices have colors
 const uint PT_HAS_SECOND_UVS = 16u;  // some texture takes the second texture coordinates
 // some material of the scene is a smooth wall without thickness: shadow rays pass it
 const uint PT_HAS_PANES = 17u;
+const uint PT_HAS_LIGHT_TREE = 18u;  // two lights or more are somewhere: which is asked depends on the place
 
 const uint STRATEGY_MIS = 0u;    // both of the following, weighted by the power heuristic
 const uint STRATEGY_LIGHTS = 1u; // sample lights only
@@ -56,7 +58,9 @@ struct SurfaceInstance
     Rows world_to_object;
     REF(SurfaceVertex) vertices;
     REF(SurfaceTriangle) triangles;
-    Floats emitter_density; // per triangle: probability of being chosen as light / world area; absent if none emits
+    Floats emitter_density; // per triangle: probability of being chosen as light, but for the tree's, / world area;
+                            // absent if none emits
+    Uints emitter_ways;     // per triangle: see chance_of_way; absent without PT_HAS_LIGHT_TREE
 };
 BUFFER_OF(SurfaceInstance, 8);
 
@@ -189,7 +193,7 @@ struct PunctualLight
     vec3 direction;   // from the light
     float range;      // infinity: none
     vec3 color;       // times intensity
-    float chance;     // of being chosen among the local lights
+    float chance;     // of being chosen among the lights of the table; 1 in the tree
     float cone_scale; // spot: clamp(cos * scale + offset, 0, 1)^2
     float cone_offset;
 };
@@ -228,10 +232,11 @@ struct SceneData
     Uints material_kinds; // of the materials; absent where all are of one
     TextureTable textures; // of the materials; empty: none has any
     LocalLightsView lights;
-    REF(SetKey) light_keys; // those that may be chosen
-    REF(AliasEntry) light_table; // of them, in the same order
+    REF(SetKey) light_keys; // by the index of a light
+    REF(AliasEntry) light_table; // of all lights; those in the tree have no share
+    REF(LightNode) light_tree; // of the lights that are somewhere; absent without PT_HAS_LIGHT_TREE
     uint light_count;
-    uint reserved;
+    float table_chance; // of choosing by the table instead of by the tree
     Environment environment;
 };
 BUFFER_OF(SceneData, 8);

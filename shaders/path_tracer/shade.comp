@@ -31,6 +31,7 @@ struct Vertex
     vec3 wo;
     vec3 normal;   // shading normal on the side of wo
     bool is_front; // of the triangle
+    uint facing;   // see packed_facing
     uint key;      // of the pixel's random numbers
     uint number;   // it has PAIR_COUNT pairs of random dimensions
 };
@@ -46,7 +47,8 @@ void add_emission(Vertex vertex, Ray ray, Hit hit, uint flags)
 {
     vec3 radiance = emitted(AT(wave.scene, 0), vertex.surface.material, flags, vertex.surface.uv, vertex.is_front);
     if (!HAS_LOCAL_LIGHTS || largest(radiance) <= 0.0) return;
-    float other = emitter_pdf(AT(wave.scene, 0), hit, vertex.surface, ray.origin, ray.direction);
+    float other = emitter_pdf(AT(wave.scene, 0), hit, vertex.surface, receiver_of(ray.origin, vertex.path.facing),
+                              ray.direction);
     add(vertex.path.pixel, vertex.path.throughput * radiance * found_weight(vertex.path.pdf, other));
 }
 
@@ -75,8 +77,9 @@ uint medium_towards(Vertex vertex, vec3 wi)
 void light_directly(Vertex vertex)
 {
     SceneData scene = AT(wave.scene, 0);
-    LightSample light = sample_light(scene, vertex.surface.point.position, pair_of(vertex, PAIR_CHOICE),
-                                     unit_floats(pair_of(vertex, PAIR_LIGHT)));
+    LightSample light =
+        sample_light(scene, receiver_of(vertex.surface.point.position, vertex.facing),
+                     pair_of(vertex, PAIR_CHOICE), unit_floats(pair_of(vertex, PAIR_LIGHT)));
     if (!(light.pdf > 0.0) || !(largest(light.radiance) > 0.0)) return;
     Frame frame = frame_about(vertex.normal);
     vec3 wi = to_local(frame, light.direction);
@@ -139,6 +142,7 @@ void scatter(Vertex vertex, Ray met_by)
     path.pdf = onwards.pdf;
     path.progress = with_surface_met(path.progress) + 0x10000u;
     path.medium = medium_towards(vertex, onwards.wi);
+    path.facing = vertex.facing;
     Ray ray;
     ray.origin = spawn_position(vertex.surface.point, (onwards.wi.z > 0.0) == vertex.is_front);
     ray.direction = direction;
@@ -204,6 +208,9 @@ void shade(PathState path, Ray ray, Hit hit)
     if (LAYERS != 0u)
         set_layers(vertex.bsdf, AT(wave.scene, 0), vertex.surface, vertex.normal, vertex.wo, vertex.is_front);
     if (is_last && !is_pane(vertex.bsdf)) return; // panes are passed at any depth, as by shadow rays
+    vertex.facing = 0u;
+    if (HAS_LIGHT_TREE)
+        vertex.facing = packed_facing(vertex.surface.point.normal * (vertex.is_front ? 1.0 : -1.0), vertex.bsdf.is_glass);
     bool samples_lights = STRATEGY != STRATEGY_BSDF && (HAS_ENVIRONMENT || HAS_LOCAL_LIGHTS);
     if (samples_lights && !is_last && scatters(vertex.bsdf)) light_directly(vertex);
     scatter(vertex, ray);

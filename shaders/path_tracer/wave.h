@@ -71,6 +71,8 @@ struct WaveData
     PathQueue next_paths;
     Uints media;                      // of the paths: 1 + the material of the volume that it is in, 0: none; absent
     Uints next_media;                 // without PT_HAS_MEDIA
+    Uints facings;                    // of the paths: how the surface lies that they left, see packed_facing; absent
+    Uints next_facings;               // without PT_HAS_LIGHT_TREE
     REF(Ray) shadow_rays;
     ShadowQueue shadows;
     REF(Ray) next_shadow_rays;

@@ -93,16 +93,35 @@ TEST(AutomaticExposure, BringsTheMeanToMiddleGrey) {
     EXPECT_EQ(automatic_exposure({1, 1, {vec3(0)}}), 0);
 }
 
-TEST(LocalLights, AreChosenByTheirPower) {
+TEST(LocalLights, OfATableAreChosenByTheirPower) {
     Scene scene = cornell_box_scene();
     scene.lights.push_back({.name = "light", .kind = Light::Kind::point, .color = vec3(1)});
-    const LocalLights lights = collect_lights(scene);
+    const LocalLights lights = collect_lights(scene, LightChoice::table);
     ASSERT_EQ(lights.emitters.size(), 2u);
     ASSERT_EQ(lights.punctual.size(), 1u);
     const double light = static_cast<double>(PI * 0.25f * luminance(vec3(15, 13.5f, 11))),
                  point = static_cast<double>(4 * PI);
     EXPECT_NEAR(lights.punctual[0].chance, point / (light + point), 1e-5);
     EXPECT_NEAR(lights.densities[lights.emitters[0].instance][0], light / (light + point) / 0.25, 1e-4);
+}
+
+TEST(LocalLights, SunsTheSkyAndLampsHaveTheSameShare) {
+    Scene scene = cornell_box_scene();
+    scene.lights = {{.name = "sun", .kind = Light::Kind::directional, .color = vec3(1e5f)},
+                    {.name = "moon", .kind = Light::Kind::directional, .color = vec3(3e5f)}};
+    const LocalLights tree = collect_lights(scene), table = collect_lights(scene, LightChoice::table);
+    EXPECT_EQ(tree.by, LightChoice::tree);
+    EXPECT_EQ(tree.kind_count(), 2u);
+    EXPECT_EQ(tree.table_chance, 0.5f);
+    EXPECT_EQ(table.table_chance, 1.0f);
+    for (const int sun : {0, 1}) {
+        EXPECT_NEAR(tree.punctual[sun].chance, sun ? 0.75 : 0.25, 1e-6) << "of the table, which has suns alone";
+        EXPECT_NEAR(table.punctual[sun].chance, sun ? 0.375 : 0.125, 1e-6);
+    }
+    EXPECT_NEAR(table.densities[table.emitters[0].instance][0], 0.25 / 0.125, 1e-4) << "half of the lamp's half";
+    scene.lights.clear();
+    EXPECT_EQ(collect_lights(scene).table_chance, 0.0f);
+    EXPECT_EQ(collect_lights(scene).kind_count(), 1u);
 }
 
 TEST(HasLamps, TellsLampsFromGlowingLabels) {

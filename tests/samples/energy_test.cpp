@@ -107,6 +107,50 @@ TEST_F(Energy, AnEnvironmentALampAndAPointLightAddUpByEveryStrategy) {
     }
 }
 
+// Points above a floor and, a thousand times as strong, below it; spots, of which some look away; a sun.
+TEST_F(Energy, ManyLampsAddUp) {
+    Scene scene;
+    add(scene, wide_floor(), lambert(1));
+    double expected = 0;
+    for (int i = 0; i < 200; ++i) {
+        const float x = 0.25f * static_cast<float>(i % 20 - 10), z = 0.5f * static_cast<float>(i / 20 - 5);
+        const vec3 at(x, i % 3 == 0 ? -1.0f : 1 + 0.1f * static_cast<float>(i % 7), z);
+        const bool is_spot = i % 5 == 0, looks_away = i % 2 == 0;
+        const float power = at.y < 0 ? 1000 : 1;
+        scene.lights.push_back({.name = "light",
+                                .kind = is_spot ? Light::Kind::spot : Light::Kind::point,
+                                .color = vec3(power),
+                                .position = at,
+                                .direction = is_spot && looks_away ? normalize(at) : normalize(-at),
+                                .inner_cone = 0.3f,
+                                .outer_cone = 0.5f});
+        if (at.y > 0 && !(is_spot && looks_away))
+            expected += static_cast<double>(at.y) / std::pow(static_cast<double>(length(at)), 3);
+    }
+    scene.lights.push_back(
+        {.name = "sun", .kind = Light::Kind::directional, .color = vec3(20), .direction = {0, -1, 0}});
+    expected += 20;
+    RenderSetup setup = of_the_floor();
+    const HdrImage picture = render(context(), scene, setup);
+    expect_mean(picture, expected / static_cast<double>(PI), "200 lamps and a sun");
+    EXPECT_LT(statistics(picture).error * 32, 0.1 * expected / static_cast<double>(PI)) << "of a pixel of 64 paths";
+}
+
+// The front of a mirrored lamp is the same side of its surface.
+TEST_F(Energy, MirroredLampsShineFromTheSameSideByEveryStrategy) {
+    for (const bool faces_down : {false, true})
+        for (const uint strategy : strategies) {
+            Scene scene;
+            add(scene, wide_floor(), lambert(1));
+            const Transform mirrored{{vec4(-1, 0, 0, 0), vec4(0, 1, 0, 0), vec4(0, 0, 1, 0)}};
+            add(scene, faces_down ? square_above() : make_quad({-1, 1, -1}, {0, 0, 2}, {2, 0, 0}), lamp(1), mirrored);
+            RenderSetup setup = of_the_floor();
+            setup.settings.strategy = strategy;
+            expect_mean(render(context(), scene, setup), faces_down ? factor_of_square_above : 0,
+                        name_of_strategy(strategy));
+        }
+}
+
 TEST_F(Energy, ALightShinesFromItsFrontOnlyUnlessItIsTwoSided) {
     for (const bool is_two_sided : {false, true}) {
         Scene scene;
