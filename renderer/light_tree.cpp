@@ -157,9 +157,10 @@ struct Builder {
 
     void build(std::size_t node, std::size_t begin, std::size_t end, uint level, uint way) {
         const Bound all = bound(begin, end);
-        uint child = lights[order[begin]].light | LIGHT_LEAF;
+        const PlacedLight& first = lights[order[begin]];
+        uint child = first.light | LIGHT_LEAF | (first.count == 2 ? LIGHT_PAIR : 0);
         if (end - begin == 1)
-            tree.ways[lights[order[begin]].light] = way;
+            std::fill_n(tree.ways.begin() + first.light, first.count, way);
         else {
             child = static_cast<uint>(tree.nodes.size());
             tree.nodes.resize(tree.nodes.size() + 2);

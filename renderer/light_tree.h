@@ -9,7 +9,7 @@
 
 namespace twinray::path_tracer {
 
-// A light that is somewhere: a triangle, a point, a spot.
+// A light that is somewhere: a triangle, two that make a quadrilateral, a point, a spot.
 struct PlacedLight {
     vec3 lo, hi;              // the box around it
     vec3 axis;                // unit
@@ -17,7 +17,8 @@ struct PlacedLight {
     double axes_angle = 0;    // of all directions that count as its axis, from `axis`; in radians
     double reach_angle = 0;   // see LightNode::cos_reach
     bool is_two_sided = false;
-    uint light = 0;           // its index
+    uint light = 0;           // its index, or that of the first triangle
+    uint count = 1;
 };
 
 struct LightTree {

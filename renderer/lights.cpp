@@ -44,6 +44,17 @@ float mean_texture(const Scene& scene, const Texture& texture, const Mesh& mesh,
     return 0.01f + 0.99f * sum / static_cast<float>(std::size(points));
 }
 
+constexpr float flat_cosine = 1 - 0x1p-20f;  // of the angle between two halves of a quadrilateral
+
+// Whether the triangle shares two vertices with the other of the mesh.
+bool have_an_edge(const Mesh& mesh, uint other, const uvec3& triangle) {
+    uint shared = 0;
+    const uvec3& before = mesh.triangles[other];
+    for (const uint a : {before.x, before.y, before.z})
+        for (const uint b : {triangle.x, triangle.y, triangle.z}) shared += mesh.positions[a] == mesh.positions[b];
+    return shared == 2;
+}
+
 // Collects lights first; shares follow when all are known.
 struct Collector {
     const Scene& scene;
@@ -74,17 +85,37 @@ struct Collector {
         const double radiance =
             luminance(material.emission) * mean_texture(scene, material.emission_texture, mesh, triangle);
         const double front = determinant(transform) < 0 ? -1 : 1;
-        placed.push_back({.lo = min(a, min(b, c)),
-                          .hi = max(a, max(b, c)),
-                          .axis = vec3(normal * (front / area)),
-                          .power = static_cast<float>(radiance * area),
-                          .axes_angle = 0,
-                          .reach_angle = double{PI} / 2,
-                          .is_two_sided = material.double_sided,
-                          .light = static_cast<uint>(weights.size())});
+        place({.lo = min(a, min(b, c)),
+               .hi = max(a, max(b, c)),
+               .axis = vec3(normal * (front / area)),
+               .power = static_cast<float>(radiance * area),
+               .axes_angle = 0,
+               .reach_angle = double{PI} / 2,
+               .is_two_sided = material.double_sided,
+               .light = static_cast<uint>(weights.size())},
+              emitter, triangle);
         lights.emitters.push_back(emitter);
         areas.push_back(area);
         weights.push_back(double{PI} * area * radiance * (material.double_sided ? 2 : 1));
+    }
+
+    // The second half of a quadrilateral is placed with the first.
+    void place(const PlacedLight& light, const Emitter& emitter, const uvec3& triangle) {
+        if (!lights.emitters.empty() && placed.back().count == 1) {
+            PlacedLight& last = placed.back();
+            const Emitter& before = lights.emitters.back();
+            const Mesh& mesh = scene.meshes[scene.instances[emitter.instance].mesh];
+            const bool is_next = before.instance == emitter.instance && before.primitive + 1 == emitter.primitive &&
+                                 before.material == emitter.material;
+            if (is_next && dot(last.axis, light.axis) > flat_cosine && have_an_edge(mesh, before.primitive, triangle)) {
+                last.lo = min(last.lo, light.lo);
+                last.hi = max(last.hi, light.hi);
+                last.power += light.power;
+                last.count = 2;
+                return;
+            }
+        }
+        placed.push_back(light);
     }
 
     void add_punctual(const Light& light, float scene_radius) {
@@ -116,40 +147,53 @@ struct Collector {
         return light >= areas.size() && lights.punctual[light - areas.size()].kind == PUNCTUAL_DIRECTIONAL;
     }
 
-    // Each of the two kinds has the same share of the table, and the tree the share of the second.
-    void share() {
+    // Suns and other lights have the same share of a table of all.
+    void share_by_kind() {
         double of_suns = 0, of_placed = 0;
         for (std::size_t i = 0; i < weights.size(); ++i) (is_sun(i) ? of_suns : of_placed) += weights[i];
+        for (std::size_t i = 0; i < weights.size(); ++i)
+            if (const double of_kind = is_sun(i) ? of_suns : of_placed; of_kind > 0) weights[i] /= of_kind;
+    }
+
+    // One part of the table. Its weights become chances.
+    void make_part(std::size_t first, std::size_t count) {
+        const std::span part = std::span(weights).subspan(first, count);
+        std::ranges::copy(make_alias_table(part), lights.table.begin() + static_cast<std::ptrdiff_t>(first));
+        const double total = std::accumulate(part.begin(), part.end(), 0.0);
+        for (double& weight : part) weight = total > 0 ? weight / total : 0;
+    }
+
+    void make_parts() {
         const bool has_tree = lights.by == LightChoice::tree;
-        for (std::size_t i = 0; i < weights.size(); ++i) {
-            const double of_kind = is_sun(i) ? of_suns : of_placed;
-            weights[i] = of_kind > 0 && (is_sun(i) || !has_tree) ? weights[i] / of_kind : 0;
-        }
-        if (has_tree && lights.has_placed) lights.table_chance = lights.has_suns ? 0.5f : 0.0f;
-        const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
-        for (double& weight : weights) weight /= total > 0 ? total : 1;
+        std::size_t first = 0;
+        while (has_tree && first < weights.size() && !is_sun(first)) ++first;
+        lights.table.resize(weights.size());
+        lights.table_first = static_cast<uint>(first);
+        lights.table_count = static_cast<uint>(weights.size() - first);
+        if (!has_tree) share_by_kind();
+        make_part(first, weights.size() - first);
+        if (!has_tree) return;
+        for (const PlacedLight& light : placed) make_part(light.light, light.count);
+        lights.tree = build_light_tree(placed, weights.size());
+        if (lights.has_placed) lights.table_chance = lights.has_suns ? 0.5f : 0.0f;
     }
 
     void finish() {
         lights.has_placed = !placed.empty();
+        make_parts();
         lights.densities.resize(scene.instances.size());
         lights.ways.resize(scene.instances.size());
-        share();
-        lights.table = make_alias_table(weights);
-        const bool has_tree = lights.by == LightChoice::tree;
-        if (has_tree) lights.tree = build_light_tree(placed, weights.size());
         for (std::size_t i = 0; i < lights.emitters.size(); ++i) {
             const Emitter emitter = lights.emitters[i];
             const std::size_t count = scene.meshes[scene.instances[emitter.instance].mesh].triangles.size();
             lights.densities[emitter.instance].resize(count);
-            lights.ways[emitter.instance].resize(has_tree ? count : 0);
-            lights.densities[emitter.instance][emitter.primitive] =
-                static_cast<float>((has_tree ? 1 : weights[i]) / areas[i]);
-            if (has_tree) lights.ways[emitter.instance][emitter.primitive] = lights.tree.ways[i];
+            lights.densities[emitter.instance][emitter.primitive] = static_cast<float>(weights[i] / areas[i]);
+            if (lights.by != LightChoice::tree) continue;
+            lights.ways[emitter.instance].resize(count);
+            lights.ways[emitter.instance][emitter.primitive] = lights.tree.ways[i];
         }
         for (std::size_t i = 0; i < lights.punctual.size(); ++i)
-            lights.punctual[i].chance =
-                has_tree && !is_sun(areas.size() + i) ? 1 : static_cast<float>(weights[areas.size() + i]);
+            lights.punctual[i].chance = static_cast<float>(weights[areas.size() + i]);
     }
 };
 
@@ -180,7 +224,9 @@ Collector collect(const Scene& scene) {
     Collector collector{scene};
     for (uint i = 0; i < scene.instances.size(); ++i) collector.add_instance(i);
     const float radius = 0.5f * length(bounds_of(scene).size());
-    for (const Light& light : scene.lights) collector.add_punctual(light, radius);
+    for (const bool are_suns : {false, true})
+        for (const Light& light : scene.lights)
+            if ((light.kind == Light::Kind::directional) == are_suns) collector.add_punctual(light, radius);
     return collector;
 }
 

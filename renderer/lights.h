@@ -12,7 +12,7 @@
 namespace twinray::path_tracer {
 
 // How a light is chosen. The environment, the suns and the lights that are somewhere have the same share each. A sun is
-// chosen from a table, by its power; the others by the place that is lit, from a tree, or by their power, too.
+// chosen by its power, another light in a tree by the place that is lit, or, without a tree, by its power, too.
 enum class LightChoice { table, tree };
 
 // The emissive triangles and punctual lights of a scene.
@@ -21,10 +21,13 @@ struct LocalLights {
     std::vector<std::vector<float>> densities;  // per instance, then triangle: see SurfaceInstance; empty if dark
     std::vector<std::vector<uint>> ways;        // likewise
     std::vector<PunctualLight> punctual;
-    std::vector<AliasEntry> table;  // by index: of emitters, then punctual lights; empty where the tree has all
-    LightTree tree;                 // empty where the table has all
+    // By the index of a light: emitters, then punctual lights, the suns last. In parts, of which each chooses by power:
+    // one for each leaf of the tree, and one of `table_count` lights from `table_first` on, chosen with `table_chance`.
+    std::vector<AliasEntry> table;
+    uint table_first = 0, table_count = 0;
+    float table_chance = 1;
+    LightTree tree;  // empty without LightChoice::tree
     LightChoice by = LightChoice::table;
-    float table_chance = 1;  // of the table in place of the tree
     bool has_suns = false, has_placed = false;
 
     bool empty() const { return emitters.empty() && punctual.empty(); }

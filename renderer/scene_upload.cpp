@@ -99,13 +99,16 @@ void DeviceScene::upload_all(Commands& commands, const Scene& scene, const Local
 // Where all lights have gone out, kernels that look for them find a key that names nothing.
 void DeviceScene::upload_lights(Commands& commands, const LocalLights& lights) {
     const auto some_of = []<class T>(const std::vector<T>& values) { return values.empty() ? std::vector<T>(1) : values; };
+    if (lights.by == LightChoice::tree && !features_.light_tree)
+        fail("lights are in a tree, and the kernels of this scene choose them by a table");
     if (features_.local_lights) {
         if (!lights_) lights_.emplace(context_);
         const std::vector<SetKey> keys = lights_->put(lights);
         record_.lights = lights_->view();
         record_.light_keys = upload_moving(commands, "keys of lights", some_of(keys));
         record_.light_table = upload_moving(commands, "light table", some_of(lights.table));
-        record_.light_count = std::max(static_cast<uint>(keys.size()), 1u);
+        record_.table_first = lights.empty() ? 0 : lights.table_first;
+        record_.table_count = std::max(lights.table_count, 1u);
         record_.table_chance = lights.table_chance;
     }
     if (features_.light_tree)

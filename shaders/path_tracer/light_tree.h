@@ -6,7 +6,8 @@
 
 const uint LIGHT_LEAF = 0x80000000u;
 const uint LIGHT_TWO_SIDED = 0x40000000u; // shines along its axis and against it
-const uint LIGHT_INDEX = 0x3fffffffu;
+const uint LIGHT_PAIR = 0x20000000u;      // a leaf of two lights, of which the table chooses: the halves of a square
+const uint LIGHT_INDEX = 0x1fffffffu;
 const uint LIGHT_LEVELS = 32u; // below the root at most: a bit each in the way to a light
 
 // 52 bytes. All lights of a node are in the box, have an axis in a cone and shine up to an angle from their axis.
@@ -105,34 +106,39 @@ FUNC LightReceiver receiver_of(vec3 position, uint facing)
     return at;
 }
 
-// A light that was chosen, and with what probability; 0: none can light the receiver.
-struct ChosenLight
+// A leaf that was chosen, and with what probability; 0: none can light the receiver.
+struct ChosenLeaf
 {
-    uint light;
+    uint first; // its lights
+    uint count;
     float chance;
+    float rest; // in [0, 1): of the random number that chose it
 };
 
 // u in [0, 1): what is left of it at each level decides the next.
-FUNC ChosenLight choose_light(REF(LightNode) tree, LightReceiver at, float u)
+FUNC ChosenLeaf choose_leaf(REF(LightNode) tree, LightReceiver at, float u)
 {
-    ChosenLight chosen;
-    chosen.chance = 1.0f;
-    chosen.light = AT(tree, 0).child;
-    while ((chosen.light & LIGHT_LEAF) == 0u && chosen.chance > 0.0f)
+    float chance = 1.0f;
+    uint child = AT(tree, 0).child;
+    while ((child & LIGHT_LEAF) == 0u && chance > 0.0f)
     {
-        uint children = chosen.light & LIGHT_INDEX;
+        uint children = child & LIGHT_INDEX;
         float first = chance_of_first(AT(tree, children), AT(tree, children + 1u), at);
         bool is_first = u < first;
         u = is_first ? u / first : (u - first) / (1.0f - first);
         u = clamp(u, 0.0f, 0.99999994f);
-        chosen.chance = first < 0.0f ? 0.0f : chosen.chance * (is_first ? first : 1.0f - first);
-        chosen.light = AT(tree, is_first ? children : children + 1u).child;
+        chance = first < 0.0f ? 0.0f : chance * (is_first ? first : 1.0f - first);
+        child = AT(tree, is_first ? children : children + 1u).child;
     }
-    chosen.light = chosen.light & LIGHT_INDEX;
-    return chosen;
+    ChosenLeaf leaf;
+    leaf.first = child & LIGHT_INDEX;
+    leaf.count = (child & LIGHT_PAIR) != 0u ? 2u : 1u;
+    leaf.chance = chance;
+    leaf.rest = u;
+    return leaf;
 }
 
-// The probability that choose_light takes the way: from its lowest bit on, a level each, 1 for the second child.
+// The probability that choose_leaf takes the way: from its lowest bit on, a level each, 1 for the second child.
 FUNC float chance_of_way(REF(LightNode) tree, LightReceiver at, uint way)
 {
     float chance = 1.0f;

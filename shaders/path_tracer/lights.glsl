@@ -13,13 +13,13 @@ struct LightSample
     bool has_target;
 };
 
-// A column of an alias table of `count` columns. The fraction of word * count decides between its two entries.
-uint sample_alias(REF(AliasEntry) table, uint count, uint word)
+// Of `count` lights from the first on. The fraction of word * count decides between the two entries of a column.
+uint sample_alias(REF(AliasEntry) table, uint first, uint count, uint word)
 {
     uint column, fraction;
     umulExtended(word, count, column, fraction);
-    AliasEntry entry = AT(table, column);
-    return fraction < entry.probability ? column : entry.alias;
+    AliasEntry entry = AT(table, first + column);
+    return first + (fraction < entry.probability ? column : entry.alias);
 }
 
 // The cell of a table of cumulated probabilities that u in [0, 1) falls into, plus how far into it.
@@ -137,19 +137,28 @@ LightSample sample_local(SceneData scene, PunctualLight light, float chance, vec
     return result;
 }
 
-// The light that u in [0, 1) chooses among those of the table and of the tree, and its chance but for its own share of
-// the table.
+struct ChosenLight
+{
+    uint light;
+    float chance; // but for its chance in its part of the table
+};
+
+// u in [0, 1): between the tree and the lights that are not in it. word: among these.
 ChosenLight choose_local(SceneData scene, LightReceiver at, float u, uint word)
 {
     ChosenLight chosen;
-    if (!HAS_LIGHT_TREE || u < scene.table_chance)
+    uint first = scene.table_first;
+    uint count = scene.table_count;
+    chosen.chance = HAS_LIGHT_TREE ? scene.table_chance : 1.0;
+    if (HAS_LIGHT_TREE && u >= scene.table_chance)
     {
-        chosen.light = sample_alias(scene.light_table, scene.light_count, word);
-        chosen.chance = HAS_LIGHT_TREE ? scene.table_chance : 1.0;
-        return chosen;
+        ChosenLeaf leaf = choose_leaf(scene.light_tree, at, unit_float(word));
+        first = leaf.first;
+        count = leaf.count;
+        chosen.chance = leaf.chance * (1.0 - scene.table_chance);
+        word = uint(leaf.rest * 4294967296.0);
     }
-    chosen = choose_light(scene.light_tree, at, unit_float(word));
-    chosen.chance *= 1.0 - scene.table_chance;
+    chosen.light = sample_alias(scene.light_table, first, count, word);
     return chosen;
 }
 

@@ -58,8 +58,8 @@ struct SurfaceInstance
     Rows world_to_object;
     REF(SurfaceVertex) vertices;
     REF(SurfaceTriangle) triangles;
-    Floats emitter_density; // per triangle: probability of being chosen as light, but for the tree's, / world area;
-                            // absent if none emits
+    Floats emitter_density; // per triangle: probability of being chosen from its part of the table / world area; absent
+                            // if none emits
     Uints emitter_ways;     // per triangle: see chance_of_way; absent without PT_HAS_LIGHT_TREE
 };
 BUFFER_OF(SurfaceInstance, 8);
@@ -193,7 +193,7 @@ struct PunctualLight
     vec3 direction;   // from the light
     float range;      // infinity: none
     vec3 color;       // times intensity
-    float chance;     // of being chosen among the lights of the table; 1 in the tree
+    float chance;     // of being chosen from its part of the table
     float cone_scale; // spot: clamp(cos * scale + offset, 0, 1)^2
     float cone_offset;
 };
@@ -233,10 +233,12 @@ struct SceneData
     TextureTable textures; // of the materials; empty: none has any
     LocalLightsView lights;
     REF(SetKey) light_keys; // by the index of a light
-    REF(AliasEntry) light_table; // of all lights; those in the tree have no share
+    REF(AliasEntry) light_table; // by the index of a light, in parts: of each leaf of the tree and of all other lights
     REF(LightNode) light_tree; // of the lights that are somewhere; absent without PT_HAS_LIGHT_TREE
-    uint light_count;
-    float table_chance; // of choosing by the table instead of by the tree
+    uint table_first; // of the lights that are not in the tree
+    uint table_count;
+    float table_chance; // of choosing one of them
+    uint reserved;
     Environment environment;
 };
 BUFFER_OF(SceneData, 8);

@@ -105,23 +105,35 @@ TEST(LocalLights, OfATableAreChosenByTheirPower) {
     EXPECT_NEAR(lights.densities[lights.emitters[0].instance][0], light / (light + point) / 0.25, 1e-4);
 }
 
-TEST(LocalLights, SunsTheSkyAndLampsHaveTheSameShare) {
+TEST(LocalLights, SunsAndLampsHaveTheSameShare) {
     Scene scene = cornell_box_scene();
     scene.lights = {{.name = "sun", .kind = Light::Kind::directional, .color = vec3(1e5f)},
+                    {.name = "lamp", .kind = Light::Kind::point, .color = vec3(1)},
                     {.name = "moon", .kind = Light::Kind::directional, .color = vec3(3e5f)}};
     const LocalLights tree = collect_lights(scene), table = collect_lights(scene, LightChoice::table);
     EXPECT_EQ(tree.by, LightChoice::tree);
     EXPECT_EQ(tree.kind_count(), 2u);
     EXPECT_EQ(tree.table_chance, 0.5f);
+    EXPECT_EQ(tree.table_first, 3u);
+    EXPECT_EQ(tree.table_count, 2u);
     EXPECT_EQ(table.table_chance, 1.0f);
-    for (const int sun : {0, 1}) {
-        EXPECT_NEAR(tree.punctual[sun].chance, sun ? 0.75 : 0.25, 1e-6) << "of the table, which has suns alone";
-        EXPECT_NEAR(table.punctual[sun].chance, sun ? 0.375 : 0.125, 1e-6);
+    EXPECT_EQ(table.table_count, 5u);
+    EXPECT_EQ(tree.punctual[0].chance, 1) << "alone in its leaf";
+    for (const int sun : {1, 2}) {
+        EXPECT_NEAR(tree.punctual[sun].chance, sun == 2 ? 0.75 : 0.25, 1e-6) << "of the suns";
+        EXPECT_NEAR(table.punctual[sun].chance, sun == 2 ? 0.375 : 0.125, 1e-6);
     }
-    EXPECT_NEAR(table.densities[table.emitters[0].instance][0], 0.25 / 0.125, 1e-4) << "half of the lamp's half";
-    scene.lights.clear();
-    EXPECT_EQ(collect_lights(scene).table_chance, 0.0f);
-    EXPECT_EQ(collect_lights(scene).kind_count(), 1u);
+    EXPECT_NEAR(tree.densities[tree.emitters[0].instance][0], 0.5 / 0.125, 1e-4) << "half of a square";
+}
+
+TEST(LocalLights, TheHalvesOfASquareAreOneLamp) {
+    Scene scene = cornell_box_scene();
+    EXPECT_EQ(collect_lights(scene).by, LightChoice::table) << "the box has one lamp";
+    scene.lights = {{.name = "lamp", .kind = Light::Kind::point, .color = vec3(1)}};
+    const LocalLights lights = collect_lights(scene);
+    EXPECT_EQ(lights.tree.nodes.size(), 3u);
+    EXPECT_EQ(lights.tree.ways[0], lights.tree.ways[1]);
+    EXPECT_NE(lights.tree.ways[0], lights.tree.ways[2]);
 }
 
 TEST(HasLamps, TellsLampsFromGlowingLabels) {

@@ -117,10 +117,11 @@ TEST(LightTree, LightsAreChosenWithTheirChance) {
         const LightReceiver at = any_receiver(draws);
         std::vector<double> chosen(count);
         for (uint turn = 0; turn < turns; ++turn) {
-            const ChosenLight light = choose_light(on_host(tree), at, (float(turn) + 0.5f) / turns);
-            if (!(light.chance > 0)) continue;
-            chosen[light.light] += 1.0 / turns;
-            EXPECT_NEAR(light.chance, chance_of_way(on_host(tree), at, tree.ways[light.light]), 1e-6f * light.chance);
+            const ChosenLeaf leaf = choose_leaf(on_host(tree), at, (float(turn) + 0.5f) / turns);
+            if (!(leaf.chance > 0)) continue;
+            chosen[leaf.first] += 1.0 / turns;
+            EXPECT_NEAR(leaf.chance, chance_of_way(on_host(tree), at, tree.ways[leaf.first]), 1e-6f * leaf.chance);
+            EXPECT_TRUE(leaf.rest >= 0 && leaf.rest < 1 && leaf.count == 1);
         }
         for (uint light = 0; light < count; ++light)
             EXPECT_NEAR(chosen[light], double{chance_of_way(on_host(tree), at, tree.ways[light])}, 1e-3) << light;
