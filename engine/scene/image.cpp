@@ -35,12 +35,14 @@ std::uint64_t word_at(std::span<const std::uint8_t> bytes, std::size_t first, st
     return word;
 }
 
-// ITU T.81, B.2.4.2: 16 counts of codes by length, then the codes' values.
+// ITU T.81, B.2.4.2: the table's class, 16 counts of codes by length, then the codes' values. A table of class 0 codes
+// the bits that a difference of two averages takes, 0 to 16; one of class 1 codes bytes.
 std::string fault_of_huffman_tables(std::span<const std::uint8_t> segment) {
-    constexpr std::size_t counts_end = 17, most_codes = 256;
+    constexpr std::size_t counts_end = 17;
     while (segment.size() >= counts_end) {
         const std::span<const std::uint8_t> counts = segment.subspan(1, counts_end - 1);
         const std::size_t codes = std::accumulate(counts.begin(), counts.end(), std::size_t{0});
+        const std::size_t most_codes = segment[0] >> 4 == 0 ? 17 : 256;
         if (codes > most_codes) return text("a Huffman table of ", codes, " codes, more than ", most_codes);
         segment = segment.subspan(std::min(counts_end + codes, segment.size()));
     }
@@ -69,8 +71,10 @@ bool take_runs(std::span<const std::uint8_t>& rows, std::uint64_t width) {
         if (rows.empty()) return false;
         const std::size_t count = rows[0];
         const bool is_repeated = count > 128;
+        const std::size_t bytes = 1 + (is_repeated ? 1 : count);
+        if (rows.size() < bytes) return false;
         done += is_repeated ? count - 128 : count;
-        rows = rows.subspan(std::min(rows.size(), 1 + (is_repeated ? 1 : count)));
+        rows = rows.subspan(bytes);
     }
     return true;
 }
@@ -98,7 +102,7 @@ bool can_hold_radiance(std::uint64_t bytes, std::uint64_t width, std::uint64_t h
     return height == 0 || row <= bytes / height;
 }
 
-// Whether the runs of a Radiance image's rows end before the bytes do: behind them stb_image reads empty runs for ever.
+// Whether the runs of a Radiance image's rows end before the bytes do. stb_image makes up what is missing.
 bool has_whole_runs(std::span<const std::uint8_t> bytes, std::uint64_t width, std::uint64_t height) {
     constexpr std::size_t row_head = 4;  // 2, 2 and the width, where the row has runs
     std::span<const std::uint8_t> rows = radiance_rows(bytes);
@@ -112,7 +116,7 @@ bool has_whole_runs(std::span<const std::uint8_t> bytes, std::uint64_t width, st
 }
 
 // Says what is wrong with the Huffman tables of a JPEG, anywhere before its end, "" where nothing is or the bytes are
-// of another format: a table of more than 256 codes is written past its room.
+// of another format. stb_image trusts the number of codes.
 std::string fault_of_jpeg(std::span<const std::uint8_t> bytes) {
     constexpr std::uint8_t huffman_tables = 0xc4, end = 0xd9;
     if (bytes.empty() || bytes[0] != 0xff) return "";

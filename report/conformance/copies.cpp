@@ -78,8 +78,8 @@ std::vector<std::uint64_t> addresses_of(const std::vector<std::uint64_t>& handle
     return addresses;
 }
 
-// The old bottom level stays, with other triangles: a top level that still refers to it gives wrong hits, and reads no
-// freed memory, which hung a GPU.
+// The old bottom level stays, with other triangles: a top level that still refers to it gives wrong hits and
+// harms nothing.
 void files_of_both_levels(CaseRun& run) {
     const SceneInput scene = copyable(run);
     Driver& driver = run.driver();
