@@ -120,6 +120,22 @@ std::filesystem::path write_exr(const TempDir& dir, const std::vector<std::strin
     return path;
 }
 
+// Sizes that a reader without the check has room for.
+TEST(HdrImage, MorePixelsThanTheFileCanHoldAreRefused) {
+    const TempDir dir;
+    const std::string radiance = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 4\n\x80\x40\x01\x81";
+    expect_contains(error_of([&] { load_hdr_image(dir.write("a.hdr", radiance)); }),
+                    "4 x 4 pixels are more than its 49 bytes can hold");
+    const std::vector<float> values(4 * 3, 0.5f);
+    const auto file = write_exr(dir, {"R", "G", "B"}, 2, 2, values, Imf::RLE_COMPRESSION);
+    const Bytes bytes = read_file(file);
+    std::string exr(bytes.begin(), bytes.end());
+    const std::string before_window("dataWindow\0box2i\0\x10\0\0\0", 21);
+    const std::size_t window = exr.find(before_window) + before_window.size();
+    exr.replace(window + 8, 4, std::string("\xff\xff\3\0", 4));  // the last column, from 4
+    expect_contains(error_of([&] { load_hdr_image(dir.write("b.exr", exr)); }), "pixels are more than its");
+}
+
 TEST(HdrImage, ExrKeepsFloatsExactly) {
     const TempDir dir;
     const std::vector<float> values = {0.1f, 1e6f, 1e-20f, 3, 4, 5};
