@@ -18,17 +18,6 @@ vec2 in_plane(uint width, uint height, uvec2 pixel) {
     return vec2(2 * place.x / static_cast<float>(width) - 1, 1 - 2 * place.y / static_cast<float>(height));
 }
 
-dvec3 normal_of(const Scene& scene, const Hit& hit) {
-    const Instance& instance = scene.instances[hit.instance_index];
-    const Mesh& mesh = scene.meshes[instance.mesh];
-    const uvec3 triangle = mesh.triangles[hit.primitive_index];
-    const auto point = [&](uint vertex) { return dvec3(transform_point(instance.transform, mesh.positions[vertex])); };
-    const dvec3 origin = point(triangle.x);
-    const dvec3 normal = cross(point(triangle.y) - origin, point(triangle.z) - origin);
-    const double size = length(normal);
-    return size > 0 ? normal * (1 / size) : dvec3(0);
-}
-
 Rgb base_color(const Scene& scene, const Hit& hit) {
     const Instance& instance = scene.instances[hit.instance_index];
     const uint material = instance.material.value_or(scene.meshes[instance.mesh].material(hit.primitive_index));
@@ -67,7 +56,7 @@ Ray ray_of_pixel(const Orbit& orbit, uint width, uint height, uvec2 pixel) {
 
 Rgb lit(const Scene& scene, const Ray& ray, const Hit& hit, Rgb color) {
     const dvec3 direction(ray.direction);
-    const double cosine = std::abs(dot(normal_of(scene, hit), direction)) / std::max(length(direction), 1e-300);
+    const double cosine = std::abs(dot(front_normal(scene, hit), direction)) / std::max(length(direction), 1e-300);
     return rgb_of_linear(linear_of(color) * (light_at_least + (1 - light_at_least) * static_cast<float>(cosine)));
 }
 
@@ -86,7 +75,7 @@ Rgb color_of(Layer layer, const Scene& scene, const Ray& ray, const Hit& hit, co
         case Layer::occlusion: return hit_color;
         case Layer::uv: return {byte_of(hit.u), byte_of(hit.v), byte_of(1.0 - hit.u - hit.v)};
         case Layer::normal: {
-            const dvec3 n = normal_of(scene, hit);
+            const dvec3 n = front_normal(scene, hit);
             return {byte_of(0.5 + 0.5 * n.x), byte_of(0.5 + 0.5 * n.y), byte_of(0.5 + 0.5 * n.z)};
         }
         case Layer::geometry: return lit(scene, ray, hit, color_of_number(scene.instances[hit.instance_index].mesh));

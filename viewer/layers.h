@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "viewer/picture/raster.h"
+#include "viewer/picture/face_picture.h"
 #include "viewer/picture/value_scale.h"
 #include "viewer/state.h"
 

@@ -105,8 +105,13 @@ InstanceOptions Scene::options_of_next() const {
     return {.custom_index = static_cast<uint>(parts_.size())};
 }
 
-uint Scene::keep(AccelHandle handle, std::shared_ptr<Mesh> mesh, const Transform& transform) {
+void Scene::changed() {
     is_searchable_ = false;
+    bounds_.reset();
+}
+
+uint Scene::keep(AccelHandle handle, std::shared_ptr<KeptMesh> mesh, const Transform& transform) {
+    changed();
     parts_.push_back(Part{handle, std::move(mesh), transform});
     return static_cast<uint>(parts_.size() - 1);
 }
@@ -114,7 +119,7 @@ uint Scene::keep(AccelHandle handle, std::shared_ptr<Mesh> mesh, const Transform
 uint Scene::add(Mesh&& mesh, const Transform& transform) {
     const Lock lock(device_->mutex);
     mesh.name = "geometry " + std::to_string(parts_.size());
-    auto kept = std::make_shared<Mesh>(std::move(mesh));
+    auto kept = std::make_shared<KeptMesh>(KeptMesh{std::move(mesh), {}});
     const AccelHandle handle = accel_->push(*kept, transform, options_of_next());
     return keep(handle, std::move(kept), transform);
 }
@@ -148,7 +153,7 @@ void Scene::remove(uint geometry) {
     const Lock lock(device_->mutex);
     accel_->erase(part(geometry, "remove").handle);
     parts_[geometry].reset();
-    is_searchable_ = false;
+    changed();
 }
 
 void Scene::set_transform(uint geometry, const Transform& transform) {
@@ -156,7 +161,7 @@ void Scene::set_transform(uint geometry, const Transform& transform) {
     Part& moved = part(geometry, "set_transform");
     accel_->update_transform(moved.handle, transform);
     moved.transform = transform;
-    is_searchable_ = false;
+    changed();
 }
 
 void Scene::update_vertices(uint geometry, std::vector<vec3>&& positions) {
@@ -164,7 +169,8 @@ void Scene::update_vertices(uint geometry, std::vector<vec3>&& positions) {
     Part& moved = part(geometry, "update_vertices");
     accel_->update_vertices(moved.handle, positions);
     moved.mesh->positions = std::move(positions);
-    is_searchable_ = false;
+    moved.mesh->box.reset();
+    changed();
 }
 
 std::vector<uint> Scene::geometries() const {
@@ -191,8 +197,16 @@ std::vector<std::uint64_t> Scene::first_faces() const {
 
 Bounds Scene::bounds() {
     const Lock lock(device_->mutex);
-    accel_->sync();
-    return accel_->world_bound();
+    if (bounds_) return *bounds_;
+    std::vector<PlacedMesh> placed;
+    for (const auto& part : parts_) {
+        if (!part) continue;
+        KeptMesh& mesh = *part->mesh;
+        if (!mesh.box) mesh.box = bounds_of(MeshView(mesh));
+        placed.push_back({&mesh, *mesh.box, part->transform});
+    }
+    bounds_ = bounds_of(placed);
+    return *bounds_;
 }
 
 Numbers3 Scene::normal_of(uint geometry, uint primitive) const {
@@ -203,8 +217,8 @@ Numbers3 Scene::normal_of(uint geometry, uint primitive) const {
     double ab[3], ac[3];
     for (std::size_t i = 0; i < 3; ++i) ab[i] = corners[1][i] - corners[0][i], ac[i] = corners[2][i] - corners[0][i];
     const double n[] = {ab[1] * ac[2] - ab[2] * ac[1], ab[2] * ac[0] - ab[0] * ac[2], ab[0] * ac[1] - ab[1] * ac[0]};
-    const double length = std::hypot(n[0], n[1], n[2]);
-    if (!(length > 0)) return {0, 0, 0};
+    const double length = std::hypot(n[0], n[1], n[2]) * (determinant(hit.transform) < 0 ? -1 : 1);
+    if (!(std::abs(length) > 0)) return {0, 0, 0};
     return {static_cast<float>(n[0] / length), static_cast<float>(n[1] / length), static_cast<float>(n[2] / length)};
 }
 
@@ -304,9 +318,10 @@ std::vector<dvec3> Scene::world_triangles() const {
     std::vector<dvec3> vertices;
     for (const auto& part : parts_) {
         if (!part) continue;
-        for (const uvec3& triangle : part->mesh->triangles)
-            for (std::size_t i = 0; i < 3; ++i)
-                vertices.push_back(world_vertex(part->transform, part->mesh->positions[triangle[i]]));
+        const bool is_mirrored = determinant(part->transform) < 0;
+        for (const uvec3& t : part->mesh->triangles)
+            for (const uint vertex : {t.x, is_mirrored ? t.z : t.y, is_mirrored ? t.y : t.z})
+                vertices.push_back(world_vertex(part->transform, part->mesh->positions[vertex]));
     }
     return vertices;
 }

@@ -145,7 +145,8 @@ class Scene {
 
     Nearest closest(std::span<const dvec3> points, bool with_normals);
     std::vector<double> winding_numbers(std::span<const dvec3> points);  // generalized ones, where meshes are open
-    std::vector<dvec3> world_triangles() const;                          // three vertices each
+    // Three vertices each; of mirrored ones the last two are exchanged, so that fronts stay fronts.
+    std::vector<dvec3> world_triangles() const;
 
     Backend backend() const;
     std::vector<std::string> take_log();
@@ -171,15 +172,19 @@ class Scene {
     };
 
   private:
+    struct KeptMesh : Mesh {
+        std::optional<Bounds> box;  // once it was asked for
+    };
     struct Part {
         AccelHandle handle;
-        std::shared_ptr<Mesh> mesh;
+        std::shared_ptr<KeptMesh> mesh;
         Transform transform;
     };
     using Lock = std::lock_guard<std::recursive_mutex>;
 
     Part& part(uint geometry, const char* action);
-    uint keep(AccelHandle handle, std::shared_ptr<Mesh> mesh, const Transform& transform);
+    uint keep(AccelHandle handle, std::shared_ptr<KeptMesh> mesh, const Transform& transform);
+    void changed();
     InstanceOptions options_of_next() const;
     Numbers3 normal_of(uint geometry, uint primitive) const;
     // None: 2^32 - 1 both.
@@ -198,7 +203,8 @@ class Scene {
     std::unique_ptr<AllHits> all_hits_;
     std::unique_ptr<PointQuery> points_;
     Progress progress_;
-    bool is_searchable_ = false;  // points_ holds what the accelerator does
+    bool is_searchable_ = false;    // points_ holds what the accelerator does
+    std::optional<Bounds> bounds_;  // of all, once they were asked for
 };
 
 }  // namespace twinray::python

@@ -118,11 +118,13 @@ class GlbModel {
     int make_mesh(const Mesh& mesh, const Transform& to_world, std::span<const Rgb> colors) {
         std::vector<vec3> positions;
         std::vector<Channels> channels;
+        const bool is_mirrored = determinant(to_world) < 0;
         for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
             std::array<vec3, 3> vertices;
             for (int k = 0; k < 3; ++k)
                 vertices[static_cast<std::size_t>(k)] = transform_point(to_world, mesh.positions[mesh.triangles[i][k]]);
             if (!std::all_of(vertices.begin(), vertices.end(), [](vec3 p) { return is_finite(p); })) continue;
+            if (is_mirrored) std::swap(vertices[1], vertices[2]);  // fronts stay fronts
             positions.insert(positions.end(), vertices.begin(), vertices.end());
             channels.insert(channels.end(), 3, channels_of(colors[i]));
         }

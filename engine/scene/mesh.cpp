@@ -2,7 +2,9 @@
 #include "engine/scene/mesh.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "engine/core/error.h"
 #include "engine/core/ray.h"
@@ -13,6 +15,17 @@ void Bounds::include(const Bounds& other) { lo = min(lo, other.lo), hi = max(hi,
 vec3 Bounds::size() const { return is_empty() ? vec3(0) : hi - lo; }
 vec3 Bounds::center() const { return lo * 0.5f + hi * 0.5f; }
 
+MeshView::MeshView(const Mesh& mesh)
+    : name(mesh.name),
+      positions(mesh.positions),
+      triangles(mesh.triangles),
+      normals(mesh.normals),
+      tangents(mesh.tangents),
+      uv0(mesh.uvs),
+      uv1(mesh.second_uvs),
+      colors(mesh.colors),
+      face_metadata(mesh.materials) {}
+
 vec3 normal_or_none(const dvec3& normal) { return is_finite(vec3(normal)) ? vec3(normal) : vec3(0); }
 
 Bounds bounds_of(const MeshView& mesh) {
@@ -20,6 +33,85 @@ Bounds bounds_of(const MeshView& mesh) {
     for (const uvec3& triangle : mesh.triangles)
         for (int corner = 0; corner < 3; ++corner)
             if (const vec3 point = mesh.positions[triangle[corner]]; is_finite(point)) bounds.include(point);
+    return bounds;
+}
+
+namespace {
+
+struct Rounded {
+    float low, high;  // the float32 numbers around one of float64
+};
+Rounded rounded(double value) {
+    const auto near = static_cast<float>(value);
+    return {near > value ? std::nextafter(near, -INFINITY) : near,
+            near < value ? std::nextafter(near, INFINITY) : near};
+}
+
+double along(const vec4& row, vec3 point) {
+    return double(row.x) * point.x + double(row.y) * point.y + double(row.z) * point.z + row.w;
+}
+
+// The box of the box: no vertex in it leaves this one, since rounding keeps the order of sums.
+Bounds box_around(const PlacedMesh& placed) {
+    Bounds bounds;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const vec4& row = placed.transform.rows[i];
+        vec3 least = placed.box.lo, most = placed.box.hi;
+        for (std::size_t k = 0; k < 3; ++k)
+            if (row[k] < 0) std::swap(least[k], most[k]);
+        bounds.lo[i] = rounded(along(row, least)).low;
+        bounds.hi[i] = rounded(along(row, most)).high;
+    }
+    return bounds;
+}
+
+// No axis is mixed with another: the box of the box is that of the vertices.
+bool keeps_axes(const Transform& transform) {
+    return std::ranges::all_of(transform.rows,
+                               [](const vec4& row) { return (row.x != 0) + (row.y != 0) + (row.z != 0) <= 1; });
+}
+
+Bounds box_of_vertices(const PlacedMesh& placed) {
+    dvec3 lo(INFINITY), hi(-INFINITY);
+    for (const uvec3& triangle : placed.mesh->triangles)
+        for (int corner = 0; corner < 3; ++corner) {
+            const vec3 point = placed.mesh->positions[triangle[corner]];
+            if (!is_finite(point)) continue;
+            const auto& rows = placed.transform.rows;
+            const dvec3 world(along(rows[0], point), along(rows[1], point), along(rows[2], point));
+            lo = min(lo, world), hi = max(hi, world);
+        }
+    Bounds bounds;
+    for (std::size_t i = 0; i < 3; ++i) bounds.lo[i] = rounded(lo[i]).low, bounds.hi[i] = rounded(hi[i]).high;
+    return bounds;
+}
+
+bool contains(const Bounds& bounds, const Bounds& other) {
+    return min(bounds.lo, other.lo) == bounds.lo && max(bounds.hi, other.hi) == bounds.hi;
+}
+
+}  // namespace
+
+Bounds bounds_of(std::span<const PlacedMesh> placed) {
+    std::vector<Bounds> around(placed.size());
+    std::array<std::size_t, 6> outermost{};  // by side
+    for (std::size_t i = 0; i < placed.size(); ++i) {
+        if (placed[i].box.is_empty()) continue;
+        around[i] = box_around(placed[i]);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            std::size_t &lowest = outermost[axis], &highest = outermost[axis + 3];
+            if (around[i].lo[axis] < around[lowest].lo[axis]) lowest = i;
+            if (around[i].hi[axis] > around[highest].hi[axis]) highest = i;
+        }
+    }
+    Bounds bounds;
+    const auto include = [&](std::size_t i) {
+        if (around[i].is_empty() || (!bounds.is_empty() && contains(bounds, around[i]))) return;
+        bounds.include(keeps_axes(placed[i].transform) ? around[i] : box_of_vertices(placed[i]));
+    };
+    if (placed.empty()) return bounds;
+    for (const std::size_t i : outermost) include(i);
+    for (std::size_t i = 0; i < placed.size(); ++i) include(i);
     return bounds;
 }
 

@@ -53,15 +53,6 @@ void complete(Scene& scene, const std::filesystem::path& file) {
     }
 }
 
-Bounds transformed(const Bounds& box, const Transform& transform) {
-    Bounds result;
-    for (int corner = 0; corner < 8; ++corner)
-        result.include(
-            transform_point(transform, vec3(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
-                                            corner & 4 ? box.hi.z : box.lo.z)));
-    return result;
-}
-
 }  // namespace
 
 std::array<const Texture*, 13> textures_of(const Material& material) {
@@ -88,11 +79,10 @@ Scene load_scene(const std::filesystem::path& file, const std::optional<dvec3>& 
 Bounds bounds_of(const Scene& scene) {
     std::vector<Bounds> mesh_bounds;
     for (const Mesh& mesh : scene.meshes) mesh_bounds.push_back(bounds_of(MeshView(mesh)));
-    Bounds bounds;
+    std::vector<PlacedMesh> placed;
     for (const Instance& instance : scene.instances)
-        if (const Bounds& box = mesh_bounds[instance.mesh]; !box.is_empty())
-            bounds.include(transformed(box, instance.transform));
-    return bounds;
+        placed.push_back({&scene.meshes[instance.mesh], mesh_bounds[instance.mesh], instance.transform});
+    return bounds_of(placed);
 }
 
 Mesh joined(const Scene& scene, std::string name) {
@@ -103,7 +93,9 @@ Mesh joined(const Scene& scene, std::string name) {
         const uint first = static_cast<uint>(mesh.positions.size());
         for (const vec3& position : part.positions)
             mesh.positions.push_back(transform_point(instance.transform, position));
-        for (const uvec3& triangle : part.triangles) mesh.triangles.push_back(triangle + first);
+        const bool is_mirrored = determinant(instance.transform) < 0;
+        for (const uvec3& triangle : part.triangles)
+            mesh.triangles.push_back((is_mirrored ? uvec3(triangle.x, triangle.z, triangle.y) : triangle) + first);
     }
     return mesh;
 }

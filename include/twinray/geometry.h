@@ -282,20 +282,21 @@ struct MeshView {
     MeshView(std::string_view mesh_name, std::span<const vec3> points, std::span<const uvec3> vertex_indices)
         : name(mesh_name), positions(points), triangles(vertex_indices) {}
     // All that the mesh has.
-    MeshView(const Mesh& mesh)
-        : name(mesh.name),
-          positions(mesh.positions),
-          triangles(mesh.triangles),
-          normals(mesh.normals),
-          tangents(mesh.tangents),
-          uv0(mesh.uvs),
-          uv1(mesh.second_uvs),
-          colors(mesh.colors),
-          face_metadata(mesh.materials) {}
+    MeshView(const Mesh& mesh);
 };
 
 // Box of the finite vertices that triangles use.
 Bounds bounds_of(const MeshView& mesh);
+
+// A mesh as an instance shows it.
+struct PlacedMesh {
+    const Mesh* mesh;
+    Bounds box;  // bounds_of(*mesh)
+    Transform transform;
+};
+// Box of the finite vertices that triangles use, in world space, rounded outward. It looks at the vertices of those
+// meshes alone whose own boxes, as they are turned, reach out of what others fill.
+Bounds bounds_of(std::span<const PlacedMesh> placed);
 
 // Throws Error naming the mesh, the triangle, the index and the vertex count if an index is out of range.
 void check_indices(const MeshView& mesh);

@@ -173,14 +173,14 @@ Scene sunflower_scene();
 // "500000 5400000 0", in as few digits as give the same float64.
 std::string origin_text(const dvec3& origin);
 
-// Union of all instances' boxes under their transforms, in world space.
+// Box of all instances' vertices in world space, as bounds_of(std::span<const PlacedMesh>).
 Bounds bounds_of(const Scene& scene);
 
 // Triangles counted once per instance.
 std::size_t count_triangles(const Scene& scene);
 
 // All instances as one mesh in world space. Vertices that meet in the scene meet there, if they are of one instance or
-// of one transform.
+// of one transform. Triangles of a mirrored instance get their last two vertices exchanged, so that fronts stay fronts.
 Mesh joined(const Scene& scene, std::string name);
 
 // Gives the scene's meshes the materials of one of its variants. Throws Error naming those it has.

@@ -94,7 +94,9 @@ def test_geometries_move_go_and_are_repeated(accel):
         return int(scene.cast_rays([x, 0.6, -1, 0, 0, 1])["geometry_ids"])
 
     assert [seen(x) for x in (0.3, 5.3, 11.3, 8)] == [0, 1, 2, INVALID_ID]
-    assert (scene.cast_rays([11.3, 0.6, -1, 0, 0, 1])["primitive_normals"] == [0, 0, 1]).all()  # mirrored
+    assert (
+        scene.cast_rays([11.3, 0.6, -1, 0, 0, 1])["primitive_normals"] == [0, 0, -1]
+    ).all()  # mirrored: fronts stay fronts
     assert scene.compute_closest_points([11, 1, -3])["geometry_ids"] == 2
     scene.remove(first)
     assert seen(0.3) == INVALID_ID and scene.compute_closest_points([0, 0, -3])["geometry_ids"] == 1
@@ -188,6 +190,41 @@ def test_float64_far_from_0_keeps_its_precision(accel):
     eye = offset + [0.5, 0.5, 4]
     pixels = far.create_rays_pinhole(30, offset + [-0.5, 0.5, 1], eye, [0, 1, 0], 8, 8, dtype=np.float64)
     assert np.isfinite(far.cast_rays(pixels)["t_hit"]).any()
+
+
+def test_fronts_stay_fronts_where_a_transform_mirrors(accel):
+    vertices, triangles = cube()
+    scene = twinray.Scene(accel)
+    scene.add_triangles(vertices, triangles, transform=np.diag([-1.0, 1, 1, 1]))
+    rays = [[-0.3, 0.6, -1, 0, 0, 1], [1, 0.6, 0.3, -1, 0, 0]]
+    outward = [[0, 0, -1], [1, 0, 0]]
+    assert np.array_equal(scene.cast_rays(rays)["primitive_normals"], outward)
+    assert np.array_equal(scene.compute_closest_points(np.array(rays)[:, :3])["primitive_normals"], outward)
+    listed = scene.list_intersections(rays, normals=True)["primitive_normals"]
+    assert np.array_equal(listed[::2], outward) and np.array_equal(listed[1::2], -np.array(outward))
+    a, b, c = scene.world_triangles().reshape(-1, 3, 3).transpose(1, 0, 2)
+    assert np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6 == pytest.approx(1)  # a volume; -1 inside out
+
+
+def test_bounds_are_those_of_the_triangles(accel):
+    scene = twinray.Scene(accel)
+    assert np.isinf(scene.bounds()).all()
+    octahedron = np.concatenate([np.eye(3), -np.eye(3)])
+    faces = [[i, j, k] for i in (0, 3) for j in (1, 4) for k in (2, 5)]
+    s = np.sqrt(0.5)
+    turn = np.array([[s, -s, 0], [s, s, 0], [0, 0, 1]])
+    place = np.eye(4)
+    place[:3, :3] = turn @ turn.T[[1, 2, 0]] @ turn
+    geometry = scene.add_triangles(octahedron, faces, transform=place)
+    corners = scene.world_triangles()
+    assert scene.bounds() == pytest.approx(np.array([corners.min(0), corners.max(0)]), abs=1e-6)
+    place[:3, :3] = turn
+    scene.set_transform(geometry, place)
+    assert scene.bounds() == pytest.approx(np.array([[-s, -s, -1], [s, s, 1]]), abs=1e-6)
+    scene.update_vertices(geometry, 2 * octahedron)
+    assert scene.bounds() == pytest.approx(np.array([[-s, -s, -1], [s, s, 1]]) * 2, abs=1e-6)
+    scene.remove(geometry)
+    assert np.isinf(scene.bounds()).all()
 
 
 def test_files_far_from_0_keep_their_precision(tmp_path):

@@ -61,6 +61,27 @@ TEST(Glb, OurOwnLoaderReadsTheSameTriangles) {
     }
 }
 
+// Positive where fronts are outward.
+double enclosed_volume(const Scene& scene) {
+    const Mesh mesh = joined(scene, "all");
+    double volume = 0;
+    for (const uvec3& t : mesh.triangles)
+        volume += dot(dvec3(mesh.positions[t.x]), cross(dvec3(mesh.positions[t.y]), dvec3(mesh.positions[t.z]))) / 6;
+    return volume;
+}
+
+TEST(Glb, FrontsOfMirroredInstancesStayFronts) {
+    const TempDir folder;
+    const Transform mirrored = {{vec4(-1, 0, 0, 5), vec4(0, 1, 0, 6), vec4(0, 0, 1, 7)}};
+    const Transform sheared = {{vec4(-1, 0.5f, 0, 5), vec4(0, 1, 0, 6), vec4(0, 0, 1, 7)}};  // no node has that
+    for (const Transform& transform : {mirrored, sheared}) {
+        const Scene scene = two_boxes(transform);
+        EXPECT_NEAR(enclosed_volume(scene), 12, 1e-4);
+        write_glb(folder / "a.glb", scene, std::vector<Rgb>(24, red));
+        EXPECT_NEAR(enclosed_volume(load_scene(folder / "a.glb")), 12, 1e-4);
+    }
+}
+
 TEST(Glb, InstancesShareAMeshWhereTheirColorsAreTheSame) {
     const TempDir folder;
     const Scene scene = two_boxes(Transform::translation({4, 5, 6}));

@@ -2,6 +2,9 @@
 // Meshes and scenes in memory; and every scene file that this machine has loads or gives one Error that names it.
 #include <twinray/scene.h>
 
+#include <cmath>
+#include <random>
+
 #include "engine/scene/importers/weld.h"
 #include "engine/scene/mesh.h"
 #include "tests/scene/temp_dir.h"
@@ -132,13 +135,38 @@ TEST(Scene, BoundsAndCountsFollowTheInstances) {
     EXPECT_EQ(count_triangles(scene), 2u);
 }
 
-TEST(Scene, BoundsTakeAllEightCornersOfATurnedBox) {
+TEST(Scene, BoundsAreThoseOfVerticesNotOfTurnedBoxes) {
     Scene scene;
     scene.meshes = {mesh_of({{0, 0, 0}, {1, 2, 4}, {1, 0, 4}}, {{0, 1, 2}})};
-    // x' = x - y + z, so that its extremes lie at corners that are neither lo nor hi.
+    // x' = x - y + z: of the box -2 would be the least.
     scene.instances = {{"sheared", 0, {{vec4(1, -1, 1, 0), vec4(0, 1, 0, 0), vec4(0, 0, 1, 0)}}}};
-    EXPECT_EQ(bounds_of(scene).lo, vec3(-2, 0, 0));
+    EXPECT_EQ(bounds_of(scene).lo, vec3(0, 0, 0));
     EXPECT_EQ(bounds_of(scene).hi, vec3(5, 2, 4));
+}
+
+TEST(Scene, BoundsOfManyInstancesHoldAllVerticesAndNoMore) {
+    constexpr float half = 0.70710677f;
+    const Transform turned = {{vec4(half, -half, 0, 0), vec4(half, half, 0, 0), vec4(0, 0, 1, 0)}};
+    std::mt19937 random(1);
+    std::uniform_real_distribution<float> place(-9, 9);
+    Scene scene;
+    scene.meshes = {mesh_of({{0, 1, 0}, {1, 0, 0}, {0, -1, 0}, {-1, 0, 0}, {0, 0, 1}},
+                            {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}})};
+    dvec3 lo(INFINITY), hi(-INFINITY);
+    for (int i = 0; i < 200; ++i) {
+        Transform transform = turned;
+        for (vec4& row : transform.rows) row.w = place(random);
+        scene.instances.push_back({"", 0, transform});
+        for (const vec3& point : scene.meshes[0].positions) {
+            const dvec3 world(transform_point(transform, point));
+            lo = min(lo, world), hi = max(hi, world);
+        }
+    }
+    const Bounds bounds = bounds_of(scene);
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_NEAR(bounds.lo[i], lo[i], 1e-5);
+        EXPECT_NEAR(bounds.hi[i], hi[i], 1e-5);
+    }
 }
 
 TEST(Scene, UnknownSuffixesAreRefusedWithTheKnownOnes) {

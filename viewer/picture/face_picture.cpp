@@ -16,15 +16,6 @@ constexpr uint samples_of_an_edge = 8;
 constexpr int visible_difference = 8;  // of 255
 constexpr float light_at_least = 0.5f;
 
-dvec3 normal_of(const Scene& scene, const Hit& hit) {
-    const Instance& instance = scene.instances[hit.instance_index];
-    const Mesh& mesh = scene.meshes[instance.mesh];
-    const uvec3 triangle = mesh.triangles[hit.primitive_index];
-    const auto point = [&](uint vertex) { return dvec3(transform_point(instance.transform, mesh.positions[vertex])); };
-    const dvec3 origin = point(triangle.x);
-    return cross(point(triangle.y) - origin, point(triangle.z) - origin);
-}
-
 class Shader {
   public:
     Shader(const Scene& scene, std::span<const Rgb> colors)
@@ -33,9 +24,9 @@ class Shader {
     // Linear.
     vec3 operator()(const Ray& ray, const Hit& hit) const {
         if (hit.hit == 0) return linear_of(background);
-        const dvec3 normal = normal_of(scene_, hit), direction(ray.direction);
-        const double sizes = length(normal) * length(direction);
-        const auto cosine = static_cast<float>(sizes > 0 ? std::abs(dot(normal, direction)) / sizes : 1);
+        const dvec3 normal = front_normal(scene_, hit), direction(ray.direction);
+        const double size = length(normal) * length(direction);
+        const auto cosine = static_cast<float>(size > 0 ? std::abs(dot(normal, direction)) / size : 1);
         return linear_of(colors_[first_faces_[hit.instance_index] + hit.primitive_index]) *
                (light_at_least + (1 - light_at_least) * cosine);
     }
@@ -142,6 +133,16 @@ std::vector<std::size_t> first_faces(const Scene& scene) {
         count += scene.meshes[instance.mesh].triangles.size();
     }
     return first;
+}
+
+dvec3 front_normal(const Scene& scene, const Hit& hit) {
+    const Instance& instance = scene.instances[hit.instance_index];
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    const uvec3 triangle = mesh.triangles[hit.primitive_index];
+    const auto vertex = [&](uint i) { return dvec3(transform_point(instance.transform, mesh.positions[i])); };
+    const dvec3 a = vertex(triangle.x), normal = cross(vertex(triangle.y) - a, vertex(triangle.z) - a);
+    const double size = length(normal) * (determinant(instance.transform) < 0 ? -1 : 1);
+    return size != 0 ? normal / size : dvec3(0);
 }
 
 FacePicture draw_faces(AbstractAccel& accel, const Scene& scene, std::span<const Rgb> colors,

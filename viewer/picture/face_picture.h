@@ -17,6 +17,10 @@ inline constexpr Rgb plain_color = {205, 208, 213};
 // The number of each instance's first face; faces are counted by instance, then by triangle.
 std::vector<std::size_t> first_faces(const Scene& scene);
 
+// Unit, in world space, of the triangle that is hit, on the side on which its vertices turn counter-clockwise in object
+// space; 0 where it has no area.
+dvec3 front_normal(const Scene& scene, const Hit& hit);
+
 struct FacePictureDesc {
     uint width = 1000, height = 800;  // pixels
     Camera camera;

@@ -21,19 +21,8 @@ constexpr std::array instance_colors = {categorical::blue,   categorical::vermil
 
 dvec3 point_at(const Ray& ray, double t) { return dvec3(ray.origin) + t * dvec3(ray.direction); }
 
-// Of the triangle, of the side on which its vertices turn counter-clockwise in object space.
-dvec3 normal_at(const Scene& scene, const Hit& hit) {
-    const Instance& instance = scene.instances[hit.instance_index];
-    const Mesh& mesh = scene.meshes[instance.mesh];
-    const uvec3 triangle = mesh.triangles[hit.primitive_index];
-    const auto vertex = [&](uint i) { return dvec3(transform_point(instance.transform, mesh.positions[i])); };
-    const dvec3 a = vertex(triangle.x), normal = cross(vertex(triangle.y) - a, vertex(triangle.z) - a);
-    const double size = length(normal) * (determinant(instance.transform) < 0 ? -1 : 1);
-    return size != 0 ? normal / size : dvec3(0);
-}
-
 bool is_front(const Scene& scene, const Ray& ray, const Hit& hit) {
-    return dot(normal_at(scene, hit), dvec3(ray.direction)) < 0;
+    return dot(front_normal(scene, hit), dvec3(ray.direction)) < 0;
 }
 
 Rgb color_of_normal(const dvec3& normal) {
@@ -80,7 +69,7 @@ class HitColors {
             case HitColor::distance: return scale_.color(distance_of(ray, hit));
             case HitColor::instance: return instance_colors[hit.instance_index % instance_colors.size()];
             case HitColor::facing: return is_front(scene_, ray, hit) ? front_color : back_color;
-            case HitColor::normal: return color_of_normal(normal_at(scene_, hit));
+            case HitColor::normal: return color_of_normal(front_normal(scene_, hit));
         }
         return ink;
     }

@@ -165,7 +165,10 @@ class Scene:
         return picture.show(self, *args, **options)
 
     def world_triangles(self) -> NDArray[np.float64]:
-        """The vertices of all triangles where they are, three rows each: (3 m, 3) float64."""
+        """The vertices of all triangles where they are, three rows each: (3 m, 3) float64.
+
+        Triangles of a mirrored geometry have their last two vertices exchanged, so that fronts stay fronts.
+        """
         return self._core.world_triangles() + self.origin
 
     def to_trimesh(self) -> Any:
@@ -277,7 +280,8 @@ class Scene:
         dict
             ``t_hit`` (...) float32, infinite for a miss; ``geometry_ids`` and ``primitive_ids`` (...) uint32,
             `INVALID_ID` for a miss; ``primitive_uvs`` (..., 2) float32: the point is (1 - u - v) a + u b + v c;
-            ``primitive_normals`` (..., 3) float32, unit, of the triangle.
+            ``primitive_normals`` (..., 3) float32, unit, on the triangle's front, which stays the front where a
+            transform mirrors; 0 where the triangle has no area.
         """
         flat, shape = self._rays_of(rays)
         found = self._core.cast(flat, *_interval(tnear, tfar), bool(normals))
