@@ -18,6 +18,12 @@ namespace {
 
 constexpr std::size_t rays_of_tile = 1 << 20;
 
+float reach_of(const Bounds& box) {
+    if (box.is_empty()) return 0;
+    const vec3 most = max(abs(box.lo), abs(box.hi));
+    return std::max({most.x, most.y, most.z});
+}
+
 class Tiles {
   public:
     Tiles(AbstractAccel& accel, std::span<const vec3> points, std::span<const vec3> directions,
@@ -34,7 +40,7 @@ class Tiles {
     std::size_t directions_;
     Kernel<VisibleArgs> make_rays_, tell_;
     Buffer points_, vectors_, normals_, rays_, hits_, answers_;
-    float t_near_;
+    float t_near_, reach_;
     Pace pace_;
 };
 
@@ -48,6 +54,7 @@ Tiles::Tiles(AbstractAccel& accel, std::span<const vec3> points, std::span<const
       vectors_(uploaded("directions", directions)),
       normals_(uploaded("normals of points", normals)),
       t_near_(desc.t_near),
+      reach_(normals.empty() ? 0 : reach_of(accel.world_bound())),
       pace_(accel.context()) {
     const std::size_t rays =
         std::min(points.size(), std::max<std::size_t>(1, rays_of_tile / directions_)) * directions_;
@@ -79,7 +86,8 @@ void Tiles::find(std::size_t first, std::size_t count, std::uint8_t* answers) {
                            .first_point = static_cast<uint>(first),
                            .ray_count = rays,
                            .vector_count = static_cast<uint>(directions_),
-                           .t_near = t_near_};
+                           .t_near = t_near_,
+                           .reach = reach_};
     Commands commands(accel_.context(), "what points see");
     make_rays_.dispatch(commands, args, rays);
     accel_.trace(commands, accel_.view(),

@@ -386,8 +386,8 @@ struct VisibilityDesc {
     ProgressCallback progress = {};
 };
 // Of each point along each direction, of any length: 1 where nothing lies on the ray, else 0; rows are points. With
-// normals, a direction that does not leave the side of the point's normal gives 0. The device makes the rays, about a
-// million at a time. Throws Error for other counts of normals than of points and more than 2^20 directions.
+// normals, a direction that does not leave the side of the point's normal gives 0, and rays begin off the point by what
+// rounding may have moved a surface there. Throws Error for another count of normals, and more than 2^20 directions.
 std::vector<std::uint8_t> visibility(AbstractAccel& accel, std::span<const vec3> points,
                                      std::span<const vec3> directions, std::span<const vec3> normals = {},
                                      const VisibilityDesc& desc = {});

@@ -16,5 +16,6 @@ struct VisibleArgs
     uint ray_count;
     uint vector_count;
     float t_near;
+    float reach; // the largest coordinate of the scene
 };
 #endif

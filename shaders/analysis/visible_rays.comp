@@ -3,6 +3,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"
+#include "twinray/glsl/spawn.h"
 #include "shaders/analysis/visible.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { VisibleArgs args; };
@@ -10,6 +11,15 @@ layout(push_constant, scalar) uniform Push { VisibleArgs args; };
 vec3 row(Floats numbers, uint index)
 {
     return vec3(AT(numbers, 3u * index), AT(numbers, 3u * index + 1u), AT(numbers, 3u * index + 2u));
+}
+
+// A point of a surface, moved off along the normal by what rounding may have moved the surface, as SurfacePoint::offset
+// of a triangle that is not known.
+vec3 clear_of_surface(vec3 point, vec3 normal)
+{
+    vec3 unit = normal / scaled_length(normal);
+    vec3 error = abs(point) * INVERSE_ERROR + vec3(args.reach * (TEST_ERROR + INVERSE_ERROR));
+    return point + unit * dot(error, abs(unit));
 }
 
 void main()
@@ -22,6 +32,11 @@ void main()
     ray.t_min = args.t_near;
     ray.direction = row(args.vectors, i % args.vector_count);
     ray.t_max = uintBitsToFloat(0x7f800000u);
-    if (!is_absent(args.normals) && !(dot(row(args.normals, point), ray.direction) > 0.0f)) ray.t_max = -1.0f;
+    if (!is_absent(args.normals))
+    {
+        vec3 normal = row(args.normals, point);
+        ray.origin = clear_of_surface(ray.origin, normal);
+        if (!(dot(normal, ray.direction) > 0.0f)) ray.t_max = -1.0f;
+    }
     AT(args.rays, i) = ray;
 }

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import Any, Literal
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._arrays import Array, array_of, number_of, rows_of
+from ._frame import rounding_of
 from ._progress import in_blocks, watched
 from .scene import Scene
 
@@ -32,6 +34,7 @@ PAIR_CLASSES = ("separate", "vertex_touch", "edge_touch", "coplanar_touch", "cop
 
 
 _RAYS_OF_BLOCK = 1 << 22  # at least, where progress is shown
+_RAYS_OF_WARNING = 1 << 16  # about, that look for points on surfaces
 
 
 def _scene_of(mesh):
@@ -67,6 +70,24 @@ def _groups(groups, scene):
     return array.astype(np.uint32).tolist()
 
 
+def _tell_of_own_surfaces(scene, points, vectors):
+    """Warn where rays of points from which something is hidden meet a surface within rounding of where they begin."""
+    step = max(1, len(points) * max(1, len(vectors)) // _RAYS_OF_WARNING)
+    some = points[::step]
+    if not (some.size and vectors.size):
+        return
+    rays = np.concatenate([np.repeat(some, len(vectors), axis=0), np.tile(vectors, (len(some), 1))], axis=1)
+    t = scene._core.cast(rays, [0.0, 0.0, 0.0], 0.0, np.inf, False)["t_hit"].reshape(len(some), len(vectors))
+    nearest = np.min(t * np.linalg.norm(vectors, axis=1), axis=1)
+    here = int((nearest <= 16 * rounding_of([np.abs(some).max(), *(scene._core.bounds().ravel())])).sum())
+    if here:
+        warnings.warn(
+            f"visible: {here} of {len(some)} points that were looked at lie on the scene, and their rays meet the "
+            "surface that they begin on; give normals, or tnear",
+            stacklevel=3,
+        )
+
+
 def visible(
     points: ArrayLike,
     vectors: ArrayLike,
@@ -84,10 +105,11 @@ def visible(
     vectors : array_like, (V, 3) float32
         Of any length, as patches of the sky (`sky_patches`).
     normals : array_like, (P, 3) float32, optional
-        A vector that does not leave the side of a point's normal is not seen there.
+        A vector that does not leave the side of a point's normal is not seen there. Rays begin off the point along its
+        normal by what rounding may have moved a surface there, so that points on surfaces see what is before them.
     scene : Scene, or a mesh
     tnear : float
-        How far off, in lengths of a vector, hits begin to count: for points on the scene itself.
+        How far off, in lengths of a vector, hits begin to count: for points on the scene itself without normals.
     progress : bool
         True shows a bar of tqdm's.
 
@@ -114,6 +136,8 @@ def visible(
         in_blocks(len(rows), 1 + _RAYS_OF_BLOCK // max(1, len(across)), "visible", fill)
     else:
         fill(0, len(rows))
+    if normals is None and near == 0:
+        _tell_of_own_surfaces(scene, rows[~seen.all(axis=1)], across)
     return seen
 
 
@@ -318,8 +342,8 @@ def verify(scene: Scene | Any, rays: ArrayLike | None = None, *, count: int = 10
         ``rays`` (n, 6) float32, or float64 where the scene's `origin` is not 0.
     """
     scene = _scene_of(scene)
-    flat = scene._frame.rays(np.zeros((0, 6)) if rays is None else rows_of(rays, "rays", None, 6)[0])
-    found = _core.verify(scene._core, flat, _count(count, "count", 4, 2**31), _count(seed, "seed", 0, 2**63))
+    flat, _ = scene._rays_of(np.zeros((0, 6)) if rays is None else rays)
+    found = _core.verify(scene._core, *flat, _count(count, "count", 4, 2**31), _count(seed, "seed", 0, 2**63))
     found["rays"] = found["rays"][:, [0, 1, 2, 4, 5, 6]]
     if scene.origin.any():
         found["rays"] = found["rays"] + np.concatenate([scene.origin, np.zeros(3)])
