@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <memory>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include <nanobind/nanobind.h>
@@ -45,12 +46,28 @@ nb::object given(Rows&& rows, std::size_t columns = 0) {
     return nb::cast(nb::ndarray<nb::numpy, T>(data, columns ? 2 : 1, shape, capsule));
 }
 
-using RayArray = Rows<float, 6>;
+template <class T>
+using RayArray = Rows<T, 6>;
+using Vector = std::array<double, 3>;
 using PointRows = Rows<double, 3>;
 using TransformRows = nb::ndarray<const float, nb::shape<3, 4>, nb::c_contig, nb::device::cpu>;
 
-RayRows rows_of(const RayArray& array, float t_near, float t_far) {
-    return {{array.data(), 6 * array.shape(0)}, t_near, t_far};
+dvec3 vector_of(const Vector& v) { return {v[0], v[1], v[2]}; }
+
+template <class T>
+RayRows rows_of(const RayArray<T>& array, const Vector& origin) {
+    const std::span<const T> numbers(array.data(), 6 * array.shape(0));
+    if constexpr (std::is_same_v<T, float>)
+        return {.floats = numbers, .doubles = {}, .origin = vector_of(origin)};
+    else
+        return {.floats = {}, .doubles = numbers, .origin = vector_of(origin)};
+}
+
+template <class T>
+RayRows rows_of(const RayArray<T>& array, const Vector& origin, double t_near, double t_far) {
+    RayRows rows = rows_of(array, origin);
+    rows.t_near = t_near, rows.t_far = t_far;
+    return rows;
 }
 
 Transform transform_of(const TransformRows& matrix) {
@@ -81,7 +98,7 @@ void add_places(nb::dict& arrays, Places&& places) {
 
 nb::dict dict_of(Cast&& hits) {
     nb::dict arrays;
-    arrays["t_hit"] = given<float>(std::move(hits.t));
+    arrays["t_hit"] = hits.far_t.size() ? given<double>(std::move(hits.far_t)) : given<float>(std::move(hits.t));
     add_places(arrays, std::move(hits.places));
     return arrays;
 }
@@ -103,6 +120,7 @@ nb::dict dict_of(const Backend& backend) {
     names["why"] = backend.why;
     names["path"] = backend.path;
     names["level"] = backend.level;
+    names["lists"] = backend.lists;
     return names;
 }
 
@@ -115,20 +133,46 @@ uint add(Scene& scene, const Rows<float, 3>& positions, const Rows<uint, 3>& tri
     return unlocked([&] { return scene.add(std::move(mesh), placed); });
 }
 
-nb::dict cast(Scene& scene, const RayArray& array, float t_near, float t_far, bool with_normals) {
-    const RayRows rows = rows_of(array, t_near, t_far);
-    return dict_of(unlocked([&] { return scene.cast(rows, with_normals); }));
+// Questions about rays, in float32 or float64, which are not converted.
+template <class T>
+void bind_rays(nb::class_<Scene>& scene_class) {
+    const auto rays = nb::arg("rays").noconvert();
+    const nb::arg origin("origin"), near("t_near"), far("t_far"), normals("with_normals");
+    scene_class
+        .def(
+            "cast",
+            [](Scene& scene, const RayArray<T>& array, const Vector& origin, double t_near, double t_far,
+               bool with_normals) {
+                const RayRows rows = rows_of(array, origin, t_near, t_far);
+                return dict_of(unlocked([&] { return scene.cast(rows, with_normals); }));
+            },
+            rays, origin, near, far, normals)
+        .def(
+            "occlusions",
+            [](Scene& scene, const RayArray<T>& array, const Vector& origin, double t_near, double t_far) {
+                const RayRows rows = rows_of(array, origin, t_near, t_far);
+                return given<bool>(unlocked([&] { return scene.occlusions(rows); }));
+            },
+            rays, origin, near, far)
+        .def(
+            "counts",
+            [](Scene& scene, const RayArray<T>& array, const Vector& origin, double t_near, double t_far) {
+                const RayRows rows = rows_of(array, origin, t_near, t_far);
+                return given<int>(unlocked([&] { return scene.counts(rows); }));
+            },
+            rays, origin, near, far)
+        .def(
+            "list",
+            [](Scene& scene, const RayArray<T>& array, const Vector& origin, double t_near, double t_far,
+               bool with_normals) {
+                const RayRows rows = rows_of(array, origin, t_near, t_far);
+                Listed found = unlocked([&] { return scene.list(rows, with_normals); });
+                return nb::make_tuple(given<std::uint64_t>(std::move(found.first)), dict_of(std::move(found.hits)));
+            },
+            rays, origin, near, far, normals);
 }
 
-nb::tuple list(Scene& scene, const RayArray& array, float t_near, float t_far, bool with_normals) {
-    const RayRows rows = rows_of(array, t_near, t_far);
-    Listed found = unlocked([&] { return scene.list(rows, with_normals); });
-    return nb::make_tuple(given<std::uint64_t>(std::move(found.first)), dict_of(std::move(found.hits)));
-}
-
-dvec3 vector_of(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
-
-nb::tuple add_file(Scene& scene, const std::string& file, const std::optional<std::array<double, 3>>& asked) {
+nb::tuple add_file(Scene& scene, const std::string& file, const std::optional<Vector>& asked) {
     std::optional<dvec3> origin;
     if (asked) origin = vector_of(*asked);
     const std::vector<uint> added = unlocked([&] { return scene.add_file(file, origin); });
@@ -136,7 +180,10 @@ nb::tuple add_file(Scene& scene, const std::string& file, const std::optional<st
 }
 
 void bind_scene(nb::module_& m) {
-    nb::class_<Scene>(m, "Scene")
+    nb::class_<Scene> scene_class(m, "Scene");
+    bind_rays<float>(scene_class);
+    bind_rays<double>(scene_class);
+    scene_class
         .def(nb::init<const std::string&, const std::string&, const std::string&>(), nb::arg("accel"),
              nb::arg("device"), nb::arg("level"), nb::call_guard<nb::gil_scoped_release>())
         .def("add", &add)
@@ -156,6 +203,7 @@ void bind_scene(nb::module_& m) {
              })
         .def("geometries", &Scene::geometries, nb::call_guard<nb::gil_scoped_release>())
         .def("triangle_count", &Scene::triangle_count, nb::call_guard<nb::gil_scoped_release>())
+        .def("extent", &Scene::extent, nb::call_guard<nb::gil_scoped_release>())
         .def("first_faces",
              [](const Scene& scene) { return given<std::uint64_t>(unlocked([&] { return scene.first_faces(); })); })
         .def("bounds",
@@ -165,18 +213,6 @@ void bind_scene(nb::module_& m) {
                                                             {box.hi.x, box.hi.y, box.hi.z}};
                  return given<double>(std::move(corners), 3);
              })
-        .def("cast", &cast)
-        .def("occlusions",
-             [](Scene& scene, const RayArray& array, float t_near, float t_far) {
-                 const RayRows rows = rows_of(array, t_near, t_far);
-                 return given<bool>(unlocked([&] { return scene.occlusions(rows); }));
-             })
-        .def("counts",
-             [](Scene& scene, const RayArray& array, float t_near, float t_far) {
-                 const RayRows rows = rows_of(array, t_near, t_far);
-                 return given<int>(unlocked([&] { return scene.counts(rows); }));
-             })
-        .def("list", &list)
         .def("closest",
              [](Scene& scene, const PointRows& points, bool with_normals) {
                  return dict_of(unlocked([&] { return scene.closest(as<dvec3>(points), with_normals); }));
@@ -210,7 +246,7 @@ nb::dict bound_view_factors(Scene& scene, std::vector<uint> groups, bool both_si
     return arrays;
 }
 
-nb::tuple bound_centroid(Scene& scene, const std::array<double, 3>& direction, std::uint32_t side, std::uint64_t seed) {
+nb::tuple bound_centroid(Scene& scene, const Vector& direction, std::uint32_t side, std::uint64_t seed) {
     const Centroid found = unlocked([&] { return centroid_of(scene, vector_of(direction), side, seed); });
     const auto tuple = [](const std::optional<dvec3>& v) {
         return v ? nb::object(nb::make_tuple(v->x, v->y, v->z)) : nb::object(nb::none());
@@ -218,8 +254,10 @@ nb::tuple bound_centroid(Scene& scene, const std::array<double, 3>& direction, s
     return nb::make_tuple(tuple(found.mean), tuple(found.standard_error), found.point_count, found.ray_count);
 }
 
-nb::dict bound_verify(Scene& scene, const RayArray& array, std::size_t count, std::uint64_t seed) {
-    std::vector<Ray> rays = rays_of({{array.data(), 6 * array.shape(0)}});
+template <class T>
+nb::dict bound_verify(Scene& scene, const RayArray<T>& array, const Vector& origin, std::size_t count,
+                      std::uint64_t seed) {
+    std::vector<Ray> rays = rays_of(rows_of(array, origin));
     VerifyResult result = unlocked([&] { return verify(scene, std::move(rays), count, seed); });
     nb::dict counts, found;
     for (std::size_t i = 0; i < hit_class_count; ++i) {
@@ -236,23 +274,27 @@ nb::dict bound_verify(Scene& scene, const RayArray& array, std::size_t count, st
 
 void bind_analysis(nb::module_& m) {
     m.def("view_factors", &bound_view_factors);
-    m.def("illumination", [](Scene& scene, const std::array<double, 3>& direction, std::uint32_t side, bool both_sides,
+    m.def("illumination", [](Scene& scene, const Vector& direction, std::uint32_t side, bool both_sides,
                              std::uint64_t seed, const std::vector<uint>& groups) {
         Light light =
             unlocked([&] { return illumination(scene, vector_of(direction), side, both_sides, seed, groups); });
         return nb::make_tuple(given<double>(std::move(light.groups), 6), light.rays);
     });
-    m.def("sky_light", [](Scene& scene, const std::array<double, 3>& zenith, std::uint32_t samples, bool both_sides,
-                          std::uint64_t seed) {
-        return given<double>(unlocked([&] { return sky_light(scene, vector_of(zenith), samples, both_sides, seed); }),
-                             3);
-    });
+    m.def("sky_light",
+          [](Scene& scene, const Vector& zenith, std::uint32_t samples, bool both_sides, std::uint64_t seed) {
+              return given<double>(
+                  unlocked([&] { return sky_light(scene, vector_of(zenith), samples, both_sides, seed); }), 3);
+          });
     m.def("centroid", &bound_centroid);
     m.def("collide", [](Scene& scene, bool self, bool by_position, bool segments) {
         Touching found = unlocked([&] { return collide(scene, self, by_position, segments); });
         return nb::make_tuple(given<uint>(std::move(found.contacts), 5), given<double>(std::move(found.segments), 6));
     });
-    m.def("verify", &bound_verify);
+    const auto unconverted = nb::arg("rays").noconvert();
+    m.def("verify", &bound_verify<float>, nb::arg("scene"), unconverted, nb::arg("origin"), nb::arg("count"),
+          nb::arg("seed"));
+    m.def("verify", &bound_verify<double>, nb::arg("scene"), unconverted, nb::arg("origin"), nb::arg("count"),
+          nb::arg("seed"));
     m.def("sky_patches", [](const std::string& name) {
         std::vector<std::array<double, 4>> rows;
         for (const SkyPatch& patch : sky_patches(name))

@@ -2,6 +2,7 @@
 #include "bindings/python/scene.h"
 
 #include <twinray/scene.h>
+#include <twinray/world.h>
 
 #include <algorithm>
 #include <cmath>
@@ -48,11 +49,30 @@ dvec3 world_vertex(const Transform& transform, vec3 p) {
     return world;
 }
 
-void fill(std::span<Ray> rays, const RayRows& rows) {
+constexpr std::size_t rays_of_block = 1 << 20;
+
+Ray rounded(const Ray64& ray) {
+    return {vec3(ray.origin), static_cast<float>(ray.t_min), vec3(ray.direction), static_cast<float>(ray.t_max)};
+}
+
+template <class T>
+Ray64 ray_at(const RayRows& rows, std::span<const T> numbers, std::size_t i) {
+    const T* n = numbers.data() + 6 * i;
+    const dvec3& from = rows.origin;
+    return {{n[0] - from.x, n[1] - from.y, n[2] - from.z}, rows.t_near, {n[3], n[4], n[5]}, rows.t_far};
+}
+
+// Rays from number `from` on. What is given in float64 is brought near the box; by how much says `ways`.
+void fill(std::span<Ray> rays, std::span<double> ways, const RayRows& rows, std::size_t from, const Bounds& box) {
     in_parts(rays.size(), [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
-            const float* row = rows.numbers.data() + 6 * i;
-            rays[i] = {vec3(row[0], row[1], row[2]), rows.t_near, vec3(row[3], row[4], row[5]), rows.t_far};
+            if (rows.doubles.empty()) {
+                rays[i] = rounded(ray_at(rows, rows.floats, from + i));
+                continue;
+            }
+            Ray64 ray = ray_at(rows, rows.doubles, from + i);
+            ways[i] = bring_near(ray, box);
+            rays[i] = rounded(ray);
         }
     });
 }
@@ -61,7 +81,8 @@ void fill(std::span<Ray> rays, const RayRows& rows) {
 
 std::vector<Ray> rays_of(const RayRows& rows) {
     std::vector<Ray> rays(rows.size());
-    fill(rays, rows);
+    std::vector<double> ways(rows.size());
+    fill(rays, ways, rows, 0, {});
     return rays;
 }
 
@@ -88,7 +109,7 @@ Scene::Scene(const std::string& accel, const std::string& device, const std::str
 
 Scene::~Scene() {
     const Lock lock(device_->mutex);
-    all_hits_.reset();
+    forget_lister();
     points_.reset();
     accel_.reset();
 }
@@ -105,12 +126,23 @@ InstanceOptions Scene::options_of_next() const {
     return {.custom_index = static_cast<uint>(parts_.size())};
 }
 
+const Bounds& Scene::KeptMesh::bounds() {
+    if (!box) box = bounds_of(MeshView(*this));
+    return *box;
+}
+
 void Scene::changed() {
     is_searchable_ = false;
     bounds_.reset();
 }
 
+void Scene::forget_lister() {
+    all_hits_.reset();
+    lister_.reset();
+}
+
 uint Scene::keep(AccelHandle handle, std::shared_ptr<KeptMesh> mesh, const Transform& transform) {
+    forget_lister();
     changed();
     parts_.push_back(Part{handle, std::move(mesh), transform});
     return static_cast<uint>(parts_.size() - 1);
@@ -153,6 +185,7 @@ void Scene::remove(uint geometry) {
     const Lock lock(device_->mutex);
     accel_->erase(part(geometry, "remove").handle);
     parts_[geometry].reset();
+    forget_lister();
     changed();
 }
 
@@ -160,6 +193,7 @@ void Scene::set_transform(uint geometry, const Transform& transform) {
     const Lock lock(device_->mutex);
     Part& moved = part(geometry, "set_transform");
     accel_->update_transform(moved.handle, transform);
+    if (lister_) lister_->update_transform(moved.listed, transform);
     moved.transform = transform;
     changed();
 }
@@ -168,6 +202,7 @@ void Scene::update_vertices(uint geometry, std::vector<vec3>&& positions) {
     const Lock lock(device_->mutex);
     Part& moved = part(geometry, "update_vertices");
     accel_->update_vertices(moved.handle, positions);
+    if (lister_) lister_->update_vertices(moved.listed, positions);
     moved.mesh->positions = std::move(positions);
     moved.mesh->box.reset();
     changed();
@@ -201,9 +236,7 @@ Bounds Scene::bounds() {
     std::vector<PlacedMesh> placed;
     for (const auto& part : parts_) {
         if (!part) continue;
-        KeptMesh& mesh = *part->mesh;
-        if (!mesh.box) mesh.box = bounds_of(MeshView(mesh));
-        placed.push_back({&mesh, *mesh.box, part->transform});
+        placed.push_back({part->mesh.get(), part->mesh->bounds(), part->transform});
     }
     bounds_ = bounds_of(placed);
     return *bounds_;
@@ -230,59 +263,144 @@ void Scene::put(const Places& places, std::size_t i, uint geometry, uint primiti
         places.normal[i] = geometry == invalid ? Numbers3{0, 0, 0} : normal_of(geometry, primitive);
 }
 
-Cast Scene::cast_of(std::span<const Hit> hits, bool with_normals) const {
-    const std::size_t count = hits.size();
-    Cast found{Column<float>(count), Places(count, with_normals)};
-    in_parts(count, [&](std::size_t first, std::size_t last) {
+void Scene::put(const Cast& cast, std::size_t from, std::span<const Hit> hits) const {
+    in_parts(hits.size(), [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             const Hit& hit = hits[i];
-            found.t[i] = hit.hit ? hit.t : std::numeric_limits<float>::infinity();
-            put(found.places, i, hit.hit ? hit.custom_index : invalid, hit.hit ? hit.primitive_index : invalid,
+            cast.t[from + i] = hit.hit ? hit.t : std::numeric_limits<float>::infinity();
+            put(cast.places, from + i, hit.hit ? hit.custom_index : invalid, hit.hit ? hit.primitive_index : invalid,
                 {hit.u, hit.v});
         }
     });
-    return found;
 }
 
-std::span<const Ray> Scene::keep(const RayRows& rows) {
-    if (rays_.size() < rows.size()) rays_.resize(rows.size());
-    const std::span<Ray> rays(rays_.data(), rows.size());
-    fill(rays, rows);
-    return rays;
+// A box around it, not the smallest: no vertices are looked at where only transforms have changed.
+Bounds Scene::around(const Part& part) {
+    Bounds all;
+    const Bounds box = part.mesh->bounds();
+    if (box.is_empty()) return all;
+    for (int corner = 0; corner < 8; ++corner)
+        all.include(
+            vec3(world_vertex(part.transform, vec3((corner & 1 ? box.hi : box.lo).x, (corner & 2 ? box.hi : box.lo).y,
+                                                   (corner & 4 ? box.hi : box.lo).z))));
+    return all;
+}
+
+Bounds Scene::around() const {
+    Bounds all;
+    for (const auto& part : parts_)
+        if (part) all.include(around(*part));
+    return all;
+}
+
+double Scene::extent(uint geometry) {
+    const Lock lock(device_->mutex);
+    const vec3 size = around(part(geometry, "extent")).size();
+    return std::max({size.x, size.y, size.z});
+}
+
+// Calls trace(first, rays, ways) for the rays from `first` on; no ways: no ray was brought near the scene.
+template <class Trace>
+void Scene::in_blocks(const RayRows& rows, const Trace& trace) {
+    const Bounds box = rows.doubles.empty() ? Bounds{} : around();
+    for (std::size_t first = 0; first < rows.size(); first += rays_of_block) {
+        const std::size_t count = std::min(rays_of_block, rows.size() - first);
+        if (rays_.size() < count) rays_.resize(count), ways_.resize(count);
+        const std::span<Ray> rays(rays_.data(), count);
+        const std::span<double> ways(ways_.data(), count);
+        fill(rays, ways, rows, first, box);
+        const bool is_far = !rows.doubles.empty() && std::ranges::any_of(ways, [](double way) { return way > 0; });
+        trace(first, std::span<const Ray>(rays), is_far ? std::span<const double>(ways) : std::span<const double>{});
+    }
 }
 
 Cast Scene::cast(const RayRows& rows, bool with_normals) {
     const Lock lock(device_->mutex);
-    return cast_of(accel_->closest_hits(keep(rows), {.level = level_}), with_normals);
+    Cast found{Column<float>(rows.size()), {}, Places(rows.size(), with_normals)};
+    in_blocks(rows, [&](std::size_t first, std::span<const Ray> rays, std::span<const double> ways) {
+        put(found, first, accel_->closest_hits(rays, {.level = level_}));
+        if (!ways.empty() && found.far_t.size() == 0) {
+            found.far_t = Column<double>(rows.size());
+            std::copy_n(found.t.data(), first, found.far_t.data());
+        }
+        if (found.far_t.size() > 0)
+            for (std::size_t i = 0; i < rays.size(); ++i)
+                found.far_t[first + i] = found.t[first + i] + (ways.empty() ? 0 : ways[i]);
+    });
+    return found;
 }
 
 Column<bool> Scene::occlusions(const RayRows& rows) {
     const Lock lock(device_->mutex);
-    const std::vector<Hit> hits = accel_->any_hits(keep(rows), {.level = level_});
-    Column<bool> is_hit(hits.size());
-    in_parts(hits.size(), [&](std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i < last; ++i) is_hit[i] = hits[i].hit != 0;
+    Column<bool> is_hit(rows.size());
+    in_blocks(rows, [&](std::size_t from, std::span<const Ray> rays, std::span<const double>) {
+        const std::vector<Hit> hits = accel_->any_hits(rays, {.level = level_});
+        in_parts(hits.size(), [&](std::size_t first, std::size_t last) {
+            for (std::size_t i = first; i < last; ++i) is_hit[from + i] = hits[i].hit != 0;
+        });
     });
     return is_hit;
 }
 
-HitsOfRays Scene::all_hits(const RayRows& rows) {
-    if (!all_hits_) all_hits_ = std::make_unique<AllHits>(*accel_);
-    return (*all_hits_)(keep(rows));
+AbstractAccel& Scene::lister() {
+    if (accel_->is_software()) return *accel_;
+    if (lister_) return *lister_;
+    Context& context = device_->context;
+    auto software = make_accel(context, choose_accel(context.properties(), "sw", {}), {});
+    std::map<const Mesh*, AccelHandle> first_of;
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+        if (!parts_[i]) continue;
+        Part& part = *parts_[i];
+        const InstanceOptions options{.custom_index = static_cast<uint>(i)};
+        const auto found = first_of.find(part.mesh.get());
+        part.listed =
+            found == first_of.end()
+                ? software->push(*part.mesh, part.transform, options)
+                : software->push_instances_of(found->second, std::span(&part.transform, 1), std::span(&options, 1));
+        first_of.emplace(part.mesh.get(), part.listed);
+    }
+    lister_ = std::move(software);
+    return *lister_;
+}
+
+HitsOfRays Scene::all_hits(std::span<const Ray> rays) {
+    AbstractAccel& accel = lister();
+    if (!all_hits_) all_hits_ = std::make_unique<AllHits>(accel);
+    return (*all_hits_)(rays);
 }
 
 Column<int> Scene::counts(const RayRows& rows) {
     const Lock lock(device_->mutex);
-    const HitsOfRays found = all_hits(rows);
     Column<int> counts(rows.size());
-    for (std::size_t i = 0; i < rows.size(); ++i) counts[i] = static_cast<int>(found.of(i).size());
+    in_blocks(rows, [&](std::size_t first, std::span<const Ray> rays, std::span<const double>) {
+        const HitsOfRays found = all_hits(rays);
+        for (std::size_t i = 0; i < rays.size(); ++i) counts[first + i] = static_cast<int>(found.of(i).size());
+    });
     return counts;
 }
 
 Listed Scene::list(const RayRows& rows, bool with_normals) {
     const Lock lock(device_->mutex);
-    HitsOfRays found = all_hits(rows);
-    return {std::move(found.first), cast_of(found.hits, with_normals)};
+    std::vector<std::uint64_t> first_hits{0};
+    std::vector<Hit> hits;
+    std::vector<double> far_t;  // of hits; of none where no ray began far off
+    in_blocks(rows, [&](std::size_t, std::span<const Ray> rays, std::span<const double> ways) {
+        const HitsOfRays found = all_hits(rays);
+        const std::size_t before = hits.size();
+        hits.insert(hits.end(), found.hits.begin(), found.hits.end());
+        if (!ways.empty())
+            for (std::size_t i = far_t.size(); i < before; ++i) far_t.push_back(hits[i].t);
+        for (std::size_t ray = 0; ray < rays.size(); ++ray) {
+            first_hits.push_back(before + found.first[ray + 1]);
+            for (const Hit& hit : found.of(ray))
+                if (!ways.empty()) far_t.push_back(hit.t + ways[ray]);
+        }
+    });
+    Cast cast{Column<float>(hits.size()), Column<double>(far_t.empty() ? 0 : hits.size()),
+              Places(hits.size(), with_normals)};
+    put(cast, 0, hits);
+    for (std::size_t i = 0; i < cast.far_t.size(); ++i) cast.far_t[i] = i < far_t.size() ? far_t[i] : hits[i].t;
+    return {std::move(first_hits), std::move(cast)};
 }
 
 PointQuery& Scene::points() {
@@ -336,7 +454,8 @@ Backend Scene::backend() const {
             choice_.name(),
             choice_.why,
             hardware ? hardware->trace_path() : "compute",
-            std::string(name_of(level_))};
+            std::string(name_of(level_)),
+            "sw"};
 }
 
 std::vector<std::string> Scene::take_log() {

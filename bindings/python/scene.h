@@ -75,7 +75,7 @@ std::shared_ptr<Device> device_for(const std::string& request);
 void forget_devices();
 
 struct Backend {
-    std::string device, driver, kind, accel, why, path, level;
+    std::string device, driver, kind, accel, why, path, level, lists;
 };
 
 // Places on triangles; where there is none both numbers are 2^32 - 1, the rest is 0.
@@ -91,16 +91,19 @@ struct Places {
 
 // Rays as Python has them: origin and direction, one after the other, with an interval for all.
 struct RayRows {
-    std::span<const float> numbers;  // six a ray
-    float t_near = 0, t_far = std::numeric_limits<float>::infinity();
+    std::span<const float> floats;    // six a ray
+    std::span<const double> doubles;  // instead of them
+    dvec3 origin = dvec3(0);          // in their coordinates, what the device's are counted from
+    double t_near = 0, t_far = std::numeric_limits<double>::infinity();
 
-    std::size_t size() const { return numbers.size() / 6; }
+    std::size_t size() const { return (floats.size() + doubles.size()) / 6; }
 };
 std::vector<Ray> rays_of(const RayRows& rows);
 
 // By ray; t is infinite for a miss.
 struct Cast {
     Column<float> t;
+    Column<double> far_t;  // instead of t, where a ray began far from the scene
     Places places;
 };
 
@@ -137,6 +140,7 @@ class Scene {
     std::size_t triangle_count() const;
     std::vector<std::uint64_t> first_faces() const;  // by number, and their count at the end
     Bounds bounds();                                 // in world space
+    double extent(uint geometry);                    // its largest side there, or a little more
 
     Cast cast(const RayRows& rows, bool with_normals);
     Column<bool> occlusions(const RayRows& rows);
@@ -174,24 +178,31 @@ class Scene {
   private:
     struct KeptMesh : Mesh {
         std::optional<Bounds> box;  // once it was asked for
+        const Bounds& bounds();
     };
     struct Part {
         AccelHandle handle;
         std::shared_ptr<KeptMesh> mesh;
         Transform transform;
+        AccelHandle listed = {};  // in lister_, while that is there
     };
     using Lock = std::lock_guard<std::recursive_mutex>;
 
     Part& part(uint geometry, const char* action);
     uint keep(AccelHandle handle, std::shared_ptr<KeptMesh> mesh, const Transform& transform);
     void changed();
+    void forget_lister();
     InstanceOptions options_of_next() const;
     Numbers3 normal_of(uint geometry, uint primitive) const;
     // None: 2^32 - 1 both.
     void put(const Places& places, std::size_t i, uint geometry, uint primitive, Numbers2 uv) const;
-    Cast cast_of(std::span<const Hit> hits, bool with_normals) const;
-    std::span<const Ray> keep(const RayRows& rows);  // valid until the next call
-    HitsOfRays all_hits(const RayRows& rows);
+    static Bounds around(const Part& part);
+    Bounds around() const;
+    void put(const Cast& cast, std::size_t first, std::span<const Hit> hits) const;
+    template <class Trace>
+    void in_blocks(const RayRows& rows, const Trace& trace);
+    AbstractAccel& lister();
+    HitsOfRays all_hits(std::span<const Ray> rays);
     PointQuery& points();
 
     std::shared_ptr<Device> device_;
@@ -199,7 +210,9 @@ class Scene {
     AccelChoice choice_;
     std::unique_ptr<AbstractAccel> accel_;
     std::vector<std::optional<Part>> parts_;  // by number
-    std::vector<Ray> rays_;  // of the last call: memory that is touched for the first time costs as much as its rays
+    std::vector<Ray> rays_;     // of a block: memory that is touched for the first time costs as much as its rays
+    std::vector<double> ways_;  // by how much of t each of them was brought near the scene
+    std::unique_ptr<AbstractAccel> lister_;  // a driver's structures promise nothing of edges: software that lists
     std::unique_ptr<AllHits> all_hits_;
     std::unique_ptr<PointQuery> points_;
     Progress progress_;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include <twinray/world.h>
+
 #include "engine/accel/held_geometry.h"
 #include "engine/accel/refinement.h"
 #include "engine/core/device_list.h"
@@ -51,8 +53,12 @@ std::vector<HitExact> AccelBackend::exact_hits(std::span<const Ray64> rays, cons
     std::vector<std::size_t> asked(rays.size());
     std::iota(asked.begin(), asked.end(), std::size_t{0});
     std::vector<Ray64> given(rays.begin(), rays.end());
+    sync();
+    const Bounds box = world_bound();
+    std::vector<double> ways;
+    for (Ray64& ray : given) ways.push_back(bring_near(ray, box));
     std::vector<Ray> rounded;
-    for (const Ray64& ray : rays)
+    for (const Ray64& ray : given)
         rounded.push_back(
             {vec3(ray.origin), static_cast<float>(ray.t_min), vec3(ray.direction), static_cast<float>(ray.t_max)});
     TraceDesc at_level = desc;
@@ -71,9 +77,14 @@ std::vector<HitExact> AccelBackend::exact_hits(std::span<const Ray64> rays, cons
             const Hit& hit = hits[i];
             if (!hit.hit) continue;
             if (exact[i].t > given[i].t_min && exact[i].t < given[i].t_max) {
-                found[asked[i]] = {
-                    1,          hit.primitive_index, hit.custom_index, hit.instance_index, handle_of(hit),
-                    exact[i].t, exact[i].u,          exact[i].v};
+                found[asked[i]] = {1,
+                                   hit.primitive_index,
+                                   hit.custom_index,
+                                   hit.instance_index,
+                                   handle_of(hit),
+                                   ways[asked[i]] + exact[i].t,
+                                   exact[i].u,
+                                   exact[i].v};
                 continue;
             }
             asked[left] = asked[i], given[left] = given[i], rounded[left] = rounded[i], steps[left] = 2 * steps[i];

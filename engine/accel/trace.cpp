@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Tracing through AccelBackend: what every accelerator checks, and the host's convenience.
+#include <algorithm>
+#include <cstring>
+
 #include "engine/accel/check_level.h"
 #include "engine/accel/features_of.h"
 #include "engine/accel/held_geometry.h"
@@ -11,6 +14,8 @@
 
 namespace twinray {
 namespace {
+
+constexpr std::size_t rays_of_block = 1 << 20;  // that lie on the device at a time, of those that the host has
 
 // The first of the features, for messages.
 const char* words_for(uint features) {
@@ -166,24 +171,36 @@ std::vector<Hit> AccelBackend::any_hits(std::span<const Ray> rays, const TraceDe
 std::vector<Hit> AccelBackend::trace_host(std::span<const Ray> rays, TraceDesc desc) {
     sync();
     if (rays.empty()) return {};
-    const Buffer ray_buffer(context_, {.name = "rays", .bytes = rays.size_bytes()});
-    const Buffer hit_buffer(context_, {.name = "hits", .bytes = rays.size() * sizeof(Hit)});
+    const std::size_t most = std::min(rays.size(), rays_of_block);
+    const Buffer ray_buffer(context_, {.name = "rays", .bytes = most * sizeof(Ray)});
+    const Buffer hit_buffer(context_, {.name = "hits", .bytes = most * sizeof(Hit)});
+    const Buffer staging(context_, {.name = "rays and hits", .bytes = most * sizeof(Ray), .memory = Memory::readback});
     desc.rays = ray_buffer.ref<Ray>();
     desc.hits = hit_buffer.ref<Hit>();
-    desc.count = rays.size();
+    desc.count = most;
     const AccelView view = this->view();
     check_desc(view, desc);
     Pace pace(context_);
-    Commands commands(context_, name_ + " trace");
-    pace.record(commands, rays.size(), [&](std::uint64_t first, std::uint64_t count) {
+    std::vector<Hit> hits(rays.size());
+    for (std::size_t begin = 0; begin < rays.size(); begin += most) {
+        const std::span<const Ray> block = rays.subspan(begin, std::min(most, rays.size() - begin));
+        Commands commands(context_, name_ + " trace");
+        std::memcpy(staging.mapped(), block.data(), block.size_bytes());
         {
             const auto pass = commands.pass("upload rays");
-            commands.upload(ray_buffer, rays.subspan(first, count), first * sizeof(Ray));
+            commands.copy(staging, 0, ray_buffer, 0, block.size_bytes());
         }
-        record_rays(commands, view, part_of(desc, first, count));
-    });
-    commands.submit();
-    return download<Hit>(context_, hit_buffer, rays.size());
+        pace.record(commands, block.size(), [&](std::uint64_t first, std::uint64_t count) {
+            record_rays(commands, view, part_of(desc, first, count));
+        });
+        {
+            const auto pass = commands.pass("download hits");
+            commands.copy(hit_buffer, 0, staging, 0, block.size() * sizeof(Hit));
+        }
+        pace.finish(commands);
+        std::memcpy(&hits[begin], staging.mapped(), block.size() * sizeof(Hit));
+    }
+    return hits;
 }
 
 }  // namespace twinray

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include <twinray/world.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "engine/core/error.h"
+#include "engine/scene/local_origin.h"
 #include "twinray/glsl/cpp.h"
 
 namespace twinray {
@@ -37,7 +39,27 @@ dvec3 center_of(std::span<const dvec3> positions) {
     return lo.x <= hi.x ? lo + (hi - lo) * 0.5 : dvec3(0);
 }
 
+Ray rounded(const Ray64& ray) {
+    return {vec3(ray.origin), static_cast<float>(ray.t_min), vec3(ray.direction), static_cast<float>(ray.t_max)};
+}
+
 }  // namespace
+
+double bring_near(Ray64& ray, const Bounds& box) {
+    if (box.is_empty()) return 0;
+    const dvec3 lo(box.lo), hi(box.hi), to_middle = lo * 0.5 + hi * 0.5 - ray.origin;
+    const double radius = 0.5 * length(hi - lo);
+    if (!is_far(length(to_middle), 2 * radius)) return 0;
+    // Before the sphere around the box, or where the ray comes nearest to its middle.
+    const dvec3& d = ray.direction;
+    const double scale = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}), speed = scale * length(d / scale);
+    const double way = (dot(to_middle, d / speed) - 1.01 * radius) / speed;
+    if (!(way > 0) || !std::isfinite(way)) return 0;
+    ray.origin = ray.origin + way * d;
+    ray.t_min = ray.t_min <= way ? 0.0 : ray.t_min - way;
+    ray.t_max -= way;
+    return way;
+}
 
 Transform64::Transform64(const Transform& transform) {
     for (std::size_t row = 0; row < 3; ++row) rows[row] = dvec4(transform.rows[row]);
@@ -121,20 +143,30 @@ vec3 WorldAccel::local(dvec3 position) const { return vec3(position - origin_); 
 dvec3 WorldAccel::world(dvec3 position) const { return position + origin_; }
 
 Ray WorldAccel::local(const Ray64& ray) const {
-    return {local(ray.origin), static_cast<float>(ray.t_min), vec3(ray.direction), static_cast<float>(ray.t_max)};
+    return rounded({ray.origin - origin_, ray.t_min, ray.direction, ray.t_max});
 }
 
-std::vector<Ray> WorldAccel::local(std::span<const Ray64> rays) const {
-    std::vector<Ray> all;
-    for (const Ray64& ray : rays) all.push_back(local(ray));
-    return all;
+std::vector<Hit> WorldAccel::trace(std::span<const Ray64> rays, const TraceDesc& desc, Query query) {
+    accel_.sync();
+    const Bounds box = accel_.world_bound();
+    std::vector<Ray> near;
+    std::vector<double> ways;
+    for (Ray64 ray : rays) {
+        ray.origin = ray.origin - origin_;
+        ways.push_back(bring_near(ray, box));
+        near.push_back(rounded(ray));
+    }
+    std::vector<Hit> hits = query == Query::any ? accel_.any_hits(near, desc) : accel_.closest_hits(near, desc);
+    for (std::size_t i = 0; i < hits.size(); ++i)
+        if (hits[i].hit) hits[i].t = static_cast<float>(hits[i].t + ways[i]);
+    return hits;
 }
 
 std::vector<Hit> WorldAccel::closest_hits(std::span<const Ray64> rays, const TraceDesc& desc) {
-    return accel_.closest_hits(local(rays), desc);
+    return trace(rays, desc, Query::closest);
 }
 std::vector<Hit> WorldAccel::any_hits(std::span<const Ray64> rays, const TraceDesc& desc) {
-    return accel_.any_hits(local(rays), desc);
+    return trace(rays, desc, Query::any);
 }
 
 std::vector<HitExact> WorldAccel::exact_hits(std::span<const Ray64> rays, const TraceDesc& desc) {

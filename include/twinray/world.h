@@ -30,6 +30,10 @@ struct MeshView64 {
     std::span<const uvec3> triangles;
 };
 
+// Takes a ray that begins so far from the box that float32 would round its line by more than a millionth of the box
+// along that line, in float64, to near there. Returns by how much of t; 0: it began near enough.
+double bring_near(Ray64& ray, const Bounds& box);
+
 // An accelerator whose instances stand in float64. It counts from an origin: what it traces in float32 is relative to
 // that, so that t of rays that begin near it is right to 2 units in the last place of how large the scene around it is.
 // What is pushed through it is moved and erased through it; all else of the accelerator (view(), trace(), surfaces(),
@@ -58,11 +62,9 @@ class WorldAccel {
     vec3 local(dvec3 position) const;
     Ray local(const Ray64& ray) const;
     dvec3 world(dvec3 position) const;  // back
-    // As AbstractAccel::closest_hits.
+    // As AbstractAccel's. Rays that begin far from the scene are brought near it; t counts from where they began.
     std::vector<Hit> closest_hits(std::span<const Ray64> rays, const TraceDesc& desc = {});
-    // As AbstractAccel::any_hits.
     std::vector<Hit> any_hits(std::span<const Ray64> rays, const TraceDesc& desc = {});
-    // As AbstractAccel::exact_hits.
     std::vector<HitExact> exact_hits(std::span<const Ray64> rays, const TraceDesc& desc = {});
 
     AbstractAccel& accel() { return accel_; }  // that it was made with
@@ -75,7 +77,7 @@ class WorldAccel {
     std::vector<Transform> local(const Placed& placed, const dvec3& origin) const;
     template <class Mesh>
     AccelHandle place(const Mesh& mesh, Placed&& placed, std::span<const InstanceOptions> options);
-    std::vector<Ray> local(std::span<const Ray64> rays) const;
+    std::vector<Hit> trace(std::span<const Ray64> rays, const TraceDesc& desc, Query query);
 
     AbstractAccel& accel_;
     dvec3 origin_;

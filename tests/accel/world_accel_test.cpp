@@ -182,6 +182,41 @@ TEST_P(WorldAccelTest, ExactHitsAreInFloat64) {
     EXPECT_NE(error_if_any([&] { plain->exact_hits(rays); }).find("takes refined or more"), std::string::npos);
 }
 
+TEST_P(WorldAccelTest, RaysFromFarOffMeetWhatTheirLinesDo) {
+    const std::vector<dvec3> positions = sphere_at(far_away);
+    WorldAccel world(accel(), far_away);
+    world.push(MeshView64{"sphere", positions, sphere_.triangles});
+    std::vector<Ray64> rays = rays_at(far_away, 500);
+    for (Ray64& ray : rays) ray.origin = ray.origin - 1e6 * ray.direction;
+    const std::vector<Hit> hits = world.closest_hits(rays), any = world.any_hits(rays);
+    const bool is_exact = context().properties().shader_float64;
+    const std::vector<HitExact> exact = is_exact ? world.exact_hits(rays) : std::vector<HitExact>(rays.size());
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const WorldReference expected = reference_hit(positions, sphere_.triangles, rays[i]);
+        if (std::isfinite(expected.t) && expected.margin < 1e-4) continue;
+        EXPECT_EQ(hits[i].hit != 0, std::isfinite(expected.t));
+        EXPECT_EQ(any[i].hit, hits[i].hit);
+        if (!hits[i].hit) continue;
+        ++count;
+        EXPECT_EQ(hits[i].primitive_index, expected.triangle);
+        EXPECT_NEAR(hits[i].t, expected.t, 0.07) << "a float32 of a million";
+        if (!is_exact) continue;
+        EXPECT_EQ(exact[i].primitive_index, expected.triangle);
+        EXPECT_NEAR(exact[i].t, expected.t, 2e-8 / std::abs(cosine(positions, rays[i], expected.triangle)));
+    }
+    EXPECT_GT(count, rays.size() / 4);
+    // The interval is counted from where a ray began.
+    Ray64 ray{far_away + dvec3(1e6, 0.5, 0.25), 0, dvec3(-2, 0, 0), 4.9e5};
+    EXPECT_EQ(world.any_hits(std::span(&ray, 1)).front().hit, 0u);
+    ray.t_min = 5.1e5, ray.t_max = INFINITY;
+    EXPECT_EQ(world.any_hits(std::span(&ray, 1)).front().hit, 0u);
+    ray.t_min = NAN;
+    EXPECT_EQ(world.any_hits(std::span(&ray, 1)).front().hit, 0u);
+    ray.t_min = 4.9e5, ray.t_max = 5.1e5;
+    EXPECT_EQ(world.any_hits(std::span(&ray, 1)).front().hit, 1u);
+}
+
 // A plane met from nearer than float32 tells apart there, at slopes down to 10^-5: some of the rounded rays begin on
 // its other side.
 TEST_P(WorldAccelTest, ExactHitsKeepToTheRaysInterval) {

@@ -7,6 +7,7 @@ import re
 import subprocess
 import sys
 import threading
+import warnings
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -178,7 +179,8 @@ def test_float64_far_from_0_keeps_its_precision(accel):
     assert closest[1] - offset == pytest.approx([1, 0.25, 0.5], abs=1e-9)
     matrix = np.eye(4)
     matrix[:3, 3] = offset + [2, 0, 0]
-    assert near.add_instance(0, matrix) == 1  # is where float32 puts it: this scene counts from 0
+    with pytest.warns(UserWarning, match="geometry 1 stands so far .* float32 moves it by up to 0.33; give Scene an"):
+        assert near.add_instance(0, matrix) == 1  # is where float32 puts it: this scene counts from 0
     turned = np.eye(4)
     turned[:3, :3] = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]
     turned[:3, 3] = offset - turned[:3, :3] @ offset  # about the corner at the offset
@@ -190,6 +192,81 @@ def test_float64_far_from_0_keeps_its_precision(accel):
     eye = offset + [0.5, 0.5, 4]
     pixels = far.create_rays_pinhole(30, offset + [-0.5, 0.5, 1], eye, [0, 1, 0], 8, 8, dtype=np.float64)
     assert np.isfinite(far.cast_rays(pixels)["t_hit"]).any()
+
+
+def test_rays_from_far_off_meet_what_their_lines_do(accel):
+    scene = scene_of(grid(20), accel=accel)
+    random = np.random.default_rng(3)
+    near = np.concatenate([random.uniform(0.1, 0.9, (500, 2)), np.full((500, 1), 0.5)], axis=1)
+    directions = np.concatenate([random.normal(0, 0.1, (500, 2)), np.full((500, 1), -1.0)], axis=1)
+    beside = scene.cast_rays(np.concatenate([near, directions], axis=1))
+    rays = np.concatenate([near - 1e6 * directions, directions], axis=1)
+    found = scene.cast_rays(rays)
+    assert beside["t_hit"].dtype == np.float32 and found["t_hit"].dtype == np.float64
+    assert (found["primitive_ids"] == beside["primitive_ids"]).mean() > 0.99  # others are met beside their edges
+    assert found["t_hit"] - 1e6 == pytest.approx(beside["t_hit"], abs=1e-5)
+    listed = scene.list_intersections(rays)
+    assert listed["t_hit"].dtype == np.float64 and (listed["t_hit"][listed["ray_splits"][:-1]] > 1e6 - 1).all()
+    assert scene.test_occlusions(rays).all() and not scene.test_occlusions(rays, tfar=1e6 - 1).any()
+    assert (scene.cast_rays(rays, tnear=1e6 + 2)["t_hit"] == np.inf).all()
+    assert (scene.count_intersections(rays) >= 1).all()
+    mixed = scene.cast_rays([rays[0], np.concatenate([near[1], directions[1]])])["t_hit"]
+    assert mixed == pytest.approx([found["t_hit"][0], beside["t_hit"][1]], abs=1e-5)
+    assert scene.cast_rays(rays.astype(np.float32))["t_hit"].dtype == np.float32
+
+
+def test_more_rays_than_a_block_answer_as_fewer_do():
+    scene = scene_of(grid(10), accel="sw")
+    rays = np.tile([[0.3, 0.4, 2, 0, 0, -1.0], [0.6, 0.6, 2, 0, 0, -1], [3, 3, 3, 0, 0, 1]], ((1 << 20) // 3 + 5, 1))
+    rays[-1, :3] = [0.3, 0.4, 1e6]
+    rays[-1, 5] = -1
+    few, many = scene.cast_rays(rays[:3]), scene.cast_rays(rays)
+    assert np.array_equal(many["t_hit"][:-3], np.tile(few["t_hit"], len(rays) // 3 - 1))
+    assert np.array_equal(many["primitive_ids"][:-1], np.tile(few["primitive_ids"], len(rays) // 3)[:-1])
+    assert many["primitive_ids"][-1] == few["primitive_ids"][0]
+    assert many["t_hit"][-1] - 1e6 == pytest.approx(few["t_hit"][0] - 2, abs=1e-5)
+    assert np.array_equal(scene.test_occlusions(rays), np.isfinite(many["t_hit"]))
+    assert np.array_equal(scene.count_intersections(rays), np.isfinite(many["t_hit"]))
+    listed = scene.list_intersections(rays)
+    assert np.array_equal(listed["ray_ids"], np.flatnonzero(np.isfinite(many["t_hit"])))
+    assert np.array_equal(listed["t_hit"], many["t_hit"][listed["ray_ids"]])
+
+
+def memory_in_use(field):
+    status = Path("/proc/self/status").read_text()
+    return 1024 * int(re.search(rf"{field}:\s+(\d+)", status).group(1))
+
+
+@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="the system does not tell")
+def test_memory_of_many_rays_is_that_of_a_block():
+    scene = scene_of(grid(10), accel="sw")
+    rays = np.full((1 << 22, 6), 0.5)
+    rays[:, 3:] = [0, 0, 1]
+    scene.cast_rays(rays[: 1 << 21])  # what a block takes is there
+    Path("/proc/self/clear_refs").write_text("5")  # the peak begins anew
+    before = memory_in_use("VmRSS")
+    results = sum(array.nbytes for array in scene.cast_rays(rays).values())
+    assert memory_in_use("VmHWM") - before - results < 32 * len(rays)
+    assert memory_in_use("VmRSS") - before < 16 * len(rays)
+
+
+def test_an_edge_is_counted_once_whatever_traces(accel):
+    scene = scene_of(cube(), accel=accel)
+    assert scene.backend["lists"] == "sw"
+    corners = [[-1, -1, -1, 1, 1, 1], [2, -1, 2, -1, 1, -1]]
+    diagonals = [[0.5, 0.5, -1, 0, 0, 1], [-1, 0.25, 0.25, 1, 0, 0], [-1, 0.25, 0.75, 1, 0, 0]]
+    rays = np.array(corners + diagonals, np.float64)
+    assert (scene.count_intersections(rays) == 2).all()
+    moved = scene.add_instance(0, [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 5]])
+    assert scene.count_intersections(rays).tolist() == [2, 2, 4, 2, 2]
+    scene.set_transform(moved, [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, -5]])
+    assert scene.count_intersections(rays).tolist() == [2] * 5
+    scene.set_transform(moved, [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 2]])
+    assert scene.list_intersections(rays)["geometry_ids"].tolist() == [0] * 6 + [1, 1] + [0] * 4
+    scene.update_vertices(0, cube(2)[0])
+    assert scene.list_intersections(rays[2:3])["t_hit"].tolist() == [1, 3, 3, 5]
+    scene.remove(moved)
+    assert scene.count_intersections(rays).tolist() == [2] * 5
 
 
 def test_fronts_stay_fronts_where_a_transform_mirrors(accel):
@@ -225,6 +302,26 @@ def test_bounds_are_those_of_the_triangles(accel):
     assert scene.bounds() == pytest.approx(np.array([[-s, -s, -1], [s, s, 1]]) * 2, abs=1e-6)
     scene.remove(geometry)
     assert np.isinf(scene.bounds()).all()
+
+
+def test_poses_far_from_the_origin_are_told_once():
+    pose = np.eye(4)
+    pose[:3, 3] = [5e5, 5.6e6, 120]
+    told = "stands so far"
+    for size in (1, 1000):
+        scene = scene_of(cube(size), accel="sw")
+        with pytest.warns(UserWarning, match=told):
+            scene.set_transform(0, pose)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            scene.set_transform(0, pose)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        near = twinray.Scene(accel="sw", origin=pose[:3, 3])
+        near.add_triangles(*cube(), transform=pose)
+        parts = scene_of(cube(), accel="sw")
+        for place in (1, 100, 1000):  # a small part in a large scene
+            parts.add_instance(0, np.diag([0.1, 0.1, 0.1, 1]) + [[0, 0, 0, place], [0] * 4, [0] * 4, [0] * 4])
 
 
 def test_files_far_from_0_keep_their_precision(tmp_path):
@@ -400,7 +497,7 @@ def test_a_cpu_driver_is_told_once():
 
 def test_the_backend_is_told():
     backend = twinray.Scene("sw").backend
-    assert set(backend) == {"device", "driver", "kind", "accel", "why", "path", "level"}
+    assert set(backend) == {"device", "driver", "kind", "accel", "why", "path", "level", "lists"}
     assert backend["accel"] == "sw" and backend["level"] == "watertight" and backend["device"]
     assert any(device["name"] == backend["device"] for device in twinray.devices())
 

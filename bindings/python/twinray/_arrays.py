@@ -57,6 +57,12 @@ def rows_of(values, name, dtype, columns):
     return flat if dtype is None else _cast(flat, dtype), array.shape[:-1]
 
 
+def rays_of(values):
+    """Rays, as (n, 6) of float32 or float64 whose rows are beside each other, and the leading shape."""
+    flat, shape = rows_of(values, "rays", None, 6)
+    return _cast(flat, np.float32 if flat.dtype in (np.float16, np.float32) else np.float64), shape
+
+
 def vector_of(value, name):
     """Of shape (3,), as float64, finite."""
     array = array_of(value, name).astype(np.float64)

@@ -6,7 +6,12 @@ from __future__ import annotations
 import numpy as np
 
 _ROUNDING = 2.0**-24  # of float32
-_HARMLESS = 1e-6  # a rounding, in extents of a mesh
+HARMLESS = 1e-6  # a rounding, in extents of a mesh
+
+
+def rounding_of(coordinates):
+    """By how much float32 rounds the largest of these, at most."""
+    return float(np.abs(coordinates).max()) * _ROUNDING
 
 
 def near_point(points):
@@ -17,8 +22,7 @@ def near_point(points):
         return np.zeros(3)
     low, high = finite.min(axis=0).astype(np.float64), finite.max(axis=0).astype(np.float64)
     extent = float((high - low).max())
-    largest = float(np.abs([low, high]).max())
-    if largest * _ROUNDING <= _HARMLESS * extent or not np.isfinite(extent):
+    if rounding_of([low, high]) <= HARMLESS * extent or not np.isfinite(extent):
         return np.zeros(3)
     middle = low + (high - low) / 2
     if extent == 0:
@@ -73,13 +77,6 @@ class Frame:
             if origin.any():
                 points = points.astype(np.float64) - origin
             return np.ascontiguousarray(points, dtype=np.float32)
-
-    def rays(self, rows):
-        """Rays (n, 6), on the device, in float32."""
-        if not self.origin.any():
-            with np.errstate(over="ignore"):  # what float32 does not hold is infinite, and hits nothing
-                return np.ascontiguousarray(rows, dtype=np.float32)
-        return np.hstack([self.moved(rows[:, :3], self.origin), self.moved(rows[:, 3:], np.zeros(3))])
 
     def _on_device(self, matrix, mesh_origin):
         with np.errstate(over="ignore", invalid="ignore"):

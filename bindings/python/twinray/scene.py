@@ -16,8 +16,8 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from . import _core, picture
 from . import device_array as _device
-from ._arrays import Array, arrays_of_mesh, geometry_of, indices_of, matrix_of, number_of, rows_of, vector_of
-from ._frame import Frame
+from ._arrays import Array, arrays_of_mesh, geometry_of, indices_of, matrix_of, number_of, rays_of, rows_of, vector_of
+from ._frame import HARMLESS, Frame, rounding_of
 from .pinhole import create_rays_pinhole
 
 if TYPE_CHECKING:
@@ -49,7 +49,9 @@ class Scene:
     -----
     Rays are rows of six numbers, origin and direction; directions need not be unit, and ``t_hit`` counts in their
     lengths. The device computes in float32; what is given in float64 is counted from `origin` before it is rounded,
-    so that scenes far from 0, as in UTM, keep their precision. All calls may come from several threads.
+    so that scenes far from 0, as in UTM, keep their precision. Rays in float64 that begin more than 16 extents away,
+    as from a sun or a satellite, are brought near the scene in float64 first; ``t_hit`` counts from where they began
+    and is float64 then. Rays go to the device in blocks of a million. All calls may come from several threads.
     """
 
     def __init__(
@@ -66,12 +68,17 @@ class Scene:
             device = os.environ.get("TWINRAY_DEVICE", "")
         self._frame = Frame(None if origin is None else vector_of(origin, "origin"))
         self._adding = threading.Lock()  # the first mesh says the origin
+        self._told_of_far = False
         self._core = _core.Scene(accel, str(device), level)
         self._tell()
 
     @property
     def backend(self) -> dict[str, str]:
-        """What answers: dict of ``device``, ``driver``, ``kind``, ``accel``, ``why``, ``path``, ``level``."""
+        """What answers: dict of ``device``, ``driver``, ``kind``, ``accel``, ``why``, ``path``, ``level``, ``lists``.
+
+        ``lists`` is the accelerator of `count_intersections` and `list_intersections`: "sw" always, since drivers may
+        count an edge twice. Where ``accel`` is "hw" their first call builds it beside the driver's.
+        """
         return self._core.backend()
 
     @property
@@ -218,14 +225,17 @@ class Scene:
             positions, matrix, mesh_origin = self._frame.placed(positions, given)
             geometry = self._core.add(positions, triangles, matrix)
             self._frame.keep(geometry, mesh_origin)
+        self._tell_if_far(geometry, matrix)
         return geometry
 
     def add_instance(self, geometry: int, transform: ArrayLike | None = None) -> int:
         """Add the mesh of a geometry once more, without another copy; returns the number of the new geometry."""
         number, matrix = geometry_of(geometry, "geometry"), matrix_of(transform, "transform")
         with self._adding:
-            added = self._core.add_instance(number, self._frame.matrix_of(number, matrix))
+            placed = self._frame.matrix_of(number, matrix)
+            added = self._core.add_instance(number, placed)
             self._frame.keep(added, self._frame.mesh_origin(number))
+        self._tell_if_far(added, placed)
         return added
 
     def add_file(self, file: str | os.PathLike[str]) -> list[int]:
@@ -250,7 +260,9 @@ class Scene:
     def set_transform(self, geometry: int, transform: ArrayLike) -> None:
         """Move a geometry: `transform` is (4, 4) or (3, 4), from its mesh to the scene."""
         number, matrix = geometry_of(geometry, "geometry"), matrix_of(transform, "transform")
-        self._core.set_transform(number, self._frame.matrix_of(number, matrix))
+        placed = self._frame.matrix_of(number, matrix)
+        self._core.set_transform(number, placed)
+        self._tell_if_far(number, placed)
 
     def update_vertices(self, geometry: int, vertex_positions: ArrayLike) -> None:
         """Move the vertices of a mesh, and of all its instances: as many as it has, (N, 3)."""
@@ -278,27 +290,27 @@ class Scene:
         Returns
         -------
         dict
-            ``t_hit`` (...) float32, infinite for a miss; ``geometry_ids`` and ``primitive_ids`` (...) uint32,
-            `INVALID_ID` for a miss; ``primitive_uvs`` (..., 2) float32: the point is (1 - u - v) a + u b + v c;
-            ``primitive_normals`` (..., 3) float32, unit, on the triangle's front, which stays the front where a
-            transform mirrors; 0 where the triangle has no area.
+            ``t_hit`` (...) float32, or float64 where a ray began far off, infinite for a miss; ``geometry_ids`` and
+            ``primitive_ids`` (...) uint32, `INVALID_ID` for a miss; ``primitive_uvs`` (..., 2) float32: the point is
+            (1 - u - v) a + u b + v c; ``primitive_normals`` (..., 3) float32, unit, on the triangle's front, which
+            stays the front where a transform mirrors; 0 where the triangle has no area.
         """
         flat, shape = self._rays_of(rays)
-        found = self._core.cast(flat, *_interval(tnear, tfar), bool(normals))
+        found = self._core.cast(*flat, *_interval(tnear, tfar), bool(normals))
         self._tell()
         return _shaped(found, shape)
 
     def test_occlusions(self, rays: ArrayLike, tnear: float = 0.0, tfar: float = np.inf, nthreads: int = 0) -> Array:
         """Tell whether each ray meets anything between `tnear` and `tfar`; (...) bool."""
         flat, shape = self._rays_of(rays)
-        return self._core.occlusions(flat, *_interval(tnear, tfar)).reshape(shape).view(Array)
+        return self._core.occlusions(*flat, *_interval(tnear, tfar)).reshape(shape).view(Array)
 
     def count_intersections(
         self, rays: ArrayLike, nthreads: int = 0, *, tnear: float = 0.0, tfar: float = np.inf
     ) -> Array:
         """Count the triangles that each ray meets, an edge or vertex between them once; (...) int32."""
         flat, shape = self._rays_of(rays)
-        return self._core.counts(flat, *_interval(tnear, tfar)).reshape(shape).view(Array)
+        return self._core.counts(*flat, *_interval(tnear, tfar)).reshape(shape).view(Array)
 
     def list_intersections(
         self, rays: ArrayLike, nthreads: int = 0, *, tnear: float = 0.0, tfar: float = np.inf, normals: bool = False
@@ -313,11 +325,11 @@ class Scene:
             ``primitive_uvs`` (m, 2); ``primitive_normals`` (m, 3) where asked for.
         """
         flat, _ = self._rays_of(rays)
-        splits, found = self._core.list(flat, *_interval(tnear, tfar), bool(normals))
+        splits, found = self._core.list(*flat, *_interval(tnear, tfar), bool(normals))
         if splits[-1] > INVALID_ID:
             raise _core.Error(f"list_intersections: {splits[-1]} hits; ray_splits holds numbers below 2**32")
         found["ray_splits"] = splits.astype(np.uint32)
-        found["ray_ids"] = np.repeat(np.arange(len(flat), dtype=np.uint32), np.diff(splits.astype(np.int64)))
+        found["ray_ids"] = np.repeat(np.arange(len(flat[0]), dtype=np.uint32), np.diff(splits.astype(np.int64)))
         return {name: array.view(Array) for name, array in found.items()}
 
     # On the device
@@ -430,8 +442,8 @@ class Scene:
     INVALID_ID = INVALID_ID
 
     def _rays_of(self, rays):
-        flat, shape = rows_of(rays, "rays", None, 6)
-        return self._frame.rays(flat), shape
+        flat, shape = rays_of(rays)
+        return (flat, self.origin.tolist()), shape
 
     def _points_of(self, points):
         flat, shape = rows_of(points, "query_points", np.float64, 3)
@@ -448,6 +460,18 @@ class Scene:
 
     def _is_inside(self, points):
         return np.nan_to_num(np.rint(self._windings(points))) != 0
+
+    def _tell_if_far(self, geometry, placed):
+        if self._told_of_far:
+            return
+        rounding = rounding_of(placed[:, 3])
+        if rounding > self._core.extent(geometry) * (HARMLESS if len(self) == 1 else 1000 * HARMLESS):
+            self._told_of_far = True
+            warnings.warn(
+                f"geometry {geometry} stands so far from the scene's origin {self.origin.tolist()} that float32 moves "
+                f"it by up to {rounding:.2g}; give Scene an origin near it",
+                stacklevel=3,
+            )
 
     def _tell(self):
         for message in self._core.take_log():
