@@ -27,7 +27,8 @@ class RayMeshIntersector:
     Notes
     -----
     Vertices and rays are moved to the middle of the mesh in float64 before they become float32. A ray that passes
-    exactly between triangles meets one of them, never none and never two. Rows are by ray, then by distance.
+    exactly between triangles meets one of them, never none and never two; where "hw" answers, first hits and
+    `intersects_any` are the driver's, which promises nothing there. Rows are by ray, then by distance.
     """
 
     def __init__(
