@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "bench/backend.h"
-#include "bench/stopwatch.h"
+#include "engine/core/stopwatch.h"
 #include <twinray/abstract_accel.h>
 
 namespace twinray::bench {

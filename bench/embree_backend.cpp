@@ -3,7 +3,6 @@
 #include "bench/embree_backend.h"
 
 #include <embree3/rtcore.h>
-#include <xmmintrin.h>
 
 #include <algorithm>
 #include <array>
@@ -12,11 +11,12 @@
 #include <span>
 #include <vector>
 
-#include "bench/stopwatch.h"
 #include "bench/tiles.h"
 #include "engine/core/cpu_threads.h"
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
+#include "engine/core/stopwatch.h"
+#include "validation/cpu_reference/flush_denormals.h"
 
 namespace twinray::bench {
 namespace {
@@ -287,18 +287,6 @@ void trace_streams(const EmbreeTrace& trace, bool is_coherent) {
     in_parts(stream, trace, [&](const EmbreeTrace& part) { trace_stream(part, context); });
 }
 
-// Embree asks its callers to flush denormals: MXCSR's bits FTZ and DAZ, put back at the end.
-class FlushDenormals {
-  public:
-    FlushDenormals() { _mm_setcsr(saved_ | 0x8040); }
-    ~FlushDenormals() { _mm_setcsr(saved_); }
-    FlushDenormals(const FlushDenormals&) = delete;
-    FlushDenormals& operator=(const FlushDenormals&) = delete;
-
-  private:
-    unsigned saved_ = _mm_getcsr();
-};
-
 class EmbreeBackend : public Backend {
   public:
     EmbreeBackend(Labels labels, const EmbreeOptions& options, bool in_streams)
@@ -311,7 +299,7 @@ class EmbreeBackend : public Backend {
         hits_.resize(rays.size());
         const Stopwatch watch;
         const auto trace_tiles = [&](std::size_t begin, std::size_t end) {
-            const FlushDenormals flush;
+            const FlushDenormals flush;  // as Embree asks its callers to
             const std::size_t first = begin * rays_a_tile, count = std::min(end * rays_a_tile, rays.size()) - first;
             const EmbreeTrace part{scene_.top(), batch.query(), rays.subspan(first, count),
                                    std::span(hits_).subspan(first, count)};

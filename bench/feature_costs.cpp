@@ -16,6 +16,7 @@
 #include "engine/accel/feature_additions.h"
 #include "engine/accel/trace_program.h"
 #include "engine/core/error.h"
+#include "engine/core/fnv1a.h"
 #include "feature_costs_program.trace_program.h"
 
 namespace twinray::bench {

@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <span>
-#include <string>
 
 #include "engine/accel/trace_desc.h"
 #include "engine/core/ray.h"
@@ -14,8 +13,5 @@ namespace twinray::bench {
 // FNV-1a of 64 bits (Fowler, Noll and Vo) over the hits in their order. Of closest hits hit, primitive_index,
 // instance_index and the bits of t, u and v count; of any hits `hit` alone, as which one is found is free.
 std::uint64_t hash_of(std::span<const Hit> hits, Query query);
-
-// 16 hexadecimal digits.
-std::string hexadecimal(std::uint64_t hash);
 
 }  // namespace twinray::bench

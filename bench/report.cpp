@@ -6,6 +6,7 @@
 #include "bench/hits_hash.h"
 #include "bench/table.h"
 #include "engine/core/error.h"
+#include "engine/core/fnv1a.h"
 
 namespace twinray::bench {
 namespace {

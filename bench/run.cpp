@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "bench/run.h"
 
-#include "validation/records/progress.h"
+#include "samples/support/progress.h"
 
 namespace twinray::bench {
 
 Measured measure(Context& context, LineUp& line_up, const BenchScene& scene, const RunOptions& options) {
     const std::size_t build_rounds = options.times_builds ? options.rounds : 0;
-    Progress progress("bench " + scene.name,
-                      line_up.size() * (build_rounds + 1 + options.kinds.size() * (options.rounds + 1)), options.quiet);
+    samples::Progress progress("bench " + scene.name,
+                               line_up.size() * (build_rounds + 1 + options.kinds.size() * (options.rounds + 1)),
+                               options.quiet);
     const Step step = [&] { progress.advance(); };
 
     auto rays = make_rays(context, scene, options.width, options.seed);

@@ -8,24 +8,20 @@
 #include <vector>
 
 #include "cli/command/command.h"
+#include "report/frame/cases.h"
 
 namespace twinray::cli {
 
 Option only_option(std::vector<std::string>& patterns);
 Option list_option(bool& lists);
 
-struct NamedCase {
-    std::string id, title;
-};
-std::vector<NamedCase> cases_of_conformance();
+std::vector<frame::Case> cases_of_conformance();
 // All cases of the report: the catalogue, one for each scene of the user's, and those of conformance.
-std::vector<NamedCase> cases_of_report(std::span<const std::filesystem::path> scenes = {});
+std::vector<frame::Case> cases_of_report(std::span<const std::filesystem::path> scenes = {});
 
-// Whether a pattern fits the id; without patterns all are chosen.
-bool is_chosen(std::span<const std::string> patterns, const std::string& id);
 // UsageError, if a pattern fits none of them, which `where` has all of.
-void check_choice(std::span<const std::string> patterns, std::span<const NamedCase> cases, const std::string& where);
+void check_choice(std::span<const std::string> patterns, std::span<const frame::Case> cases, const std::string& where);
 // Prints those that are chosen, a line each: "W01  closed icosphere, ...".
-void list_cases(std::span<const std::string> patterns, std::span<const NamedCase> cases);
+void list_cases(std::span<const std::string> patterns, std::span<const frame::Case> cases);
 
 }  // namespace twinray::cli

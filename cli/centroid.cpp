@@ -9,7 +9,7 @@
 #include "cli/coordinates.h"
 #include "cli/ray_grid_options.h"
 #include "engine/core/error.h"
-#include "validation/records/progress.h"
+#include "samples/support/progress.h"
 
 namespace twinray::cli {
 namespace {
@@ -73,7 +73,7 @@ void run(const CentroidOptions& options) {
     const RayGridDesc grid = options.grid.desc(options.analysis.common);
     Centroid result;
     const double seconds = seconds_of([&] {
-        Progress progress("centroid", std::uint64_t{grid.side} * grid.side, options.analysis.common.quiet);
+        samples::Progress progress("centroid", std::uint64_t{grid.side} * grid.side, options.analysis.common.quiet);
         result = centroid(*analysed.accel, analysed.scene,
                           {.grid = grid,
                            .keeps_points = !options.analysis.output.empty() || !pictures.files.empty(),

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -13,6 +12,7 @@
 #include "cli/commands.h"
 #include "cli/picture_options.h"
 #include "engine/core/error.h"
+#include "engine/core/stopwatch.h"
 
 namespace twinray::cli {
 namespace {
@@ -94,9 +94,9 @@ void run_broad(const CollideOptions& options) {
     const std::unique_ptr<AbstractAccel> accel = make_accel(*context, choice, scene);
     BroadPhase broad_phase(*context);
     broad_phase.set_max_pairs(options.max_pairs);
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch start;
     const std::vector<InstancePair> pairs = broad_phase.instance_pairs(*accel);
-    const double seconds = seconds_since(start);
+    const double seconds = start.seconds();
     write_table(options.output, "instance_a,instance_b", pairs,
                 [](std::ostream& out, const InstancePair& pair) { out << pair.a << ',' << pair.b << '\n'; });
     if (!options.pictures.files.empty())

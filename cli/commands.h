@@ -12,6 +12,10 @@ std::vector<Command> all_commands();
 #ifdef TWINRAY_HAS_BENCH
 Command bench_command();
 #endif
+#ifdef TWINRAY_HAS_REPORT
+Command qualify_command();
+Command report_command();
+#endif
 Command centroid_command();
 Command collide_command();
 Command completion_command();
@@ -21,8 +25,6 @@ Command help_command(const std::vector<std::string>& names);
 Command illumination_command();
 Command kernels_command();
 Command leaks_command();
-Command qualify_command();
-Command report_command();
 Command trace_command();
 Command verify_command();
 Command view_command();

@@ -11,7 +11,6 @@
 #include <twinray/scene.h>
 
 #include "cli/command/values.h"
-#include "report/suite/suite.h"
 #include "cli/coordinates.h"
 #include "engine/core/error.h"
 #include "engine/scene/local_origin.h"
@@ -136,10 +135,6 @@ void append_json(const std::filesystem::path& file, const nlohmann::json& record
     std::ofstream out(file, std::ios::app);
     out << record.dump() << '\n';
     if (!out.flush()) fail("JSON file '", file.string(), "' cannot be written");
-}
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 nlohmann::json base_record(const char* schema, const Context& context, const std::filesystem::path& file,

@@ -2,7 +2,6 @@
 // What the commands share: options, making an accelerator, raw ray files, JSON lines.
 #pragma once
 
-#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
@@ -66,8 +65,6 @@ Scene load_scene(const std::filesystem::path& file, const CommonOptions& options
 void heed_warnings(const Scene& scene, const std::string& name, const CommonOptions& options);
 
 void check_writable(const std::filesystem::path& file);  // its folder exists: before the work, not after it
-
-double seconds_since(std::chrono::steady_clock::time_point start);
 
 // Appends one line; does nothing for an empty path.
 void append_json(const std::filesystem::path& file, const nlohmann::json& record);

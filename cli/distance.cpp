@@ -3,7 +3,6 @@
 #include <twinray/queries.h>
 
 #include <algorithm>
-#include <chrono>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -16,6 +15,7 @@
 #include "cli/csv_files.h"
 #include "engine/analysis/npz.h"
 #include "engine/core/error.h"
+#include "engine/core/stopwatch.h"
 #include "engine/scene/bytes.h"
 #include "twinray/glsl/cpp.h"
 #include "twinray/glsl/vector_math.h"
@@ -164,10 +164,10 @@ struct Search {
           context(make_context(options.common)),
           points(options.points.make(scene, options.common.seed)),
           query(*context) {
-        const auto start = std::chrono::steady_clock::now();
+        const Stopwatch start;
         query.set(scene);
         context->wait_for_gpu();
-        build_seconds = seconds_since(start);
+        build_seconds = start.seconds();
     }
     nlohmann::json record(const DistanceOptions& options, double seconds) const {
         nlohmann::json record = base_record("twinray-distance/1", *context, options.scene, scene);
@@ -185,9 +185,9 @@ struct Search {
 };
 
 void run_within(const DistanceOptions& options, Search& search) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch start;
     const std::vector<NearTriangle> near = search.query.within(search.points, *options.within);
-    const double seconds = seconds_since(start);
+    const double seconds = start.seconds();
     if (!options.output.empty()) write_csv(options.output, near);
     if (!options.common.quiet) {
         search.print(seconds);
@@ -199,7 +199,7 @@ void run_within(const DistanceOptions& options, Search& search) {
 }
 
 void run_closest(const DistanceOptions& options, Search& search) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch start;
     std::vector<ClosestPoint> found = search.query.closest(search.points, options.max_distance);
     std::size_t inside = 0;
     if (options.is_signed) {
@@ -210,7 +210,7 @@ void run_closest(const DistanceOptions& options, Search& search) {
             found[i].distance = -found[i].distance;
         }
     }
-    const double seconds = seconds_since(start);
+    const double seconds = start.seconds();
     if (is_npz(options.output))
         write_npz(options, search.points, found, search.scene.origin);
     else if (!options.output.empty())

@@ -13,7 +13,7 @@
 #include "cli/face_groups.h"
 #include "cli/ray_grid_options.h"
 #include "engine/core/error.h"
-#include "validation/records/progress.h"
+#include "samples/support/progress.h"
 
 namespace twinray::cli {
 namespace {
@@ -105,7 +105,7 @@ void run(const IlluminationOptions& options) {
     const RayGridDesc grid = options.grid.desc(options.analysis.common);
     Illumination result;
     const double seconds = seconds_of([&] {
-        Progress progress("illumination", std::uint64_t{grid.side} * grid.side, options.analysis.common.quiet);
+        samples::Progress progress("illumination", std::uint64_t{grid.side} * grid.side, options.analysis.common.quiet);
         result = illuminate(
             *analysed.accel, analysed.scene, faces,
             {.grid = grid, .sides = options.sides, .by = options.groups.by, .progress = [&](std::uint64_t rays) {
@@ -188,7 +188,8 @@ void run_sky(const AnalysisOptions& analysis, const SkyOptions& options, Sides s
     const std::string what = options.sky ? "sky" : "hours";
     SkyLight light;
     const double seconds = seconds_of([&] {
-        Progress progress(what, faces.count() * samples * std::max<std::size_t>(sun.size(), 1), analysis.common.quiet);
+        samples::Progress progress(what, faces.count() * samples * std::max<std::size_t>(sun.size(), 1),
+                                   analysis.common.quiet);
         const SkyRaysDesc desc{
             .samples = samples, .sides = sides, .seed = analysis.common.seed, .progress = [&](std::uint64_t rays) {
                 progress.advance(rays);

@@ -13,7 +13,7 @@
 #include "validation/leaks/crossings.h"
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
-#include "validation/records/progress.h"
+#include "samples/support/progress.h"
 #include "engine/core/statistics.h"
 #include "validation/leaks/inside_rays.h"
 #include <twinray/abstract_accel.h>
@@ -50,7 +50,7 @@ void print_fault(const LeakFault& fault) {
 
 void trace_all(const LeaksOptions& options, const LeakTest& test, const nlohmann::json& identity, LeakState& state) {
     std::uint64_t printed = state.counts.faults();
-    Progress progress("leaks", options.rays, options.common.quiet);
+    samples::Progress progress("leaks", options.rays, options.common.quiet);
     progress.advance(std::min(state.counts.rays, options.rays));
     double saved = state.seconds;
     const auto on_fault = [&](const LeakFault& fault) {

@@ -67,8 +67,11 @@ int run(const std::vector<std::string>& words) {
 }  // namespace
 
 std::vector<Command> all_commands() {
-    std::vector<Command> commands = {view_command(),  trace_command(),  devices_command(), verify_command(),
-                                     leaks_command(), report_command(), qualify_command()};
+    std::vector<Command> commands = {view_command(), trace_command(), devices_command(), verify_command(),
+                                     leaks_command()};
+#ifdef TWINRAY_HAS_REPORT
+    for (const auto& make : {report_command, qualify_command}) commands.push_back(make());
+#endif
 #ifdef TWINRAY_HAS_BENCH
     commands.push_back(bench_command());
 #endif

@@ -16,7 +16,7 @@
 #include "validation/reference/float_probe.h"
 #include "report/page/ci_formats.h"
 #include "report/page/summary.h"
-#include "report/suite/devices.h"
+#include "report/suite/suite.h"
 
 namespace twinray::cli {
 namespace {
@@ -33,8 +33,8 @@ struct QualifyOptions {
 // On the device of this process.
 std::vector<Record> records_here(const QualifyOptions& options) {
     std::filesystem::create_directories(options.folder);
-    suite::Devices devices(watched_context_desc(options.common, most_suite_seconds));
-    Context& context = devices.context(suite::Backend::software);
+    frame::Devices devices(watched_context_desc(options.common, most_suite_seconds));
+    Context& context = devices.context(frame::Backend::software);
     Recorder recorder({utc_now(), twinray_version, probed_device(context)}, options.folder / "report.jsonl");
     std::cout << "qualify " << context.properties().name << ", " << context.properties().driver << '\n';
     suite::SuiteState state;

@@ -3,13 +3,13 @@
 
 #include <array>
 #include <charconv>
-#include <chrono>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "cli/command/values.h"
 #include "cli/coordinates.h"
 #include "engine/core/error.h"
+#include "engine/core/stopwatch.h"
 
 namespace twinray::cli {
 namespace {
@@ -72,9 +72,9 @@ std::string Analysed::head(const char* command, const AnalysisOptions& options) 
 }
 
 double seconds_of(const std::function<void()>& work) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch start;
     work();
-    return seconds_since(start);
+    return start.seconds();
 }
 
 std::string speed_text(std::uint64_t rays, double seconds) {

@@ -18,7 +18,7 @@
 #include "report/page/summary.h"
 #include "report/page/verdict.h"
 #include "report/reproducer/write.h"
-#include "report/suite/devices.h"
+#include "report/suite/suite.h"
 #include "engine/core/error.h"
 #include "validation/reference/float_probe.h"
 #include "twinray_version.h"
@@ -33,7 +33,7 @@ struct ReportOptions {
     std::optional<double> budget;  // seconds
     bool resume = false, lists = false;
     std::vector<std::string> only;
-    std::vector<suite::Backend> accels;
+    std::vector<frame::Backend> accels;
     std::vector<Level> levels;
     std::vector<std::filesystem::path> scenes;
     std::filesystem::path baseline;
@@ -54,22 +54,13 @@ suite::Settings settings_of(const ReportOptions& options) {
     return settings;
 }
 
-// Cases about the driver's own structures, which run by themselves.
-std::vector<suite::SuiteCase> conformance_cases() {
-    std::vector<suite::SuiteCase> cases;
-    for (const conformance::Case& row : conformance::catalogue())
-        cases.push_back({row.id, row.what, row.kind, row.demanded + " (" + std::string(name_of(row.demand)) + ')', {}});
-    return cases;
-}
-
-// Those asked for, if the driver takes part.
+// Cases about the driver's own structures, those asked for, if the driver takes part.
 void run_conformance(const ReportOptions& options, Recorder& recorder) {
     const bool is_asked = std::any_of(options.accels.begin(), options.accels.end(),
-                                      [](suite::Backend backend) { return !is_ours(backend); });
-    const std::vector<suite::SuiteCase> cases = conformance_cases();
+                                      [](frame::Backend backend) { return !is_ours(backend); });
     if (!(options.accels.empty() || is_asked)) return;
-    if (std::none_of(cases.begin(), cases.end(), [&](const auto& row) { return is_chosen(options.only, row.id); }))
-        return;
+    const auto is_chosen = [&](const auto& row) { return frame::is_chosen(options.only, row.id); };
+    if (std::ranges::none_of(cases_of_conformance(), is_chosen)) return;
     run_conformance(options.common, options.only, options.suite == "full" && !options.budget, recorder);
 }
 
@@ -78,7 +69,7 @@ std::string key_of(const ReportOptions& options, const RecordedDevice& device) {
     std::string key = text(twinray_version, ", ", device.name, ", ", device.driver, ", suite ", options.suite,
                            ", seed ", options.common.seed);
     for (const std::string& pattern : options.only) key += ", " + pattern;
-    for (const suite::Backend backend : options.accels) key += ", " + std::string(name_of(backend));
+    for (const frame::Backend backend : options.accels) key += ", " + std::string(name_of(backend));
     for (const Level level : options.levels) key += ", " + std::string(name_of(level));
     for (const std::filesystem::path& scene : options.scenes) key += ", " + scene.string();
     return key;
@@ -113,7 +104,7 @@ std::vector<std::pair<report::Figure, std::string>> drawn_figures(const ReportOp
 
 // Of the first fault of each class of the driver's; returns the classes.
 std::vector<std::string> write_reproducers(const ReportOptions& options, std::span<const Record> records,
-                                           suite::Devices& devices) {
+                                           frame::Devices& devices) {
     const std::filesystem::path folder = options.folder / "reproducers";
     std::filesystem::remove_all(folder);  // those of an earlier run
     std::vector<std::filesystem::path> replays;
@@ -128,7 +119,7 @@ std::vector<std::string> write_reproducers(const ReportOptions& options, std::sp
 
 // Exit status: 1 where there is a fault of ours.
 int run(const ReportOptions& options) {
-    const std::vector<NamedCase> all = cases_of_report(options.scenes);
+    const std::vector<frame::Case> all = cases_of_report(options.scenes);
     check_choice(options.only, all, "`twinray report --list`");
     if (options.lists) {
         list_cases(options.only, all);
@@ -140,8 +131,8 @@ int run(const ReportOptions& options) {
     // Read before anything is written: it may be the report that this one replaces.
     const JsonLines baseline = options.baseline.empty() ? JsonLines() : read_json_lines(options.baseline);
     std::filesystem::create_directories(options.folder);
-    suite::Devices devices(watched_context_desc(options.common, most_suite_seconds), options.trees);
-    Context& context = devices.context(suite::Backend::software);
+    frame::Devices devices(watched_context_desc(options.common, most_suite_seconds), options.trees);
+    Context& context = devices.context(frame::Backend::software);
     const RecordedDevice device = probed_device(context);
     suite::SuiteState state = state_of(options, device);
     Recorder recorder({utc_now(), twinray_version, device}, options.folder / "report.jsonl",
@@ -150,7 +141,6 @@ int run(const ReportOptions& options) {
     const std::string lost_in = suite::run(cases, settings_of(options), devices, recorder, state, options.common.quiet);
     run_conformance(options, recorder);
     recorder.rewrite();
-    for (suite::SuiteCase& row : conformance_cases()) cases.push_back(std::move(row));
 
     write_csv(options.folder / "report.csv", recorder.records());
     for (const Record& record : recorder.records())
@@ -159,7 +149,7 @@ int run(const ReportOptions& options) {
     std::vector<std::string> reproducers;
     if (lost_in.empty()) reproducers = write_reproducers(options, recorder.records(), devices);
     report::write_page(options.folder / "report.html",
-                       {options.suite, state.seconds, cases, recorder.records(), options.baseline.string(),
+                       {options.suite, state.seconds, all, recorder.records(), options.baseline.string(),
                         comparison.changes, drawn_figures(options, recorder.records()), reproducers});
     report::print_summary(std::cout, recorder.records());
     if (!options.baseline.empty()) {
@@ -227,7 +217,7 @@ Command report_command() {
           .value = file_list(options->scenes),
           .help = "scenes of yours, on which each level is measured as case L11, ..."},
          {.name = "--accels",
-          .value = choices(options->accels, names_of(suite::all_backends)),
+          .value = choices(options->accels, names_of(frame::all_backends)),
           .help = "which accelerators; all if not given",
           .former_name = "--accel"},
          {.name = "--levels",

@@ -2,7 +2,6 @@
 // `twinray trace`: a file of rays in, a file of hits out.
 #include <algorithm>
 #include <charconv>
-#include <chrono>
 #include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -16,9 +15,10 @@
 #include "engine/scene/ray_file.h"
 #include <twinray/queries.h>
 #include "engine/core/error.h"
+#include "engine/core/stopwatch.h"
 #include "engine/core/files.h"
 #include "viewer/picture/ray_picture.h"
-#include "validation/records/progress.h"
+#include "samples/support/progress.h"
 
 namespace twinray::cli {
 namespace {
@@ -86,7 +86,7 @@ std::vector<Hit> trace_in_batches(AbstractAccel& accel, std::span<const Ray> ray
     constexpr std::size_t batch_size = 1 << 20;
     std::vector<Hit> hits;
     hits.reserve(rays.size());
-    Progress progress("trace", rays.size(), options.common.quiet);
+    samples::Progress progress("trace", rays.size(), options.common.quiet);
     for (std::size_t first = 0; first < rays.size(); first += batch_size) {
         const auto batch = rays.subspan(first, std::min(batch_size, rays.size() - first));
         const TraceDesc desc = desc_of(options);
@@ -129,9 +129,9 @@ void run(const TraceOptions& options) {
         choose_accel(context->properties(), options.accel, {.level = options.level, .kernel_queries = is_all});
     const std::unique_ptr<AbstractAccel> accel = make_accel(*context, choice, scene, options.level);
     set_masks(*accel, scene, masks);
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch start;
     const std::vector<Hit> hits = is_all ? trace_all(*accel, rays, options) : trace_in_batches(*accel, rays, options);
-    const double seconds = seconds_since(start);
+    const double seconds = start.seconds();
     write_hits(options.hits, hits);
     if (!options.pictures.files.empty())
         write_pictures(options.pictures, *accel, scene, picture_of(options, scene, rays, hits));

@@ -5,11 +5,9 @@
 
 #include <twinray/scene.h>
 
-#include "cli/case_choice.h"
 #include "cli/command/values.h"
 #include "cli/commands.h"
 #include "cli/common.h"
-#include "cli/verify_conformance.h"
 #include "engine/scene/ray_file.h"
 #include "engine/core/error.h"
 #include "twinray_version.h"
@@ -18,10 +16,13 @@
 #include "report/explain/explain.h"
 #include "report/reproducer/write.h"
 #include "validation/verify/comparison.h"
-#include "validation/records/progress.h"
+#include "samples/support/progress.h"
 #include "validation/reference/aimed_rays.h"
 #include <twinray/tlas.h>
 #include "report/replay/replay.h"
+#ifdef TWINRAY_HAS_REPORT
+#include "cli/verify_conformance.h"
+#endif
 
 namespace twinray::cli {
 namespace {
@@ -32,9 +33,9 @@ struct VerifyOptions {
     std::filesystem::path replay;                   // in place of a scene
     std::filesystem::path replays;                  // folder; "" = only faults of ours are written
     std::filesystem::path reproducers, reproducer;  // folders of faults of the driver
-    std::string suite;                              // in place of a scene
-    std::vector<std::string> only;                  // of its cases
-    bool is_full = false, lists = false;
+#ifdef TWINRAY_HAS_REPORT
+    SuiteOptions suite;  // in place of a scene
+#endif
     std::size_t random = 100'000;
     std::size_t aimed = 10'000;
     Level level = Level::watertight;
@@ -84,7 +85,7 @@ void keep_first(std::vector<Fault>& firsts, const std::vector<Fault>& faults) {
 void write_reproducers(const VerifyOptions& options, const Scene& scene, const replay::Replay& common,
                        const std::vector<Fault>& faults) {
     if (faults.empty()) std::cout << "  no fault of the driver, so no reproducer\n";
-    suite::Devices devices(context_desc(options.common));
+    frame::Devices devices(context_desc(options.common));
     for (const Fault& fault : faults) {
         replay::Replay replay = common;
         replay.kind = name_of(fault.kind);
@@ -119,8 +120,9 @@ std::uint64_t run(const VerifyOptions& options) {
     std::uint64_t faults = 0;
     std::vector<Fault> of_driver;
     for (const RaySet& set : ray_sets(options, reference, scene)) {
-        Progress progress("verify " + set.name, set.rays.size(), options.common.quiet);
-        const Comparison comparison = verifier.compare(set.rays, arbiter, progress);
+        samples::Progress progress("verify " + set.name, set.rays.size(), options.common.quiet);
+        const Comparison comparison =
+            verifier.compare(set.rays, arbiter, [&](std::size_t rays) { progress.advance(rays); });
         print(std::cout, set, comparison, hardware != nullptr);
         for (const nlohmann::json& record : records_of(base, set, comparison, hardware))
             append_json(options.common.json, record);
@@ -141,7 +143,7 @@ std::uint64_t run(const VerifyOptions& options) {
 }
 
 bool run_replay(const VerifyOptions& options) {
-    suite::Devices devices(context_desc(options.common));
+    frame::Devices devices(context_desc(options.common));
     const bool is_fault = replay::show(options.replay, devices, std::cout);
     std::cout << (is_fault ? "a fault of ours" : "no fault of ours") << '\n';
     if (!options.reproducer.empty())
@@ -184,48 +186,35 @@ Command verify_command() {
           .value = folder(options->reproducer),
           .help = "such a folder for the ray of --replay",
           .needs = {"--replay"}}}};
-    Option only = only_option(options->only);
-    only.needs = {"--suite"};
-    Option list = list_option(options->lists);
-    list.needs = {"--suite"};
-    const Section suite = {
-        "Suite",
-        {{.name = "--suite",
-          .value = choice(options->suite, {"conformance"}),
-          .help = "instead of a scene: cases about the driver's own structures, each with a control that must fail; "
-                  "with --strict a driver that fails what Vulkan demands is a fault, too"},
-         only,
-         list,
-         {.name = "--full",
-          .value = flag(options->is_full),
-          .help = "with 100 million rays, not 400,000",
-          .needs = {"--suite"}}}};
-    return {.name = "verify",
-            .group = "Checking",
-            .summary = "compare both accelerators with exact answers, ray by ray",
-            .description =
-                "Traces random rays, and rays aimed at vertices and edges, with the hardware and the "
-                "software accelerator, and checks each hit by a reference in float64 and, where that cannot "
-                "tell, in rational arithmetic. Says how many hits agree, are ties, leaks, false or "
-                "imprecise, and below which rate faults are (95 %).",
-            .positionals = {scene},
-            .sections = {rays, replays, suite, common_options(options->common)},
-            .examples = {{"twinray verify scene.gltf --random 1000000", "a million random rays on a scene"},
-                         {"twinray verify --suite conformance", "what the driver's own structures do"}},
-            .fault = "the software accelerator has a fault",
-            .run = [options] {
-                if (!options->scene.empty() + !options->replay.empty() + !options->suite.empty() != 1)
-                    throw UsageError("one of SCENE, --replay FILE and --suite conformance is required");
-                if (!options->suite.empty()) {
-                    check_choice(options->only, cases_of_conformance(), "`twinray verify --suite conformance --list`");
-                    if (!options->lists) return verify_conformance(options->common, options->only, options->is_full);
-                    list_cases(options->only, cases_of_conformance());
-                    return 0;
-                }
-                if (options->random + options->aimed == 0)
-                    throw UsageError("--random 0 and --aimed 0 leave nothing to compare");
-                return (options->replay.empty() ? run(*options) > 0 : run_replay(*options)) ? 1 : 0;
-            }};
+    Command command{.name = "verify",
+                    .group = "Checking",
+                    .summary = "compare both accelerators with exact answers, ray by ray",
+                    .description =
+                        "Traces random rays, and rays aimed at vertices and edges, with the hardware and the "
+                        "software accelerator, and checks each hit by a reference in float64 and, where that cannot "
+                        "tell, in rational arithmetic. Says how many hits agree, are ties, leaks, false or "
+                        "imprecise, and below which rate faults are (95 %).",
+                    .positionals = {scene},
+                    .sections = {rays, replays, common_options(options->common)},
+                    .examples = {{"twinray verify scene.gltf --random 1000000", "a million random rays on a scene"}},
+                    .fault = "the software accelerator has a fault",
+                    .run = [options] {
+                        if (options->scene.empty() == options->replay.empty())
+                            throw UsageError("one of SCENE and --replay FILE is required");
+                        if (options->random + options->aimed == 0)
+                            throw UsageError("--random 0 and --aimed 0 leave nothing to compare");
+                        return (options->replay.empty() ? run(*options) > 0 : run_replay(*options)) ? 1 : 0;
+                    }};
+#ifdef TWINRAY_HAS_REPORT
+    command.sections.insert(command.sections.end() - 1, suite_section(options->suite));
+    command.examples.push_back({"twinray verify --suite conformance", "what the driver's own structures do"});
+    command.run = [options, run = command.run] {
+        if (!options->scene.empty() + !options->replay.empty() + !options->suite.name.empty() != 1)
+            throw UsageError("one of SCENE, --replay FILE and --suite conformance is required");
+        return options->suite.name.empty() ? run() : verify_suite(options->common, options->suite);
+    };
+#endif
+    return command;
 }
 
 }  // namespace twinray::cli

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/case_choice.h"
+#include "cli/command/values.h"
 #include "cli/qualified_devices.h"
 #include "engine/core/error.h"
 #include "twinray_version.h"
@@ -37,7 +38,7 @@ std::vector<std::string> arguments_of(const CommonOptions& options, std::span<co
 std::vector<conformance::Case> cases_left(const std::vector<std::string>& only, std::span<const Record> records) {
     std::vector<conformance::Case> left = conformance::catalogue();
     std::erase_if(left, [&](const conformance::Case& row) {
-        return !is_chosen(only, row.id) ||
+        return !frame::is_chosen(only, row.id) ||
                std::ranges::any_of(records, [&](const Record& record) { return record.case_id == row.id; });
     });
     return left;
@@ -47,11 +48,7 @@ std::vector<conformance::Case> cases_left(const std::vector<std::string>& only, 
 int run_conformance_here(const CommonOptions& options, const std::vector<std::string>& only, bool is_full) {
     Context context(watched_context_desc(options, most_conformance_seconds));
     Recorder recorder({utc_now(), twinray_version, probed_device(context)});
-    conformance::run(context,
-                     {.is_full = is_full,
-                      .seed = options.seed,
-                      .is_wanted = [&](const conformance::Case& row) { return is_chosen(only, row.id); }},
-                     recorder, options.quiet,
+    conformance::run(context, {.is_full = is_full, .seed = options.seed, .only = only}, recorder, options.quiet,
                      [&](const Record& record) { append_json(options.json, nlohmann::json::parse(to_json(record))); });
     return 0;
 }
@@ -85,12 +82,36 @@ void run_conformance(const CommonOptions& options, const std::vector<std::string
     }
 }
 
-int verify_conformance(const CommonOptions& options, const std::vector<std::string>& only, bool is_full) {
-    if (std::getenv(here_variable)) return run_conformance_here(options, only, is_full);
+Section suite_section(SuiteOptions& options) {
+    Option only = only_option(options.only);
+    only.needs = {"--suite"};
+    Option list = list_option(options.lists);
+    list.needs = {"--suite"};
+    return {
+        "Suite",
+        {{.name = "--suite",
+          .value = choice(options.name, {"conformance"}),
+          .help = "instead of a scene: cases about the driver's own structures, each with a control that must fail; "
+                  "with --strict a driver that fails what Vulkan demands is a fault, too"},
+         only,
+         list,
+         {.name = "--full",
+          .value = flag(options.is_full),
+          .help = "with 100 million rays, not 400,000",
+          .needs = {"--suite"}}}};
+}
+
+int verify_suite(const CommonOptions& options, const SuiteOptions& suite) {
+    check_choice(suite.only, cases_of_conformance(), "`twinray verify --suite conformance --list`");
+    if (suite.lists) {
+        list_cases(suite.only, cases_of_conformance());
+        return 0;
+    }
+    if (std::getenv(here_variable)) return run_conformance_here(options, suite.only, suite.is_full);
     Recorder recorder({utc_now(), twinray_version, probed_device(*make_context(options))});
-    std::cout << "conformance, " << (is_full ? "full" : "quick") << ", on " << recorder.run().device.name << ", "
+    std::cout << "conformance, " << (suite.is_full ? "full" : "quick") << ", on " << recorder.run().device.name << ", "
               << recorder.run().device.driver << std::endl;
-    run_conformance(options, only, is_full, recorder,
+    run_conformance(options, suite.only, suite.is_full, recorder,
                     [&](const Record& record) { append_json(options.json, nlohmann::json::parse(to_json(record))); });
     conformance::print(std::cout, recorder.records());
     if (conformance::has_fault_of_ours(recorder.records())) return 1;

@@ -10,6 +10,7 @@
 #include "cli/commands.h"
 #include "cli/common.h"
 #include "engine/core/error.h"
+#include "engine/core/stopwatch.h"
 #include "twinray_version.h"
 #include "viewer/export.h"
 #include "viewer/viewer.h"
@@ -101,9 +102,9 @@ std::vector<double> play(viewer::Viewer& view, const std::vector<viewer::Event>&
         if (view.is_closed()) break;
         if (const auto* frames = std::get_if<viewer::Frames>(&event))
             for (unsigned i = 0; i < frames->count; ++i) {
-                const auto start = std::chrono::steady_clock::now();
+                const Stopwatch start;
                 view.frame(true);
-                seconds.push_back(seconds_since(start));
+                seconds.push_back(start.seconds());
             }
         else if (const auto* shot = std::get_if<viewer::Shot>(&event))
             write(finished(view, options.samples), options.folder / shot->file);
@@ -127,7 +128,7 @@ nlohmann::json record_of(const viewer::Viewer& view, const nlohmann::json& base,
 }
 
 int run_without_window(viewer::Viewer& view, const ViewOptions& options, const nlohmann::json& base) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch start;
     std::vector<double> frames;
     if (!options.play.empty()) frames = play(view, viewer::read_events(options.play), options);
     for (uint i = 0; i < options.headless; ++i) {
@@ -138,7 +139,7 @@ int run_without_window(viewer::Viewer& view, const ViewOptions& options, const n
     const Raster& raster = view.last();
     if (view.picked() && !options.common.quiet)
         std::cout << text_of(*view.picked()) << explanation_of(view.stage(), *view.picked());
-    nlohmann::json record = record_of(view, base, seconds_since(start), options.headless);
+    nlohmann::json record = record_of(view, base, start.seconds(), options.headless);
     if (!options.play.empty()) record["frame_seconds"] = frames;
     append_json(options.common.json, record);
     if (!options.exported.empty()) viewer::write_values(options.exported, view.stage().scene(), view.values());

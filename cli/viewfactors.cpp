@@ -3,7 +3,6 @@
 #include <twinray/analysis.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <iomanip>
 #include <iostream>
@@ -18,8 +17,9 @@
 #include "engine/analysis/matrix_file.h"
 #include "engine/analysis/row_run.h"
 #include "engine/core/error.h"
+#include "engine/core/stopwatch.h"
 #include "engine/scene/bytes.h"
-#include "validation/records/progress.h"
+#include "samples/support/progress.h"
 #include "viewer/picture/matrix_picture.h"
 
 namespace twinray::cli {
@@ -53,7 +53,7 @@ PairExchanges compute_pairs(const Options& options, AbstractAccel& accel, const 
                       << ", here hits tell them all\n";
         return {};
     }
-    Progress progress("pairs", faces.group_count(options.factors.grouping), options.common.quiet);
+    samples::Progress progress("pairs", faces.group_count(options.factors.grouping), options.common.quiet);
     return exchanges_of_pairs(accel, scene, faces, options.factors, options.estimator,
                               [&](std::uint64_t groups) { progress.advance(groups); });
 }
@@ -66,7 +66,7 @@ ComputedRows compute(const Options& options, ViewFactors& factors, const std::st
     ComputedRows computed = begin_rows(file ? &*file : nullptr, options.resumes);
     if (computed.resumed > 0 && !options.common.quiet)
         std::cout << "resumed after " << computed.resumed << " of " << factors.row_count() << " rows\n";
-    Progress progress("view factors", factors.row_count(), options.common.quiet);
+    samples::Progress progress("view factors", factors.row_count(), options.common.quiet);
     complete_rows(computed, factors, file ? &*file : nullptr, [&](std::uint64_t rows) { progress.advance(rows); });
     return computed;
 }
@@ -209,14 +209,14 @@ void run(const Options& options) {
 
     Summary summary;
     summary.choice = choice;
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch start;
     const PairExchanges pairs = compute_pairs(options, *accel, scene, faces);
     summary.rays_between_faces = pairs.rays;
-    summary.seconds_of_pairs = seconds_since(start);
+    summary.seconds_of_pairs = start.seconds();
     ViewFactors factors(*accel, faces, options.factors, pairs.known);
     ComputedRows computed =
         compute(options, factors, configuration_of(options.factors, options.estimator, choice.name(), scene, faces));
-    summary.seconds = seconds_since(start);
+    summary.seconds = start.seconds();
     summary.rays = computed.rays();
     std::vector<ViewFactorRow>& rows = computed.rows;
     summary.rows = rows.size();

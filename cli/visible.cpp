@@ -15,7 +15,7 @@
 #include "engine/scene/bytes.h"
 #include "engine/scene/number_lines.h"
 #include "twinray/glsl/vector_math.h"
-#include "validation/records/progress.h"
+#include "samples/support/progress.h"
 
 namespace twinray::cli {
 namespace {
@@ -105,7 +105,7 @@ void run(const VisibleOptions& options) {
     const std::uint64_t rays = sensors.points.size() * sky.size();
     std::vector<std::uint8_t> free;
     const double seconds = seconds_of([&] {
-        Progress progress("visible", rays, options.analysis.common.quiet);
+        samples::Progress progress("visible", rays, options.analysis.common.quiet);
         free = visibility(*analysed.accel, sensors.points, directions, sensors.normals,
                           {.t_near = options.t_near, .progress = [&](std::uint64_t n) { progress.advance(n); }});
     });

@@ -11,7 +11,7 @@ BASE = ["engine/core", "engine/scene", "engine/accel"]
 ENGINE = BASE + ["engine", "engine/analysis", "engine/collide", "engine/points"]
 PRODUCT = ENGINE + ["swtlas", "hwtlas"]
 VALIDATION = ["validation/" + room for room in ("reference", "leaks", "records", "verify", "cpu_reference")]
-REPORT = ["report/" + room for room in "conformance explain faults page replay reproducer suite".split()]
+REPORT = ["report/" + room for room in "conformance explain faults frame page replay reproducer suite".split()]
 CHECKS = VALIDATION + ["validation/exact"] + REPORT
 # See include alone.
 AS_HOSTS = ["samples", "samples/support", "renderer", "bindings", "shaders/path_tracer", "shaders/particles"]
@@ -27,17 +27,19 @@ SEES = {  # besides itself, include and, unless AS_HOSTS, shaders/shared
     "validation/reference": BASE + ["shaders/verify"], "validation/leaks": BASE + VALIDATION[:1],
     "validation/records": BASE + VALIDATION[:1], "validation/verify": PRODUCT + VALIDATION,
     "validation/cpu_reference": ENGINE + ["swtlas"], "validation/exact": BASE + VALIDATION[:1] + ["shaders/collide"],
-    "report/conformance": PRODUCT + VALIDATION + ["shaders/conformance"],
-    "report/suite": PRODUCT + CHECKS + ["shaders/suite", "shaders/path_tracer", "shaders/collide", "renderer"],
+    "report/frame": PRODUCT + VALIDATION,
+    "report/conformance": PRODUCT + VALIDATION + ["report/frame", "shaders/conformance", "samples/support"],
+    "report/suite": PRODUCT + CHECKS + ["shaders/suite", "shaders/path_tracer", "shaders/collide", "renderer",
+                                        "samples/support"],
     "report/replay": PRODUCT + VALIDATION, "report/explain": PRODUCT + CHECKS, "report/page": BASE + CHECKS,
     "report/reproducer": PRODUCT + CHECKS,
     "report/faults": BASE,
     "renderer": ["shaders/path_tracer", "samples/support"], "samples/support": [],
     "viewer": PRODUCT + CHECKS + ["viewer/picture", "renderer"], "viewer/picture": BASE,
-    "cli": PRODUCT + CHECKS + ["bench", "viewer", "viewer/picture", "renderer", "shaders/path_tracer"],
+    "cli": PRODUCT + CHECKS + ["bench", "viewer", "viewer/picture", "renderer", "shaders/path_tracer", "samples/support"],
     "bindings": [],
     "samples": ["shaders/path_tracer", "shaders/particles", "renderer", "samples/support"],
-    "bench": PRODUCT + VALIDATION,
+    "bench": PRODUCT + VALIDATION + ["samples/support"],
     "tests": PRODUCT + CHECKS + ["shaders/scene", "cli", "samples", "samples/support", "renderer", "bench", "viewer",
                                  "viewer/picture"],
     "shaders/path_tracer": [], "shaders/particles": [],

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The frames of a Viewer, and what analyses say of each face in them.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <sstream>
@@ -9,6 +8,7 @@
 #include <twinray/queries.h>
 
 #include "engine/core/error.h"
+#include "engine/core/stopwatch.h"
 #include "engine/core/parallel.h"
 #include "twinray/glsl/vector_math.h"
 #include "viewer/picture/font.h"
@@ -126,7 +126,7 @@ bool Viewer::is_refining() const {
 }
 
 const Raster& Viewer::frame(bool may_be_coarse) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch start;
     fly();
     is_playing_ = is_playing_ && stage_->animation_seconds() > 0;
     if (is_playing_) state_.seconds = std::fmod(state_.seconds + frame_seconds_, stage_->animation_seconds());
@@ -149,7 +149,7 @@ const Raster& Viewer::frame(bool may_be_coarse) {
     shown_ = state_;
     is_coarse_ = is_preview;
     is_stale_ = false;
-    frame_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    frame_seconds_ = start.seconds();
     const double ideal = grain * std::sqrt(frame_seconds_ / seconds_while_moving);
     if (is_coarse_ || !traces_paths()) grain_ = std::clamp(static_cast<uint>(std::ceil(ideal)), 1u, coarsest);
     return raster_;
@@ -157,10 +157,9 @@ const Raster& Viewer::frame(bool may_be_coarse) {
 
 // At the level that is asked for, or the highest that the accelerator has.
 std::vector<Hit> Viewer::hits_of(AbstractAccel& accel, std::span<const Ray> rays) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch start;
     std::vector<Hit> hits = accel.closest_hits(rays, {.level = std::min(state_.level, accel.options().level)});
-    rays_a_second_ = static_cast<double>(rays.size()) /
-                     std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    rays_a_second_ = static_cast<double>(rays.size()) / start.seconds();
     return hits;
 }
 

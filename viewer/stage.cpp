@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/stage.h"
 
-#include <chrono>
-
 #include "engine/core/error.h"
-#include "report/suite/cpu_reference.h"
+#include "engine/core/stopwatch.h"
 
 namespace twinray::viewer {
 namespace {
@@ -69,10 +67,10 @@ Stage::Stage(Context& context, const std::filesystem::path& file)
     why_no_hardware_ = lacking_for(context.properties());
     if (why_no_hardware_.empty())
         hardware_ = std::make_unique<HwTlas>(context, BuildOrder::automatic, options_for(context.properties(), false));
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch start;
     push();
     set_time(0);
-    build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    build_seconds_ = start.seconds();
 }
 
 void Stage::push() {
@@ -93,7 +91,7 @@ double Stage::animation_seconds() const {
 
 void Stage::set_time(double seconds) {
     if (animation_seconds() == 0 || time_ == seconds) return;
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch start;
     const Pose pose = pose_at(*scene_.rig, 0, seconds);
     pose_scene(scene_, pose);
     const std::vector<uint> meshes = deformed_meshes(*scene_.rig);
@@ -106,7 +104,7 @@ void Stage::set_time(double seconds) {
     move(software_, scene_, software_handles_, transforms);
     if (hardware_) move(*hardware_, scene_, hardware_handles_, transforms);
     context_.wait_for_gpu();
-    refit_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    refit_seconds_ = start.seconds();
     bounds_ = bounds_of(scene_);
     time_ = seconds;
     ++version_;
@@ -122,7 +120,7 @@ const Reference& Stage::reference() {
 }
 
 const reference::Scene& Stage::cpu_reference() {
-    if (!cpu_reference_) cpu_reference_ = suite::cpu_reference_of(scene_);
+    if (!cpu_reference_) cpu_reference_ = reference::cpu_reference_of(scene_);
     return *cpu_reference_;
 }
 

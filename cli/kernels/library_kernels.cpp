@@ -14,7 +14,6 @@
 
 #include "engine/scene/rig.h"
 #include "validation/reference/float_probe.h"
-#include "report/suite/shapes.h"
 #include "validation/reference/reference_accel.h"
 #include <twinray/tlas.h>
 #include "swtlas/tree.h"

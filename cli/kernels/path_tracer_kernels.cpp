@@ -5,7 +5,6 @@
 #include "engine/scene/rig.h"
 #include "cli/kernels/kernel_list.h"
 #include <twinray/geometry.h>
-#include "report/suite/shapes.h"
 #include "renderer/cross_check.h"
 #include "renderer/moving_scene.h"
 #include "renderer/renderer.h"

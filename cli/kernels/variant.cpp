@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "cli/kernels/kernel_list.h"
-#include "report/suite/suite.h"
+#include "report/frame/cases.h"
 #include "engine/accel/features_of.h"
 #include "renderer/shared.h"
 

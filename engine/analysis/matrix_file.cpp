@@ -16,9 +16,7 @@ void write_matrix_csv(const std::filesystem::path& file, std::span<const ViewFac
         for (const ViewFactor& factor : row.factors)
             out << row.group << ',' << factor.target << ',' << factor.value << ',' << factor.low << ',' << factor.high
                 << '\n';
-    const std::string text = out.str();
-    const std::span<const std::byte> piece = std::as_bytes(std::span(text));
-    write_file(file, std::span(&piece, 1));
+    write_file(file, out.str());
 }
 
 void write_matrix_npz(const std::filesystem::path& file, std::span<const ViewFactorRow> rows,

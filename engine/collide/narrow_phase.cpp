@@ -2,21 +2,15 @@
 #include <twinray/queries.h>
 
 #include <algorithm>
-#include <chrono>
 #include <numeric>
 
 #include "engine/collide/pair_classifier.h"
 #include "engine/collide/triangle_set.h"
 #include "engine/core/float64.h"
+#include "engine/core/stopwatch.h"
 
 namespace twinray {
-namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-}  // namespace
+namespace {}  // namespace
 
 std::size_t Contacts::count(PairClass pair_class) const {
     return static_cast<std::size_t>(std::count_if(
@@ -68,23 +62,23 @@ Contacts NarrowPhase::find(std::span<const MeshView> meshes, std::span<const Mes
     check_instances(meshes, instances, "collide");
     TriangleSet& triangles = state_->triangles;
     Contacts contacts;
-    const Clock::time_point search_start = Clock::now();
+    const Stopwatch search_start;
     const std::vector<uint> chosen = state_->taking_part(meshes, instances, options.self);
     triangles.set(meshes, instances, chosen, options.shared);
     const DevicePairs pairs = state_->candidates(options.self);
     contacts.instances = chosen.size();
     contacts.triangles = triangles.count();
     contacts.candidates = pairs.count;
-    contacts.search_seconds = seconds_since(search_start);
+    contacts.search_seconds = search_start.seconds();
 
-    const Clock::time_point classify_start = Clock::now();
+    const Stopwatch classify_start;
     const std::vector<ClassifiedPair> classified = state_->classifier.classify(
         pairs, {triangles.triangles_on_device(), triangles.names_on_device(),
                 [&](uint item) { return triangles.triangle(item); }, [&](uint item) { return triangles.name(item); }});
     state_->list(contacts, classified, options.segments);
     contacts.host_decided = state_->classifier.host_count();
     contacts.host_seconds = state_->classifier.host_seconds();
-    contacts.classify_seconds = seconds_since(classify_start);
+    contacts.classify_seconds = classify_start.seconds();
     return contacts;
 }
 

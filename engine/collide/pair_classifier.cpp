@@ -2,11 +2,11 @@
 #include "engine/collide/pair_classifier.h"
 
 #include <algorithm>
-#include <chrono>
 
 #include "collide_classify.spv.h"
 #include "engine/collide/exact_sign.h"
 #include "engine/core/error.h"
+#include "engine/core/stopwatch.h"
 
 namespace twinray {
 namespace {
@@ -74,7 +74,7 @@ std::uint64_t PairClassifier::run(const DevicePairs& pairs, std::uint64_t begin,
 }
 
 void PairClassifier::decide(std::vector<PairContact>& contacts, const Items& items) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch start;
     for (PairContact& contact : contacts) {
         if (contact.class_of_pair != PAIR_UNDECIDED) continue;
         ++host_count_;
@@ -82,7 +82,7 @@ void PairClassifier::decide(std::vector<PairContact>& contacts, const Items& ite
             static_cast<uint>(exact_class(items.host_triangle(contact.first), items.host_name(contact.first),
                                           items.host_triangle(contact.second), items.host_name(contact.second)));
     }
-    host_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    host_seconds_ += start.seconds();
 }
 
 std::vector<PairClass> PairClassifier::classify(std::span<const TrianglePair> pairs) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The command buffers of Commands: how they begin, are submitted and timed.
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include "engine/core/commands.h"
 #include "engine/core/error.h"
+#include "engine/core/stopwatch.h"
 #include "engine/core/pace.h"
 #include "engine/core/vulkan.h"
 
@@ -150,11 +150,10 @@ SyncPoint Commands::submit() {
 }
 
 double Commands::submit_and_wait() {
-    using Clock = std::chrono::steady_clock;
-    const Clock::time_point start = Clock::now();
+    const Stopwatch start;
     state_->context.wait(submit());
     if (state_->parts.front().queries) return seconds_of(state_->timings_of_parts());
-    return std::chrono::duration<double>(Clock::now() - start).count();
+    return start.seconds();
 }
 
 double Commands::submit_part() {

@@ -25,23 +25,36 @@ Bytes read_file(const std::filesystem::path& file) {
     return bytes;
 }
 
-void write_file(const std::filesystem::path& file, std::span<const std::span<const std::byte>> pieces) {
+void write_whole(const std::filesystem::path& file, const std::function<void(const std::filesystem::path&)>& write) {
     std::filesystem::path partial = file;
     partial += text(".partial-", std::hex, std::random_device{}());
-    const auto give_up = [&](const std::string& reason) {
-        std::error_code ignored;
+    std::error_code error, ignored;
+    try {
+        write(partial);
+        std::filesystem::rename(partial, file, error);
+    } catch (...) {
         std::filesystem::remove(partial, ignored);
-        fail("'", file.string(), "': cannot be written: ", reason);
-    };
-    errno = 0;
-    std::ofstream out(partial, std::ios::binary);
-    for (const std::span<const std::byte> piece : pieces)
-        out.write(reinterpret_cast<const char*>(piece.data()), static_cast<std::streamsize>(piece.size()));
-    out.close();
-    if (!out) give_up(std::generic_category().message(errno));
-    std::error_code error;
-    std::filesystem::rename(partial, file, error);
-    if (error) give_up(error.message());
+        throw;
+    }
+    if (!error) return;
+    std::filesystem::remove(partial, ignored);
+    fail("'", file.string(), "': cannot be written: ", error.message());
+}
+
+void write_file(const std::filesystem::path& file, std::span<const std::span<const std::byte>> pieces) {
+    write_whole(file, [&](const std::filesystem::path& partial) {
+        errno = 0;
+        std::ofstream out(partial, std::ios::binary);
+        for (const std::span<const std::byte> piece : pieces)
+            out.write(reinterpret_cast<const char*>(piece.data()), static_cast<std::streamsize>(piece.size()));
+        out.close();
+        if (!out) fail("'", file.string(), "': cannot be written: ", std::generic_category().message(errno));
+    });
+}
+
+void write_file(const std::filesystem::path& file, std::string_view text) {
+    const std::span<const std::byte> piece = std::as_bytes(std::span(text));
+    write_file(file, std::span(&piece, 1));
 }
 
 }  // namespace twinray

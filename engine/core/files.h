@@ -5,7 +5,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 namespace twinray {
@@ -15,8 +17,12 @@ using Bytes = std::vector<std::uint8_t>;
 // The whole file. Throws Error naming it when it is missing, not a regular file or cannot be read.
 Bytes read_file(const std::filesystem::path& file);
 
-// Writes the pieces, one after the other, whole or not at all: under another name in the same folder, renamed at the
+// Makes the file whole or not at all: `write` makes it under another name in the same folder, and it is renamed at the
 // end. Throws Error naming the file; what was there before is then still there.
+void write_whole(const std::filesystem::path& file, const std::function<void(const std::filesystem::path&)>& write);
+
+// Writes the pieces, one after the other, by write_whole().
 void write_file(const std::filesystem::path& file, std::span<const std::span<const std::byte>> pieces);
+void write_file(const std::filesystem::path& file, std::string_view text);
 
 }  // namespace twinray

@@ -223,9 +223,7 @@ void write_glb(const std::filesystem::path& file, const Scene& scene, std::span<
     std::ostringstream out(std::ios::binary);
     if (!tinygltf::TinyGLTF().WriteGltfSceneToStream(&model, out, false, true))
         fail("'", file.string(), "': the scene cannot be written as glTF");
-    const std::string bytes = out.str();
-    const std::span<const std::byte> whole = std::as_bytes(std::span(bytes));
-    write_file(file, std::span(&whole, 1));
+    write_file(file, out.str());
 }
 
 }  // namespace twinray

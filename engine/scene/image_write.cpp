@@ -3,9 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
-#include "engine/core/error.h"
+#include "engine/core/files.h"
 #include "engine/scene/bytes.h"
 #include "engine/scene/image_exr.h"
 #include "twinray/glsl/cpp.h"
@@ -55,15 +54,12 @@ bool is_image_file(const std::filesystem::path& file) {
 
 void write_image(const std::filesystem::path& file, const HdrImage& image, float exposure,
                  std::span<const ImageChannel> channels) {
-    std::filesystem::path partial = file;
-    partial += text(".partial-", std::hex, std::random_device{}());
-    if (lower_suffix(file) == ".exr")
-        write_exr_image(partial, image, channels);
-    else
-        write_exposed(partial, image, exposure);
-    std::error_code error;
-    std::filesystem::rename(partial, file, error);
-    if (error) fail("'", file.string(), "': cannot be written: ", error.message());
+    write_whole(file, [&](const std::filesystem::path& partial) {
+        if (lower_suffix(file) == ".exr")
+            write_exr_image(partial, image, channels);
+        else
+            write_exposed(partial, image, exposure);
+    });
 }
 
 }  // namespace twinray

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "report/conformance/case_run.h"
 
-#include <ios>
-
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
+#include "report/frame/cases.h"
 
 namespace twinray::conformance {
 namespace {
@@ -20,17 +19,12 @@ void judge_all(Tally& tally, std::span<const Shot> shots, const Judge& judge) {
 
 }  // namespace
 
-std::string hexadecimal(const Ray& ray) {
-    return text(std::hexfloat, ray.origin.x, ' ', ray.origin.y, ' ', ray.origin.z, ' ', ray.t_min, ' ', ray.direction.x,
-                ' ', ray.direction.y, ' ', ray.direction.z, ' ', ray.t_max);
-}
-
 void Tally::add(Finding finding, const Ray& ray) {
     ++n;
     ++counts[std::string(name_of(finding))];
     if (!is_fault(finding)) return;
     ++faults;
-    if (example.empty()) example = text(name_of(finding), ' ', hexadecimal(ray));
+    if (example.empty()) example = text(name_of(finding), ' ', frame::hexadecimal(ray));
 }
 
 void Tally::add_fault(const std::string& sentence) {

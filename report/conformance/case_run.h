@@ -55,6 +55,4 @@ class CaseRun {
 // How many candidates of a ray are told.
 inline constexpr uint candidate_slots = 48;
 
-std::string hexadecimal(const Ray& ray);
-
 }  // namespace twinray::conformance

@@ -118,8 +118,8 @@ BottomRef Bottom::ref() const {
     return {structure.address(), holds_boxes};
 }
 
-Driver::Driver(Context& context, Way way) : context_(context) {
-    if (way == Way::query)
+Driver::Driver(Context& context, Backend way) : context_(context) {
+    if (way == Backend::ray_query)
         query_ = std::make_unique<Kernel<QueryArgs>>(context, query_desc(context));
     else
         pipeline_ = std::make_unique<PipelineQuery>(context);

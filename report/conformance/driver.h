@@ -17,8 +17,11 @@
 #include "report/conformance/driver_input.h"
 #include "report/conformance/misdeed.h"
 #include "report/conformance/query.h"
+#include "report/frame/devices.h"
 
 namespace twinray::conformance {
+
+using frame::Backend;
 
 // The bytes that vkCmdCopyAccelerationStructureToMemoryKHR writes, on the host.
 struct Serialized {
@@ -71,19 +74,17 @@ struct DriverScene {
 };
 
 // How rays are traced.
-enum class Way : std::uint8_t { query, pipeline };
-constexpr const char* name_of(Way way) { return way == Way::query ? "hw" : "hw-pipeline"; }
 
 class Driver {
   public:
     // Throws Error where the device has no such way.
-    explicit Driver(Context& context, Way way = Way::query);
+    explicit Driver(Context& context, Backend way = Backend::ray_query);
 
     // From now on; none is how the driver is.
     void behave_as(Misdeed misdeed) { misdeed_ = misdeed; }
 
     Context& context() const { return context_; }
-    Way way() const { return pipeline_ ? Way::pipeline : Way::query; }
+    Backend way() const { return pipeline_ ? Backend::pipeline : Backend::ray_query; }
     bool can_cull_primitives() const { return context_.properties().primitive_culling; }
 
     Bottom build(const BottomInput& input);

@@ -13,7 +13,7 @@ struct Sum {
     std::uint64_t must_failed = 0, should_failed = 0;
 
     void add(const Record& record) {
-        if (is_control(record)) {
+        if (frame::is_control(record)) {
             controls += record.pass == true;
             return;
         }
@@ -35,7 +35,8 @@ void print_not_passed(std::ostream& out, const Record& record) {
         return;
     }
     if (record.fault_of == "twinray")
-        out << "a fault of ours, " << (is_control(record) ? record.variant : "") << ": " << record.reason << '\n';
+        out << "a fault of ours, " << (frame::is_control(record) ? record.variant : "") << ": " << record.reason
+            << '\n';
     else
         out << fact(record, "demand") << ' ' << fact(record, "what") << ": demanded: " << record.criterion << '\n';
     if (!record.counts.empty()) out << "       ";

@@ -3,13 +3,12 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <deque>
 
 #include "engine/core/error.h"
-#include "engine/core/statistics.h"
+#include "engine/core/stopwatch.h"
 #include "report/conformance/case_run.h"
-#include "validation/records/progress.h"
+#include "samples/support/progress.h"
 
 namespace twinray::conformance {
 namespace {
@@ -17,30 +16,27 @@ namespace {
 // Rays of a case in the quick suite, and of a control; so many rays are traced through one scene.
 constexpr std::size_t quick_rays = 2048, quick_round = 512, full_round = 1u << 14, control_rays = 512;
 
+constexpr std::array ways = {Backend::ray_query, Backend::pipeline};
+
 constexpr std::array<std::string_view, topic_count> topics = {"builds",    "updates",   "copies",      "serialisation",
                                                               "instances", "ray flags", "any hit",     "boxes",
                                                               "limits",    "edges",     "determinism", "relations"};
 
-Record blank(const Case& row, Way way, const Settings& settings) {
-    Record record;
-    record.case_id = row.id;
+Record blank(const Case& row, Backend way, const Settings& settings) {
+    Record record = frame::record_of(row, settings.seed);
     record.backend = name_of(way);
     record.reference = row.topic == Topic::relations || row.topic == Topic::determinism ? "invariance" : "f64";
-    record.seed = settings.seed;
-    record.criterion = row.demanded;
     record.results = {{"topic", std::string(name_of(row.topic))},
                       {"demand", std::string(name_of(row.demand))},
-                      {"what", row.what},
-                      {"kind", row.kind}};
+                      {"what", row.title},
+                      {"kind", row.measures}};
     return record;
 }
 
 std::string control_variant(const Case& row) { return text("control: a driver that ", name_of(row.control)); }
 
 void fill(Record& record, const Tally& tally, double seconds) {
-    record.n = tally.n;
-    record.faults = tally.faults;
-    record.bound95 = upper_bound_95(tally.faults, tally.n);
+    frame::set_faults(record, tally.faults, tally.n);
     record.counts = tally.counts;
     record.example = tally.example;
     record.results.insert(tally.results.begin(), tally.results.end());
@@ -52,10 +48,6 @@ std::string reason_of(const Tally& tally) {
     return text(tally.faults, " of ", tally.n, " are not as they should be");
 }
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 std::uint64_t seed_of(const Case& row, std::uint64_t seed, std::uint64_t round) {
     std::uint64_t mixed = seed;
     for (const char letter : row.id) mixed = mixed * 0x9e3779b97f4a7c15u + static_cast<std::uint64_t>(letter);
@@ -63,7 +55,7 @@ std::uint64_t seed_of(const Case& row, std::uint64_t seed, std::uint64_t round) 
 }
 
 Tally rounds_of(const Case& row, Driver& driver, std::uint64_t seed, std::uint64_t rays, std::size_t round,
-                Progress& progress) {
+                samples::Progress& progress) {
     Tally tally;
     for (std::uint64_t done = 0, i = 0; done < rays; done += round, ++i) {
         const std::size_t now = static_cast<std::size_t>(std::min<std::uint64_t>(round, rays - done));
@@ -76,8 +68,8 @@ Tally rounds_of(const Case& row, Driver& driver, std::uint64_t seed, std::uint64
 
 class Runner {
   public:
-    Runner(Context& context, Way way, const Settings& settings, Recorder& recorder,
-           const std::function<void(const Record&)>& on_record, std::uint64_t rays_of_case, Progress& progress)
+    Runner(Context& context, Backend way, const Settings& settings, Recorder& recorder,
+           const std::function<void(const Record&)>& on_record, std::uint64_t rays_of_case, samples::Progress& progress)
         : context_(context),
           way_(way),
           settings_(settings),
@@ -86,23 +78,25 @@ class Runner {
           rays_(rays_of_case),
           progress_(progress) {}
 
-    // Throws DeviceLost, after recording it.
-    void run(const Case& row) {
+    // False where the device was lost.
+    bool run(const Case& row) {
         progress_.rename(text("conformance ", row.id));
         const std::string missing = why_not(row);
-        if (!missing.empty()) return leave_out(row, missing);
+        if (!missing.empty()) {
+            leave_out(row, missing);
+            return true;
+        }
         Record record = blank(row, way_, settings_);
-        guarded(record, [&] { run_case(row, record); });
+        if (!guarded(record, [&] { run_case(row, record); })) return false;
         Record control = blank(row, way_, settings_);
         control.variant = control_variant(row);
         control.criterion = "control: must show faults, which proves that the case sees them";
-        guarded(control, [&] { run_control(row, control); });
+        return guarded(control, [&] { run_control(row, control); });
     }
 
     void leave_out(const Case& row, const std::string& reason) {
         Record record = blank(row, way_, settings_);
-        record.was_run = false;
-        record.reason = reason;
+        frame::set_not_run(record, reason);
         add(record);
         progress_.advance(rays_);
     }
@@ -110,52 +104,36 @@ class Runner {
   private:
     std::string why_not(const Case& row) const {
         const DeviceProperties& device = context_.properties();
-        if (way_ == Way::query && !device.ray_query) return "needs ray queries (VK_KHR_ray_query)";
-        if (way_ == Way::pipeline && !device.ray_tracing_pipeline)
+        if (way_ == Backend::ray_query && !device.ray_query) return "needs ray queries (VK_KHR_ray_query)";
+        if (way_ == Backend::pipeline && !device.ray_tracing_pipeline)
             return "needs ray tracing pipelines (VK_KHR_ray_tracing_pipeline)";
-        if (way_ == Way::pipeline && !row.not_by_pipeline.empty()) return row.not_by_pipeline;
+        if (way_ == Backend::pipeline && !row.not_by_pipeline.empty()) return row.not_by_pipeline;
         if (row.culls_primitives && !device.primitive_culling) return "needs rayTraversalPrimitiveCulling";
         return "";
     }
     void run_case(const Case& row, Record& record) {
-        const auto start = std::chrono::steady_clock::now();
+        const Stopwatch watch;
         driver().behave_as(Misdeed::none);
         const Tally tally = rounds_of(row, driver(), settings_.seed, rays_, round(), progress_);
-        fill(record, tally, seconds_since(start));
-        record.pass = tally.faults == 0;
-        if (*record.pass) return;
-        record.fault_of = "driver";
-        record.reason = reason_of(tally);
+        fill(record, tally, watch.seconds());
+        frame::decide(record, "driver");
+        if (!*record.pass) record.reason = reason_of(tally);
     }
     void run_control(const Case& row, Record& record) {
-        const auto start = std::chrono::steady_clock::now();
-        Progress silent("control", control_rays, true);
+        const Stopwatch watch;
+        samples::Progress silent("control", control_rays, true);
         driver().behave_as(row.control);
         const Tally tally = rounds_of(row, driver(), settings_.seed, control_rays, control_rays, silent);
-        fill(record, tally, seconds_since(start));
-        record.pass = tally.faults > 0;
-        if (*record.pass) return;
-        record.fault_of = "twinray";
-        record.reason = "the control shows no fault";
+        fill(record, tally, watch.seconds());
+        frame::decide_control(record);
+        if (!*record.pass) record.reason = "the control shows no fault";
     }
-    template <class Work>
-    void guarded(Record& record, const Work& work) {
-        const auto fail_by = [&](const std::exception& error, const char* fault_of) {
-            record.pass = false;
-            record.fault_of = fault_of;
-            record.reason = error.what();
-            add(record);
-        };
-        try {
-            work();
-        } catch (const DeviceLost& lost) {
-            fail_by(lost, "driver");
-            throw;
-        } catch (const std::exception& error) {
-            fail_by(error, "twinray");
-            return;
-        }
+    bool guarded(Record& record, const std::function<void()>& work) {
+        const frame::Ending ending = frame::run_guarded(work);
+        const bool is_lost = ending.kind == frame::Ending::Kind::lost;
+        if (ending.is_failure()) frame::set_failure(record, ending.what, is_lost ? "driver" : "twinray");
         add(record);
+        return !is_lost;
     }
     void add(const Record& record) {
         recorder_.add(record);
@@ -168,12 +146,12 @@ class Runner {
     std::size_t round() const { return settings_.is_full ? full_round : quick_round; }
 
     Context& context_;
-    Way way_;
+    Backend way_;
     const Settings& settings_;
     Recorder& recorder_;
     const std::function<void(const Record&)>& on_record_;
     std::uint64_t rays_;
-    Progress& progress_;
+    samples::Progress& progress_;
     std::unique_ptr<Driver> driver_;
 };
 
@@ -192,46 +170,38 @@ std::vector<Case> catalogue() {
 void run(Context& context, const Settings& settings, Recorder& recorder, bool quiet,
          const std::function<void(const Record&)>& on_record) {
     std::vector<Case> cases = catalogue();
-    constexpr std::array ways = {Way::query, Way::pipeline};
     const std::uint64_t all = ways.size() * cases.size();  // so that a case takes as many whichever others run
     const std::uint64_t rays = settings.is_full ? (settings.full_rays + all - 1) / all : quick_rays;
-    if (settings.is_wanted) std::erase_if(cases, [&](const Case& row) { return !settings.is_wanted(row); });
-    Progress progress("conformance", ways.size() * cases.size() * rays, quiet);
+    std::erase_if(cases, [&](const Case& row) { return !frame::is_chosen(settings.only, row.id); });
+    samples::Progress progress("conformance", ways.size() * cases.size() * rays, quiet);
     std::string lost;  // where it was
     std::deque<Runner> runners;
-    for (const Way way : ways) runners.emplace_back(context, way, settings, recorder, on_record, rays, progress);
+    for (const Backend way : ways) runners.emplace_back(context, way, settings, recorder, on_record, rays, progress);
     for (const Case& row : cases)
         for (Runner& runner : runners) {
-            if (!lost.empty()) {
+            if (!lost.empty())
                 runner.leave_out(row, lost);
-                continue;
-            }
-            try {
-                runner.run(row);
-            } catch (const DeviceLost&) {
-                lost = text("the device was lost in ", row.id);
-            }
+            else if (!runner.run(row))
+                lost = frame::lost_in(row.id);
         }
 }
 
 std::vector<Record> records_of_ended(const Case& row, std::span<const Record> finished, const Settings& settings,
                                      const std::string& how) {
     std::vector<Record> records;
-    for (const Way way : {Way::query, Way::pipeline}) {
+    for (const Backend way : ways) {
         const auto has = [&](const auto& wanted) {
             return std::ranges::any_of(finished, [&](const Record& record) {
                 return record.case_id == row.id && record.backend == name_of(way) && wanted(record);
             });
         };
-        if (has([](const Record& record) { return is_control(record) || !record.was_run; })) continue;
+        if (has([](const Record& record) { return frame::is_control(record) || !record.was_run; })) continue;
         Record record = blank(row, way, settings);
         if (has([](const Record&) { return true; })) record.variant = control_variant(row);
-        record.reason = how;
-        record.was_run = records.empty();
-        if (record.was_run) {
-            record.pass = false;
-            record.fault_of = "driver";
-        }
+        if (records.empty())
+            frame::set_failure(record, how, "driver");
+        else
+            frame::set_not_run(record, how);
         records.push_back(record);
     }
     return records;
@@ -239,7 +209,7 @@ std::vector<Record> records_of_ended(const Case& row, std::span<const Record> fi
 
 bool fails_demands(std::span<const Record> records) {
     return std::ranges::any_of(records, [](const Record& record) {
-        return record.pass == false && record.fault_of == "driver" && !is_control(record) &&
+        return record.pass == false && record.fault_of == "driver" && !frame::is_control(record) &&
                record.results.at("demand") == Value("must");
     });
 }

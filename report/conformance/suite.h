@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "report/conformance/misdeed.h"
-#include "validation/records/recorder.h"
+#include "report/frame/cases.h"
 
 namespace twinray::conformance {
 
@@ -39,17 +39,25 @@ constexpr std::string_view name_of(Demand demand) { return demand == Demand::mus
 
 class CaseRun;
 
-struct Case {
-    std::string id;  // "K01"
+struct Case : frame::Case {
+    // `kind`: public conformance suites that ask the like, or the relation's name.
+    Case(const std::string& id, Topic topic, const std::string& what, const std::string& kind,
+         const std::string& demanded, Demand demand, Misdeed control, std::function<void(CaseRun&)> run,
+         bool culls_primitives = false, const std::string& not_by_pipeline = {})
+        : frame::Case{id, what, kind, demanded},
+          topic(topic),
+          demand(demand),
+          control(control),
+          run(std::move(run)),
+          culls_primitives(culls_primitives),
+          not_by_pipeline(not_by_pipeline) {}
+
     Topic topic;
-    std::string what;
-    std::string kind;      // public conformance suites that ask the like, or the relation's name
-    std::string demanded;  // when it passes
-    Demand demand = Demand::must;
-    Misdeed control = Misdeed::none;  // that must show faults here
+    Demand demand;
+    Misdeed control;  // that must show faults here
     std::function<void(CaseRun&)> run;
-    bool culls_primitives = false;     // needs rayTraversalPrimitiveCulling
-    std::string not_by_pipeline = {};  // why only ray queries can tell; "" = both can
+    bool culls_primitives;        // needs rayTraversalPrimitiveCulling
+    std::string not_by_pipeline;  // why only ray queries can tell; "" = both can
 };
 
 // The catalogue, a function and a file for each topic.
@@ -66,13 +74,11 @@ std::vector<Case> edge_cases();
 std::vector<Case> relation_cases();
 std::vector<Case> catalogue();  // all of them
 
-inline bool is_control(const Record& record) { return record.variant.starts_with("control"); }
-
 struct Settings {
     bool is_full = false;
     std::uint64_t full_rays = 100'000'000;  // of all cases by both ways together, where is_full
     std::uint64_t seed = 1;
-    std::function<bool(const Case&)> is_wanted = {};  // of the catalogue; empty: all
+    std::vector<std::string> only = {};  // patterns of case ids with * and ?; empty: all
 };
 
 // Runs all cases and the control of each, by ray query (backend "hw") and by ray tracing pipeline ("hw-pipeline"). A

@@ -11,7 +11,6 @@
 #include "engine/scene/local_origin.h"
 #include "report/replay/replay.h"
 #include "report/replay/scene_file.h"
-#include "report/suite/checks.h"
 #include "validation/reference/certainty.h"
 
 namespace twinray::replay {
@@ -21,7 +20,7 @@ using exact::Rational, exact::TriangleId;
 
 // An accelerator of this device, what it answers and what that is worth.
 struct Answer {
-    suite::Configuration configuration;
+    frame::Configuration configuration;
     Hit hit;
     HitClass kind;
 };
@@ -44,12 +43,12 @@ Level level_of(const Replay& replay) {
     fail("there is no level '", replay.level, "'");
 }
 
-Answer answer_of(const Stage& stage, suite::Devices& devices, const suite::Configuration& configuration) {
+Answer answer_of(const Stage& stage, frame::Devices& devices, const frame::Configuration& configuration) {
     AbstractAccel& accel = devices.empty_accel(configuration);
     push_scene(accel, stage.scene);
     const Hit hit = accel.closest_hits(std::span(&stage.replay.ray, 1), {.level = configuration.level}).front();
     const auto arbiter = [&](const Ray& ray) { return stage.exact_reference.rounded_hit(ray); };
-    const bool is_ours = suite::is_ours(configuration.backend);
+    const bool is_ours = frame::is_ours(configuration.backend);
     const RayResult ray_result =
         classify(stage.reference, stage.replay.ray, is_ours ? std::optional(hit) : std::nullopt,
                  is_ours ? std::nullopt : std::optional(hit), arbiter);
@@ -64,12 +63,12 @@ void print(std::ostream& out, const char* who, bool is_hit, uint instance, uint 
         out << "miss";
 }
 
-std::vector<Answer> print_answers(std::ostream& out, const Stage& stage, suite::Devices& devices) {
+std::vector<Answer> print_answers(std::ostream& out, const Stage& stage, frame::Devices& devices) {
     std::vector<Answer> answers;
-    out << "What the accelerators of " << devices.context(suite::Backend::software).properties().name
+    out << "What the accelerators of " << devices.context(frame::Backend::software).properties().name
         << " answer at level " << stage.replay.level << "\n";
-    for (const suite::Backend backend : suite::all_backends) {
-        const suite::Configuration configuration{backend, level_of(stage.replay)};
+    for (const frame::Backend backend : frame::all_backends) {
+        const frame::Configuration configuration{backend, level_of(stage.replay)};
         const std::string name(name_of(backend));
         if (const std::string reason = devices.why_not(configuration); !reason.empty()) {
             out << "  " << std::left << std::setw(12) << name << "not here: " << reason << '\n';
@@ -132,7 +131,7 @@ void print_header(std::ostream& out, const Stage& stage) {
     const Replay& replay = stage.replay;
     out << replay.kind << " of " << replay.backend << " at level " << replay.level << " on " << replay.device << ", "
         << replay.driver << ", twinray " << replay.twinray << '\n'
-        << "The ray: origin, t_min, direction, t_max\n  " << suite::hexadecimal(replay.ray) << '\n';
+        << "The ray: origin, t_min, direction, t_max\n  " << frame::hexadecimal(replay.ray) << '\n';
     if (const dvec3& origin = stage.scene.origin; origin != dvec3(0))
         out << "  relative to the local origin " << origin_text(origin) << '\n';
     print(out, "answered", replay.answer.hit, replay.answer.instance_index, replay.answer.primitive_index,
@@ -200,7 +199,7 @@ const char* arithmetic_of(Level level) {
 }  // namespace
 
 Explainer::Explainer(const Scene& scene, const ReferenceScene& reference, const Ray& ray, Level level)
-    : reference_(reference), ray_(ray), on_cpu_(suite::cpu_reference_of(scene, {.layout = Layout::bvh2})) {
+    : reference_(reference), ray_(ray), on_cpu_(reference::cpu_reference_of(scene, {.layout = Layout::bvh2})) {
     double advance = 0;
     searched_ = on_cpu_->searched_ray(ray, static_cast<uint>(level), advance);
 }
@@ -271,7 +270,7 @@ void Explainer::print_boxes(std::ostream& out, exact::TriangleId triangle) const
     print_path(out, "tree of triangles", path, object_space(triangle.instance), searched_);
 }
 
-bool show(const std::filesystem::path& file, suite::Devices& devices, std::ostream& out) {
+bool show(const std::filesystem::path& file, frame::Devices& devices, std::ostream& out) {
     const Replay replay = read(file);
     const Stage stage(replay, load_traced_scene(file, replay));
     const auto precision = out.precision(9);

@@ -6,8 +6,9 @@
 #include <filesystem>
 #include <iosfwd>
 
-#include "report/suite/cpu_reference.h"
-#include "report/suite/devices.h"
+#include "report/frame/cases.h"
+#include "report/frame/devices.h"
+#include "validation/cpu_reference/reference_scene.h"
 #include "validation/exact/exact_reference.h"
 
 namespace twinray::replay {
@@ -34,6 +35,6 @@ class Explainer {
 // Traces the ray of a replay file again on every accelerator of the device and tells step by step what each does and
 // why it is right or wrong. True: SwTlas shows a fault of ours, still. Throws Error where the scene is not the one that
 // the file names.
-bool show(const std::filesystem::path& file, suite::Devices& devices, std::ostream& out);
+bool show(const std::filesystem::path& file, frame::Devices& devices, std::ostream& out);
 
 }  // namespace twinray::replay

@@ -136,7 +136,7 @@ void write_table(std::ostream& out, const std::vector<TableRow>& rows) {
 // A control that shows faults, as it must.
 bool is_control_that_passes(const Record& record) { return !is_users_kernel(record) && record.pass == true; }
 
-void write_case(std::ostream& out, const suite::SuiteCase& row, const std::vector<const Record*>& records) {
+void write_case(std::ostream& out, const frame::Case& row, const std::vector<const Record*>& records) {
     std::vector<Key> order;
     std::map<Key, Group> groups;
     std::size_t controls = 0;
@@ -165,7 +165,7 @@ void write_case(std::ostream& out, const suite::SuiteCase& row, const std::vecto
 
 void write_case_tables(std::ostream& out, const PageInput& input) {
     char section = 0;
-    for (const suite::SuiteCase& row : input.catalogue) {
+    for (const frame::Case& row : input.catalogue) {
         std::vector<const Record*> records;
         for (const Record& record : input.records)
             if (record.case_id == row.id && record.was_run) records.push_back(&record);

@@ -141,7 +141,7 @@ void write_figures(std::ostream& out, const PageInput& input) {
 }
 
 std::string title_of(const PageInput& input, const std::string& case_id) {
-    for (const suite::SuiteCase& row : input.catalogue)
+    for (const frame::Case& row : input.catalogue)
         if (row.id == case_id) return case_id + ": " + row.title;
     return case_id;
 }

@@ -14,7 +14,7 @@ namespace twinray::report {
 struct PageInput {
     std::string suite;   // "quick"
     double seconds = 0;  // that it took
-    std::span<const suite::SuiteCase> catalogue;
+    std::span<const frame::Case> catalogue;
     std::span<const Record> records;
     std::string baseline = {};             // file that was compared to; "" = none
     std::span<const Change> changes = {};  // since then

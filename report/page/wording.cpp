@@ -95,6 +95,6 @@ double number_at(const Values& values, const std::string& name) {
     return number ? *number : 0;
 }
 
-bool is_users_kernel(const Record& record) { return !record.variant.starts_with("control"); }
+bool is_users_kernel(const Record& record) { return !frame::is_control(record); }
 
 }  // namespace twinray::report

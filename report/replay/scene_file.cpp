@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "engine/core/error.h"
+#include "engine/core/fnv1a.h"
 
 namespace twinray::replay {
 namespace {
@@ -86,22 +87,6 @@ void write_chunk(std::ostream& out, const char* type, const char* bytes, std::si
         .write(bytes, static_cast<std::streamsize>(size));
 }
 
-class Fnv1a {
-  public:
-    void add(const void* data, std::size_t size) {
-        for (const auto* byte = static_cast<const unsigned char*>(data); size > 0; --size, ++byte)
-            hash_ = (hash_ ^ *byte) * 0x100000001b3u;
-    }
-    std::string text() const {
-        std::ostringstream out;
-        out << std::hex << std::setw(16) << std::setfill('0') << hash_;
-        return out.str();
-    }
-
-  private:
-    std::uint64_t hash_ = 0xcbf29ce484222325u;
-};
-
 }  // namespace
 
 Scene scene_of(const ReferenceScene& reference) {
@@ -140,11 +125,11 @@ std::string hash_of(const Scene& scene) {
     Fnv1a hash;
     for (const Instance& instance : scene.instances) {
         const Mesh& mesh = scene.meshes[instance.mesh];
-        hash.add(mesh.positions.data(), std::span(mesh.positions).size_bytes());
-        hash.add(mesh.triangles.data(), std::span(mesh.triangles).size_bytes());
-        hash.add(&instance.transform, sizeof instance.transform);
+        hash.add_bytes(std::span(mesh.positions));
+        hash.add_bytes(std::span(mesh.triangles));
+        hash.add_bytes(std::span(&instance.transform, 1));
     }
-    return hash.text();
+    return hexadecimal(hash.value());
 }
 
 Scene load_traced_scene(const std::filesystem::path& file, const Replay& replay) {

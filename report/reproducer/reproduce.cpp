@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "report/reproducer/reproduce.h"
 
-#include <chrono>
 #include <iomanip>
 #include <set>
 #include <sstream>
@@ -9,9 +8,10 @@
 
 #include <twinray/tlas.h>
 #include "engine/core/error.h"
+#include "engine/core/stopwatch.h"
 #include "report/reproducer/fault_case.h"
 #include "report/reproducer/simplify.h"
-#include "report/suite/checks.h"
+#include "report/frame/cases.h"
 
 namespace twinray::reproducer {
 namespace {
@@ -87,7 +87,7 @@ void put_triangles(std::ostream& out, const Scene& scene) {
 // given.
 class DriverTest {
   public:
-    DriverTest(suite::Devices& devices, suite::Backend backend)
+    DriverTest(frame::Devices& devices, frame::Backend backend)
         : accel_(devices.context(backend), BuildOrder::input, {.level = Level::watertight}) {}
 
     Hit answer(const Scene& scene, const Ray& ray) {
@@ -101,7 +101,7 @@ class DriverTest {
 };
 
 // Whether the driver reorders this scene's triangles is known by an accelerator as users have it.
-bool reorders(suite::Devices& devices, suite::Backend backend) { return HwTlas(devices.context(backend)).reorders(); }
+bool reorders(frame::Devices& devices, frame::Backend backend) { return HwTlas(devices.context(backend)).reorders(); }
 
 // Compares by the intervals that a program without twinray uses. The answer is a fault, so a miss is none.
 bool is_allowed(const ReferenceScene& reference, const Ray& ray, const Hit& answer) {
@@ -122,7 +122,7 @@ std::string words_of(const Hit& answer) {
 }
 
 std::string page_text(const Reproduction& found, const replay::Replay& replay) {
-    const bool is_pipeline = found.backend == suite::Backend::pipeline;
+    const bool is_pipeline = found.backend == frame::Backend::pipeline;
     std::ostringstream out;
     out << std::setprecision(9) << "# " << replay.device << ": " << summary(found) << "\n\n"
         << "- device: " << replay.device << "\n- driver: " << replay.driver << "\n- traced by: "
@@ -132,7 +132,7 @@ std::string page_text(const Reproduction& found, const replay::Replay& replay) {
         << "- origin (" << found.ray.origin.x << ", " << found.ray.origin.y << ", " << found.ray.origin.z
         << "), direction (" << found.ray.direction.x << ", " << found.ray.direction.y << ", " << found.ray.direction.z
         << "), t_min " << found.ray.t_min << ", t_max " << found.ray.t_max << "\n- to the last bit: `"
-        << suite::hexadecimal(found.ray) << "`\n- expected: " << found.right.exact
+        << frame::hexadecimal(found.ray) << "`\n- expected: " << found.right.exact
         << " (in rational arithmetic)\n- answered: " << words_of(found.answer) << "\n\n## The scene\n\n";
     put_triangles(out, found.scene);
     out << "\nDecimals are rounded; `reproducer.c` and `scene.glb` hold every bit. The scene was reduced from "
@@ -157,10 +157,9 @@ std::string page_text(const Reproduction& found, const replay::Replay& replay) {
     return out.str();
 }
 
-Reproduction reproduce(suite::Devices& devices, suite::Backend backend, const Scene& scene, const Ray& ray,
+Reproduction reproduce(frame::Devices& devices, frame::Backend backend, const Scene& scene, const Ray& ray,
                        double seconds) {
-    using Clock = std::chrono::steady_clock;
-    const auto begin = Clock::now();
+    const Stopwatch begin;
     DriverTest driver(devices, backend);
     Reproduction found;
     found.backend = backend;
@@ -172,7 +171,7 @@ Reproduction reproduce(suite::Devices& devices, suite::Backend backend, const Sc
     if (!is_fault_of_hardware(found.kind))
         fail("the driver's own answer is ", name_of(found.kind), ", no fault, so there is nothing to reproduce");
 
-    const auto is_late = [&] { return std::chrono::duration<double>(Clock::now() - begin).count() > seconds; };
+    const auto is_late = [&] { return begin.seconds() > seconds; };
     const CaseTest shows_fault = [&](const FaultCase& smaller) {
         if (smaller.triangles.empty() || is_late()) {
             found.was_cut_short |= !smaller.triangles.empty();

@@ -6,14 +6,14 @@
 
 #include "report/replay/replay.h"
 #include "report/reproducer/right_answers.h"
-#include "report/suite/devices.h"
+#include "report/frame/devices.h"
 
 namespace twinray::reproducer {
 
 struct Reproduction {
     Scene scene;
     Ray ray{};
-    suite::Backend backend{};
+    frame::Backend backend{};
     HitClass kind{};
     Hit answer{};  // of the driver
     RightAnswers right;
@@ -25,7 +25,7 @@ struct Reproduction {
 // Traces the ray and, where the answer is a fault, makes the scene smaller and its numbers shorter for at most so many
 // seconds. Throws Error where the driver's own answer, before anything refines it, is not a fault. Apart from the limit
 // the result depends on the arguments and the driver alone.
-Reproduction reproduce(suite::Devices& devices, suite::Backend backend, const Scene& scene, const Ray& ray,
+Reproduction reproduce(frame::Devices& devices, frame::Backend backend, const Scene& scene, const Ray& ray,
                        double seconds);
 
 // Markdown. `replay`: of the reduced scene.

@@ -2,12 +2,12 @@
 #include "report/reproducer/write.h"
 
 #include <algorithm>
-#include <chrono>
 #include <fstream>
 #include <ostream>
 #include <set>
 
 #include "engine/core/error.h"
+#include "engine/core/stopwatch.h"
 #include "report/replay/scene_file.h"
 #include "report/reproducer/program.h"
 #include "report/reproducer/reproduce.h"
@@ -25,9 +25,9 @@ void write_bytes(const fs::path& file, const void* bytes, std::size_t size) {
 
 void write_text(const fs::path& file, const std::string& words) { write_bytes(file, words.data(), words.size()); }
 
-suite::Backend backend_of(const replay::Replay& replay) {
-    for (const suite::Backend backend : suite::all_backends)
-        if (suite::name_of(backend) == replay.backend && !suite::is_ours(backend)) return backend;
+frame::Backend backend_of(const replay::Replay& replay) {
+    for (const frame::Backend backend : frame::all_backends)
+        if (frame::name_of(backend) == replay.backend && !frame::is_ours(backend)) return backend;
     fail("a fault of '", replay.backend, "' is not the driver's: reproducers show faults of drivers");
 }
 
@@ -50,8 +50,8 @@ replay::Replay replay_of(const Reproduction& found, const replay::Replay& origin
 }  // namespace
 
 std::string write_reproducer(const fs::path& folder, const Scene& scene, const replay::Replay& replay,
-                             suite::Devices& devices, double seconds) {
-    const suite::Backend backend = backend_of(replay);
+                             frame::Devices& devices, double seconds) {
+    const frame::Backend backend = backend_of(replay);
     if (const std::string reason = devices.why_not({backend, Level::watertight}); !reason.empty()) fail(reason);
     const Reproduction found = reproduce(devices, backend, scene, replay.ray, seconds);
     const replay::Replay reduced = replay_of(found, replay, devices.context(backend).properties());
@@ -62,7 +62,7 @@ std::string write_reproducer(const fs::path& folder, const Scene& scene, const r
     const std::string found_on =
         text(reduced.device, ", ", reduced.driver, ", which answered ", words_of(found.answer));
     write_text(folder / "reproducer.c",
-               program_text({found.scene, found.ray, found.right, backend == suite::Backend::pipeline, found_on}));
+               program_text({found.scene, found.ray, found.right, backend == frame::Backend::pipeline, found_on}));
     for (const ProgramShader& shader : program_shaders())
         write_bytes(folder / text(shader.name, ".spv"), shader.spirv.data(), shader.spirv.size_bytes());
     const std::size_t triangles = count_triangles(found.scene);
@@ -70,7 +70,7 @@ std::string write_reproducer(const fs::path& folder, const Scene& scene, const r
                 found.triangles_before, ": ", (folder / "reproducer.c").string());
 }
 
-std::string write_reproducer(const fs::path& folder, const fs::path& replay_file, suite::Devices& devices,
+std::string write_reproducer(const fs::path& folder, const fs::path& replay_file, frame::Devices& devices,
                              double seconds) {
     const replay::Replay replay = replay::read(replay_file);
     const Scene scene = replay::load_traced_scene(replay_file, replay);
@@ -81,17 +81,16 @@ std::string write_reproducer(const fs::path& folder, const fs::path& replay_file
     }
 }
 
-std::size_t write_reproducers(const fs::path& folder, std::span<const fs::path> replay_files, suite::Devices& devices,
+std::size_t write_reproducers(const fs::path& folder, std::span<const fs::path> replay_files, frame::Devices& devices,
                               std::ostream& out, double seconds) {
-    using Clock = std::chrono::steady_clock;
-    const auto begin = Clock::now();
+    const Stopwatch begin;
     std::set<std::string> done;
     for (const fs::path& file : replay_files) {
-        const double left = seconds - std::chrono::duration<double>(Clock::now() - begin).count();
+        const double left = seconds - begin.seconds();
         if (left <= 0) break;
         try {
             const replay::Replay replay = replay::read(file);
-            if (replay.backend == suite::name_of(suite::Backend::software) || done.contains(replay.kind)) continue;
+            if (replay.backend == frame::name_of(frame::Backend::software) || done.contains(replay.kind)) continue;
             out << "  " << write_reproducer(folder / replay.kind, file, devices, left) << '\n';
             done.insert(replay.kind);
         } catch (const Error& error) {

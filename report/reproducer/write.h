@@ -7,7 +7,7 @@
 #include <span>
 
 #include "report/replay/replay.h"
-#include "report/suite/devices.h"
+#include "report/frame/devices.h"
 
 namespace twinray::reproducer {
 
@@ -19,16 +19,16 @@ inline constexpr double default_seconds = 5;
 // which twinray it is; device and driver are those of now. Returns a sentence for the user. Throws Error where the
 // fault is one of ours, where the driver shows none, and where a file cannot be written.
 std::string write_reproducer(const std::filesystem::path& folder, const Scene& scene, const replay::Replay& replay,
-                             suite::Devices& devices, double seconds = default_seconds);
+                             frame::Devices& devices, double seconds = default_seconds);
 
 // The same for a replay file.
 std::string write_reproducer(const std::filesystem::path& folder, const std::filesystem::path& replay_file,
-                             suite::Devices& devices, double seconds = default_seconds);
+                             frame::Devices& devices, double seconds = default_seconds);
 
 // Of the first fault of each class of the driver's that these replay files hold and the driver still shows, into
 // `folder`/HW_LEAK, ...; files are tried in their order until `seconds` have passed in all. Prints a line for each.
 // Returns how many folders were written. Faults of ours, and of drivers that are not here, are passed over.
 std::size_t write_reproducers(const std::filesystem::path& folder, std::span<const std::filesystem::path> replay_files,
-                              suite::Devices& devices, std::ostream& out, double seconds = default_seconds);
+                              frame::Devices& devices, std::ostream& out, double seconds = default_seconds);
 
 }  // namespace twinray::reproducer

@@ -10,7 +10,7 @@
 #include "report/suite/case_run.h"
 #include "report/suite/cpu_reference.h"
 #include "report/suite/demands.h"
-#include "report/suite/flush.h"
+#include "validation/cpu_reference/flush_denormals.h"
 #include "report/suite/pictures.h"
 #include "report/suite/shapes.h"
 #include "report/suite/spawning.h"

@@ -23,7 +23,7 @@ namespace {
 // As the traversal's stack is made for: 60 bits of Morton codes, then the position among equal codes.
 uint depth_limit(std::size_t leaves) { return 60 + static_cast<uint>(std::bit_width(leaves)); }
 
-TreeCheck check(const BuiltTree& tree, const Mesh& mesh) {
+TreeCheck check_tree(const BuiltTree& tree, const Mesh& mesh) {
     const std::vector<LeafBox> by_primitive =
         reference::leaves_triangles(Geometry(mesh, software_unit(mesh.positions)).positions, mesh.triangles);
     if (!tree.records.empty()) return check_tree(tree.bvh, tree.records, by_primitive);
@@ -53,7 +53,7 @@ void expect_sound_tree(CaseRun& run, const Mesh& mesh, Values params) {
         auto& accel = dynamic_cast<SwTlas&>(run.devices().empty_accel(configuration));
         const AccelHandle handle = accel.push(mesh);
         accel.sync();
-        const TreeCheck tree = check(download_geometry(accel, handle), mesh);
+        const TreeCheck tree = check_tree(download_geometry(accel, handle), mesh);
         const bool is_deep = tree.depth > depth_limit(mesh.triangles.size());
         params.insert_or_assign("measured", "tree");
         run.expect(configuration,
@@ -217,7 +217,7 @@ void quantised_nodes(CaseRun& run) {
         for (const auto& [name, mesh] : meshes) {
             const AccelHandle handle = accel.push(mesh);
             accel.sync();
-            const TreeCheck tree = check(download_geometry(accel, handle), mesh);
+            const TreeCheck tree = check_tree(download_geometry(accel, handle), mesh);
             run.expect(configuration, {.params = {{"mesh", name}},
                                        .results = {{"depth", tree.depth}, {"sah", tree.sah}},
                                        .n = mesh.triangles.size(),

@@ -17,8 +17,7 @@ constexpr std::size_t least_reps = 3, full_reps = 15;
 void set_control(Record& record, const std::string& what) {
     record.variant = "control: " + what;
     record.criterion = record.variant + " must show faults, which proves that the case sees them";
-    record.pass = record.faults > 0;
-    record.fault_of = *record.pass ? "" : "twinray";
+    decide_control(record);
 }
 
 // Sets pass and whose fault it is where it is false.
@@ -38,8 +37,7 @@ void decide(Record& record, const Configuration& configuration, const Measuremen
         set_control(record, "fast");
         return;
     }
-    record.pass = record.faults == 0;
-    if (!*record.pass) record.fault_of = is_ours(configuration.backend) ? "twinray" : "driver";
+    frame::decide(record, is_ours(configuration.backend) ? "twinray" : "driver");
 }
 
 }  // namespace
@@ -49,14 +47,6 @@ std::size_t CaseRun::amount(std::size_t least, std::size_t full) {
     if (least == 0) return settings_.effort < 1 ? least : full;
     const double ratio = static_cast<double>(full) / static_cast<double>(least);
     return static_cast<std::size_t>(std::llround(static_cast<double>(least) * std::pow(ratio, settings_.effort)));
-}
-
-Record CaseRun::blank() const {
-    Record record;
-    record.case_id = row_.id;
-    record.criterion = row_.criterion;
-    record.seed = settings_.seed;
-    return record;
 }
 
 namespace {
@@ -191,14 +181,13 @@ void CaseRun::count_crossings(const World& world, std::span<const Ray> rays, con
         result.params = measurement.params;
         result.params.emplace("counted", "crossings");
         result.reference = "analytic";
-        result.n = rays.size();
         for (std::size_t i = 0; i < rays.size(); ++i) {
             const bool is_right = right(rays[i], counts[i]);
             ++result.counts[is_right ? "AGREE" : counts[i] < 8 ? text("CROSSED_", counts[i]) : "CROSSED_OFTEN"];
             if (is_right || result.faults++ > 0) continue;
             result.example = text("crossed ", counts[i], " times ", hexadecimal(rays[i]));
         }
-        result.bound95 = upper_bound_95(result.faults, result.n);
+        set_faults(result, result.faults, rays.size());
         decide(result, configuration, measurement);
         add(result);
     }
@@ -221,9 +210,7 @@ void CaseRun::expect(const Configuration& configuration, const Outcome& outcome)
     result.params = outcome.params;
     result.results = outcome.results;
     result.reference = outcome.reference;
-    result.n = outcome.n;
-    result.faults = outcome.faults;
-    result.bound95 = upper_bound_95(outcome.faults, outcome.n);
+    set_faults(result, outcome.faults, outcome.n);
     result.time = outcome.time;
     if (!outcome.control.empty()) {
         set_control(result, outcome.control);
@@ -235,20 +222,15 @@ void CaseRun::expect(const Configuration& configuration, const Outcome& outcome)
         add(result);
         return;
     }
-    result.pass = outcome.faults == 0;
-    if (!*result.pass) {
-        result.reason = outcome.what;
-        result.fault_of = !outcome.fault_of.empty()        ? outcome.fault_of
-                          : is_ours(configuration.backend) ? "twinray"
-                                                           : "driver";
-    }
+    const std::string of_backend = is_ours(configuration.backend) ? "twinray" : "driver";
+    frame::decide(result, outcome.fault_of.empty() ? of_backend : outcome.fault_of);
+    if (!*result.pass) result.reason = outcome.what;
     add(result);
 }
 
 void CaseRun::add_not_run(const std::string& reason, const Configuration* configuration) {
     Record result = configuration ? record(*configuration) : blank();
-    result.was_run = false;
-    result.reason = reason;
+    set_not_run(result, reason);
     add(result);
 }
 
@@ -266,9 +248,7 @@ void CaseRun::add_computed(Record record) {
 
 void CaseRun::add_failure(const std::string& what) {
     Record result = blank();
-    result.pass = false;
-    result.fault_of = "twinray";
-    result.reason = what;
+    set_failure(result, what);
     add(result);
 }
 

@@ -26,11 +26,6 @@ struct Measured {
     std::vector<ReferenceHit> references;  // one of each ray
 };
 
-// Thrown by a case that the device cannot answer: it becomes a record that says why.
-struct NotRun {
-    std::string reason;
-};
-
 // A case while it runs: what it may use, and where its results go.
 class CaseRun {
   public:
@@ -94,7 +89,7 @@ class CaseRun {
     void add_failure(const std::string& what);  // an exception: a fault of ours
 
   private:
-    Record blank() const;
+    Record blank() const { return record_of(row_, settings_.seed); }
     // Writes the ray of checked.first_fault, if there is one, and returns the file as Record::replay wants it.
     std::string write_replay(const World& world, std::span<const Ray> rays, const Traced& traced,
                              const CheckResult& checked) const;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 #include "engine/core/parallel.h"
 
@@ -88,22 +87,11 @@ CheckResult check(const ReferenceScene& reference, std::span<const Ray> rays, st
 }
 
 void set_check_result(Record& record, const CheckResult& checked) {
-    record.n = checked.classes.total();
-    record.faults = checked.faults;
-    record.bound95 = upper_bound_95(record.faults, record.n);
+    set_faults(record, checked.faults, checked.classes.total());
     record.example = checked.example;
     for (std::size_t kind = 0; kind < hit_class_count; ++kind)
         if (const std::uint64_t count = checked.classes.counts[kind])
             record.counts[std::string(name_of(static_cast<HitClass>(kind)))] = count;
-}
-
-std::string hexadecimal(const Ray& ray) {
-    std::ostringstream out;
-    out << std::hexfloat;
-    for (const float value : {ray.origin.x, ray.origin.y, ray.origin.z, ray.t_min, ray.direction.x, ray.direction.y,
-                              ray.direction.z, ray.t_max})
-        out << (out.tellp() > 0 ? " " : "") << value;
-    return out.str();
 }
 
 }  // namespace twinray::suite

@@ -30,7 +30,4 @@ CheckResult check(const ReferenceScene& reference, std::span<const Ray> rays, st
 // Writes them to `record`: counts, faults, bound and example.
 void set_check_result(Record& record, const CheckResult& checked);
 
-// A ray as Record::example shows it.
-std::string hexadecimal(const Ray& ray);
-
 }  // namespace twinray::suite

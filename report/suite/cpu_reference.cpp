@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "report/suite/flush.h"
+#include "validation/cpu_reference/flush_denormals.h"
 #include "report/suite/checks.h"
 #include "engine/core/parallel.h"
 
@@ -21,15 +21,6 @@ double ulps_between(float a, float b) {
 }
 
 }  // namespace
-
-std::unique_ptr<reference::Scene> cpu_reference_of(const Scene& scene, const AccelOptions& trees) {
-    auto on_cpu = std::make_unique<reference::Scene>(trees.layout, trees.build_quality);
-    for (const Mesh& mesh : scene.meshes) on_cpu->add_geometry(mesh);
-    for (const Instance& instance : scene.instances)
-        on_cpu->add_instance(instance.mesh, make_instance_record(instance.transform));
-    on_cpu->build();
-    return on_cpu;
-}
 
 std::vector<Hit> trace_cpu_reference(const reference::Scene& on_cpu, std::span<const Ray> rays, Level level,
                                      Denormals denormals) {

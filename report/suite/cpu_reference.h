@@ -7,8 +7,7 @@
 
 namespace twinray::suite {
 
-// The same scene in the order in which push_scene() places it.
-std::unique_ptr<reference::Scene> cpu_reference_of(const Scene& scene, const AccelOptions& trees = {});
+using reference::cpu_reference_of;
 
 enum class Denormals : std::uint8_t { kept, flushed };  // flushed needs FlushDenormals::is_able()
 

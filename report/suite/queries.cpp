@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "report/suite/queries.h"
-
-#include <chrono>
+#include "engine/core/stopwatch.h"
 
 namespace twinray::suite {
 namespace {
@@ -25,20 +24,16 @@ Record query_record(CaseRun& run, const std::string& reference, const std::strin
 }
 
 void add_checked(CaseRun& run, Record record, std::uint64_t faults, const std::string& what) {
-    record.faults = faults;
-    record.bound95 = upper_bound_95(faults, record.n);
-    record.pass = faults == 0;
-    if (faults > 0) {
-        record.reason = what;
-        record.fault_of = "twinray";
-    }
+    set_faults(record, faults, record.n);
+    decide(record, "twinray");
+    if (faults > 0) record.reason = what;
     run.add(record);
 }
 
 double seconds_of(const std::function<void()>& work) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch start;
     work();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return start.seconds();
 }
 
 }  // namespace twinray::suite

@@ -5,12 +5,14 @@
 #include <map>
 #include <numeric>
 
+#include "report/frame/cases.h"
+
 namespace twinray::suite {
 
 double uncertainty_of(std::span<const Record> records) {
     double widest = 0;
     for (const Record& record : records) {
-        if (!record.was_run || !record.pass || record.n == 0 || record.variant.starts_with("control")) continue;
+        if (!record.was_run || !record.pass || record.n == 0 || frame::is_control(record)) continue;
         const Interval rate = rate_interval_95(record.faults, record.n);
         widest = std::max(widest, (rate.high - rate.low) / 2);
     }

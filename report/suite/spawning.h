@@ -5,7 +5,7 @@
 #include "engine/core/kernel.h"
 #include "engine/scene/mesh.h"
 #include "report/suite/case_run.h"
-#include "report/suite/devices.h"
+#include "report/frame/devices.h"
 #include "twinray/glsl/cpp_spawn.h"
 
 namespace twinray::suite {

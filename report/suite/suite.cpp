@@ -2,25 +2,15 @@
 #include "report/suite/suite.h"
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include "report/suite/case_run.h"
 #include "report/suite/schedule.h"
-#include "engine/core/error.h"
-#include "validation/records/progress.h"
+#include "samples/support/progress.h"
+#include "engine/core/stopwatch.h"
 
 namespace twinray::suite {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-bool is_wanted(const SuiteCase& row, const Settings& settings) {
-    return settings.only.empty() || std::any_of(settings.only.begin(), settings.only.end(),
-                                                [&](const std::string& only) { return matches(row.id, only); });
-}
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 class SuiteRun {
   public:
@@ -29,14 +19,14 @@ class SuiteRun {
         : settings_(settings), devices_(devices), recorder_(recorder), state_(state) {
         std::vector<const SuiteCase*> wanted;
         for (const SuiteCase& row : cases)
-            if (is_wanted(row, settings)) wanted.push_back(&row);
+            if (is_chosen(settings.only, row.id)) wanted.push_back(&row);
         std::vector<char> sections;
         for (const SuiteCase* row : wanted) sections.push_back(row->id.front());
         for (const std::size_t i : by_turns(sections)) cases_.push_back(wanted[i]);
     }
 
     void first_round(bool quiet) {
-        Progress progress("report", cases_.size(), quiet);
+        samples::Progress progress("report", cases_.size(), quiet);
         for (const SuiteCase* row : cases_) {
             if (!state_.cases.contains(row->id)) run_first(*row);
             progress.advance();
@@ -45,9 +35,9 @@ class SuiteRun {
 
     // What the seconds are enough for.
     void improve(bool quiet) {
-        Progress progress("report: what is least certain", static_cast<std::uint64_t>(std::max(1.0, seconds_left())),
-                          quiet);
-        const auto start = Clock::now();
+        samples::Progress progress("report: what is least certain",
+                                   static_cast<std::uint64_t>(std::max(1.0, seconds_left())), quiet);
+        const Stopwatch start;
         for (std::uint64_t shown = 0;;) {
             std::vector<CaseProgress> known;
             for (const SuiteCase* row : cases_)
@@ -58,7 +48,7 @@ class SuiteRun {
             recorder_.drop(cases_[*next]->id);
             const Outcome outcome = run_guarded(*cases_[*next], known[*next].effort + effort_step);
             note(*cases_[*next], after_step(known[*next], outcome.seconds, outcome.uncertainty));
-            const auto now = static_cast<std::uint64_t>(seconds_since(start));
+            const auto now = static_cast<std::uint64_t>(start.seconds());
             progress.advance(now - std::exchange(shown, now));
         }
     }
@@ -71,11 +61,11 @@ class SuiteRun {
         bool can_improve;
     };
 
-    double seconds_left() const { return settings_.seconds - seconds_before_ - seconds_since(start_); }
+    double seconds_left() const { return settings_.seconds - seconds_before_ - start_.seconds(); }
 
     void run_first(const SuiteCase& row) {
         if (!lost_in_.empty()) {
-            CaseRun(row, settings_, devices_, recorder_).add_not_run("the device was lost in " + lost_in_);
+            CaseRun(row, settings_, devices_, recorder_).add_not_run(frame::lost_in(lost_in_));
         } else {
             const auto [seconds, uncertainty, can_improve] = run_guarded(row, settings_.effort);
             note(row, {.effort = settings_.effort,
@@ -87,29 +77,23 @@ class SuiteRun {
 
     void note(const SuiteCase& row, const CaseProgress& progress) {
         state_.cases[row.id] = progress;
-        state_.seconds = seconds_before_ + seconds_since(start_);
+        state_.seconds = seconds_before_ + start_.seconds();
         write_state(state_);
     }
 
     Outcome run_guarded(const SuiteCase& row, double effort) {
-        const auto start = Clock::now();
+        const Stopwatch start;
         const std::size_t before = recorder_.records().size();
         Settings settings = settings_;
         settings.effort = effort;
         settings.is_whole = settings_.effort >= 1;
         CaseRun here(row, settings, devices_, recorder_);
-        try {
-            row.run(here);
-        } catch (const NotRun& not_run) {
-            here.add_not_run(not_run.reason);
-        } catch (const DeviceLost& lost) {
-            here.add_failure(lost.what());
-            lost_in_ = row.id;
-        } catch (const std::exception& error) {
-            here.add_failure(error.what());
-            devices_.drop_accels();
-        }
-        return {seconds_since(start), uncertainty_of(std::span(recorder_.records()).subspan(before)),
+        const Ending ending = frame::run_guarded([&] { row.run(here); });
+        if (ending.kind == Ending::Kind::not_run) here.add_not_run(ending.what);
+        if (ending.is_failure()) here.add_failure(ending.what);
+        if (ending.kind == Ending::Kind::lost) lost_in_ = row.id;
+        if (ending.kind == Ending::Kind::failed) devices_.drop_accels();
+        return {start.seconds(), uncertainty_of(std::span(recorder_.records()).subspan(before)),
                 here.depends_on_effort()};
     }
 
@@ -119,20 +103,11 @@ class SuiteRun {
     Recorder& recorder_;
     SuiteState& state_;
     std::vector<const SuiteCase*> cases_;
-    Clock::time_point start_ = Clock::now();
+    Stopwatch start_;
     double seconds_before_ = state_.seconds;  // in earlier parts of the run
 };
 
 }  // namespace
-
-std::string_view name_of(Backend backend) {
-    switch (backend) {
-        case Backend::software: return "sw";
-        case Backend::ray_query: return "hw";
-        case Backend::pipeline: return "hw-pipeline";
-    }
-    return "";
-}
 
 std::vector<SuiteCase> catalogue() {
     std::vector<SuiteCase> all;
@@ -164,14 +139,6 @@ std::string_view section_of(std::string_view id) {
         case 'K': return "the driver's own structures";
         default: return "";
     }
-}
-
-bool matches(std::string_view text, std::string_view pattern) {
-    if (pattern.empty()) return text.empty();
-    if (pattern.front() == '*')
-        return matches(text, pattern.substr(1)) || (!text.empty() && matches(text.substr(1), pattern));
-    return !text.empty() && (pattern.front() == '?' || pattern.front() == text.front()) &&
-           matches(text.substr(1), pattern.substr(1));
 }
 
 std::string run(std::span<const SuiteCase> cases, const Settings& settings, Devices& devices, Recorder& recorder,

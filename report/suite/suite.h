@@ -9,28 +9,13 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/accel/trace_desc.h"
-#include "validation/records/recorder.h"
+#include "report/frame/cases.h"
+#include "report/frame/devices.h"
 #include "report/suite/suite_state.h"
 
 namespace twinray::suite {
 
-// Who answers: SwTlas, HwTlas by ray query, HwTlas by ray tracing pipeline.
-enum class Backend : std::uint8_t { software, ray_query, pipeline };
-inline constexpr std::array all_backends = {Backend::software, Backend::ray_query, Backend::pipeline};
-
-std::string_view name_of(Backend backend);  // "sw", "hw", "hw-pipeline"
-constexpr bool is_ours(Backend backend) { return backend == Backend::software; }
-
-// An accelerator at a level: a curve of the plots.
-struct Configuration {
-    Backend backend = Backend::software;
-    Level level = Level::watertight;
-
-    bool operator==(const Configuration&) const = default;
-};
-// False of Level::fast, which promises nothing at edges.
-constexpr bool is_robust(const Configuration& configuration) { return configuration.level != Level::fast; }
+using namespace frame;
 
 struct Settings {
     double effort = 0;  // of each case, from its least (0) to its full amount (1)
@@ -48,12 +33,11 @@ struct Settings {
 
 class CaseRun;
 
-// A row of the catalogue.
-struct SuiteCase {
-    std::string id;         // "W04"
-    std::string title;      // how it is made
-    std::string measures;   // what is counted
-    std::string criterion;  // when it passes
+struct SuiteCase : Case {
+    SuiteCase(const std::string& id, const std::string& title, const std::string& measures,
+              const std::string& criterion, std::function<void(CaseRun&)> run)
+        : Case{id, title, measures, criterion}, run(std::move(run)) {}
+
     std::function<void(CaseRun&)> run;
 };
 
@@ -79,10 +63,6 @@ std::vector<SuiteCase> scene_cases(std::span<const std::filesystem::path> files)
 // The section of a case id, by its letter: "edges, vertices, watertightness". K are those of validation/conformance.
 std::string_view section_of(std::string_view id);
 
-// Whether `text` fits a pattern with * (any characters) and ? (one).
-bool matches(std::string_view text, std::string_view pattern);
-
-class Devices;
 // Runs the cases that settings.only names and `state` does not have yet, the first of each section first; one that
 // throws is recorded as our fault, and the rest goes on. With the seconds that are left, those whose rate of faults is
 // least certain run again with more effort: their new records take the place of the old ones. Returns the case in which

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/error.h"
+#include "engine/core/files.h"
 #include "engine/core/json_input.h"
 
 namespace twinray::suite {
@@ -45,13 +46,8 @@ void write_state(const SuiteState& state) {
                      {"growth", progress.growth},
                      {"uncertainty", progress.uncertainty},
                      {"can_improve", progress.can_improve}};
-    std::filesystem::path next = state.file;
-    next += ".new";
-    std::ofstream out(next);
-    out << Json{{"schema", schema}, {"key", state.key}, {"seconds", state.seconds}, {"cases", cases}}.dump(1) << '\n';
-    if (!out.flush()) fail("progress '", next.string(), "' cannot be written");
-    out.close();
-    std::filesystem::rename(next, state.file);
+    const Json json{{"schema", schema}, {"key", state.key}, {"seconds", state.seconds}, {"cases", cases}};
+    write_file(state.file, json.dump(1) + '\n');
 }
 
 }  // namespace twinray::suite

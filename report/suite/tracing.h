@@ -8,7 +8,7 @@
 
 #include "engine/accel/trace_desc.h"
 #include "engine/accel/trace_program.h"
-#include "report/suite/devices.h"
+#include "report/suite/suite.h"
 #include "validation/reference/reference_scene.h"
 
 namespace twinray::suite {
@@ -71,5 +71,18 @@ using Clock = std::chrono::steady_clock;
 double ms_since(Clock::time_point start);
 // GPU time of all passes.
 double total_ms(const std::vector<PassTiming>& timings);
+
+// A buffer that holds them for all that is submitted later.
+template <class T>
+Buffer uploaded(Context& context, const char* name, std::span<const T> data) {
+    Buffer buffer(context, {.name = name, .bytes = data.size_bytes()});
+    Commands commands(context, name);
+    {
+        const auto pass = commands.pass(name);
+        commands.upload(buffer, data);
+    }
+    commands.submit();
+    return buffer;
+}
 
 }  // namespace twinray::suite

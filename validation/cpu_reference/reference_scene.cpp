@@ -113,4 +113,13 @@ Scene::Tree Scene::geometry_tree(std::size_t instance) const {
     return {built.block.geometry.bvh, built.triangles, built.mesh.scale};
 }
 
+std::unique_ptr<Scene> cpu_reference_of(const twinray::Scene& scene, const AccelOptions& trees) {
+    auto on_cpu = std::make_unique<Scene>(trees.layout, trees.build_quality);
+    for (const Mesh& mesh : scene.meshes) on_cpu->add_geometry(mesh);
+    for (const Instance& instance : scene.instances)
+        on_cpu->add_instance(instance.mesh, make_instance_record(instance.transform));
+    on_cpu->build();
+    return on_cpu;
+}
+
 }  // namespace twinray::reference

@@ -2,6 +2,10 @@
 // The software accelerator on the host: built and traversed serially, to compare kernels with and to step through.
 #pragma once
 
+#include <memory>
+
+#include <twinray/scene.h>
+
 #include "engine/accel/geometry.h"
 #include "engine/accel/refinement.h"
 #include "engine/accel/trace_desc.h"
@@ -82,5 +86,8 @@ class Scene {
     GeometryBox bound_{};  // of the world
     std::vector<RefineInstance> refined_;
 };
+
+// The same scene in the order in which push_scene() places it.
+std::unique_ptr<Scene> cpu_reference_of(const twinray::Scene& scene, const AccelOptions& trees = {});
 
 }  // namespace twinray::reference

@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "engine/core/error.h"
+#include "engine/core/files.h"
+#include "engine/core/fnv1a.h"
+#include "engine/core/stopwatch.h"
 #include "engine/core/json_input.h"
 
 namespace twinray {
@@ -15,24 +17,23 @@ namespace twinray {
 void trace_until(const LeakTest& test, std::uint64_t rays, LeakState& state,
                  const std::function<void(const LeakFault&)>& on_fault, const std::function<void(std::size_t)>& after) {
     constexpr std::uint64_t batch_size = 1 << 17;
-    const auto begin = std::chrono::steady_clock::now();
+    const Stopwatch begin;
     const double seconds_before = state.seconds;
     while (state.counts.rays < rays) {
         const auto count = static_cast<std::size_t>(std::min(batch_size, rays - state.counts.rays));
         test.trace(count, state.counts, on_fault);
-        state.seconds =
-            seconds_before + std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        state.seconds = seconds_before + begin.seconds();
         after(count);
     }
 }
 
 std::uint64_t hash_of(const Mesh& mesh) {
-    std::uint64_t hash = 0xcbf29ce484222325u;
+    Fnv1a hash;  // over words
     for (const uvec3& triangle : mesh.triangles)
         for (int vertex = 0; vertex < 3; ++vertex)
             for (int axis = 0; axis < 3; ++axis)
-                hash = (hash ^ std::bit_cast<std::uint32_t>(mesh.positions[triangle[vertex]][axis])) * 0x100000001b3u;
-    return hash;
+                hash.add(std::bit_cast<std::uint32_t>(mesh.positions[triangle[vertex]][axis]));
+    return hash.value();
 }
 
 LeakState read_state(const std::filesystem::path& file, const nlohmann::json& identity) {
@@ -61,12 +62,7 @@ void write_state(const std::filesystem::path& file, nlohmann::json identity, con
                      {"double_hits", state.counts.double_hits},
                      {"unspecified", state.counts.unspecified},
                      {"seconds", state.seconds}});
-    const std::filesystem::path unfinished = file.string() + ".unfinished";
-    std::ofstream out(unfinished);
-    out << identity.dump(2) << '\n';
-    if (!out.flush()) fail("state file '", unfinished.string(), "' cannot be written");
-    out.close();
-    std::filesystem::rename(unfinished, file);
+    write_file(file, identity.dump(2) + '\n');
 }
 
 }  // namespace twinray

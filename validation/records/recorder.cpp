@@ -99,14 +99,10 @@ void Recorder::drop(const std::string& case_id) {
 
 void Recorder::rewrite() {
     if (path_.empty()) return;
-    std::filesystem::path next = path_;
-    next += ".new";
-    std::ofstream out(next);
-    for (const Record& record : records_) out << to_json(record) << '\n';
-    std::error_code problem;
-    if (out.flush()) std::filesystem::rename(next, path_, problem);
-    if (!out || problem) fail("report '", path_.string(), "' cannot be written");
-    file_ = std::move(out);
+    std::string lines;
+    for (const Record& record : records_) lines += to_json(record) + '\n';
+    write_file(path_, lines);
+    file_ = std::ofstream(path_, std::ios::app);
 }
 
 void Recorder::add(Record record) {

@@ -2,11 +2,11 @@
 #include "validation/verify/comparison.h"
 
 #include <algorithm>
-#include <chrono>
 #include <iomanip>
 #include <nlohmann/json.hpp>
 
 #include "engine/core/error.h"
+#include "engine/core/stopwatch.h"
 #include "engine/core/statistics.h"
 #include "validation/reference/aimed_rays.h"
 
@@ -69,9 +69,9 @@ bool is_same(const Hit& a, const Hit& b) {
 
 template <class Call>
 auto timed(double& seconds, const Call& call) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch start;
     auto result = call();
-    seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    seconds += start.seconds();
     return result;
 }
 
@@ -153,13 +153,14 @@ Verifier::Verifier(Context& context, ReferenceScene reference, const Fill& fill,
     build(*hardware_, fill, level);
 }
 
-Comparison Verifier::compare(std::span<const Ray> rays, const Arbiter& arbiter, Progress& progress) {
+Comparison Verifier::compare(std::span<const Ray> rays, const Arbiter& arbiter,
+                             const std::function<void(std::size_t)>& progress) {
     constexpr std::size_t batch_size = 1 << 18;
     Comparison comparison;
     for (std::size_t first = 0; first < rays.size(); first += batch_size) {
         const auto batch = rays.subspan(first, std::min(batch_size, rays.size() - first));
         compare_batch(batch, arbiter, comparison);
-        progress.advance(batch.size());
+        progress(batch.size());
     }
     return comparison;
 }

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include <twinray/tlas.h>
-#include "validation/records/progress.h"
 #include "validation/reference/classify.h"
 
 namespace twinray {
@@ -55,7 +54,8 @@ class Verifier {
     const std::string& why_no_hardware() const { return why_no_hardware_; }  // "" where there is one
 
     // Traces the closest hits of all rays by both and gives each a class. `arbiter`: see Arbiter.
-    Comparison compare(std::span<const Ray> rays, const Arbiter& arbiter, Progress& progress);
+    Comparison compare(std::span<const Ray> rays, const Arbiter& arbiter,
+                       const std::function<void(std::size_t)>& progress);
 
   private:
     void compare_batch(std::span<const Ray> rays, const Arbiter& arbiter, Comparison& comparison);

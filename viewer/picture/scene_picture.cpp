@@ -113,9 +113,7 @@ void write_html(const std::filesystem::path& file, const Raster& whole, const Pa
     for (const Note& note : notes)
         if (!note.detail.empty()) out << "<tr><td>" << escaped(note.detail) << "\n";
     out << "</table></html>\n";
-    const std::string text = out.str();
-    const std::span<const std::byte> bytes = std::as_bytes(std::span(text));
-    write_file(file, std::span(&bytes, 1));
+    write_file(file, out.str());
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "engine/core/error.h"
+#include "engine/core/fnv1a.h"
 
 namespace twinray {
 namespace {
@@ -15,9 +16,9 @@ using Key = std::array<float, 18>;
 
 struct HashBits {
     std::size_t operator()(const Key& key) const {
-        std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a over words, with a final mix for the low bits
-        for (const float value : key) hash = (hash ^ std::bit_cast<std::uint32_t>(value)) * 0x100000001b3u;
-        return hash ^ hash >> 29;
+        Fnv1a hash;  // over words, with a final mix for the low bits
+        for (const float value : key) hash.add(std::bit_cast<std::uint32_t>(value));
+        return hash.value() ^ hash.value() >> 29;
     }
 };
 

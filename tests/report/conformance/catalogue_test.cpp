@@ -20,7 +20,7 @@ TEST(ConformanceCatalogue, EachRowSaysWhatItIsAndHasAControl) {
     std::set<Topic> topics;
     for (const Case& row : catalogue()) {
         topics.insert(row.topic);
-        EXPECT_FALSE(row.what.empty() || row.kind.empty() || row.demanded.empty()) << row.id;
+        EXPECT_FALSE(row.title.empty() || row.measures.empty() || row.criterion.empty()) << row.id;
         EXPECT_TRUE(row.run) << row.id;
         EXPECT_NE(row.control, Misdeed::none) << row.id;
     }

@@ -40,11 +40,19 @@ class ConformanceSuite : public test::VulkanTest {
     }
 };
 
-std::function<bool(const Case&)> of_topic(Topic topic) {
-    return [topic](const Case& row) { return row.topic == topic; };
+using frame::is_control;
+
+template <class IsWanted>
+std::vector<std::string> ids_of(const IsWanted& is_wanted) {
+    std::vector<std::string> ids;
+    for (const Case& row : catalogue())
+        if (is_wanted(row)) ids.push_back(row.id);
+    return ids;
 }
 
-bool is_control(const Record& record) { return record.variant.starts_with("control"); }
+std::vector<std::string> of_topic(Topic topic) {
+    return ids_of([&](const Case& row) { return row.topic == topic; });
+}
 
 Ids failed(const std::vector<Record>& records, const char* demand) {
     Ids ids;
@@ -57,7 +65,7 @@ TEST_F(ConformanceSuite, KnowsWhatPassesAndEveryControlShowsFaults) {
     if (!missing_for_hardware(context().properties()).empty()) TWINRAY_LACKS("ray_tracing", "no structures to ask");
     const KnownFaults& known = known_faults(context().properties());
     const std::vector<Record> records =
-        run({.is_wanted = [&](const Case& row) { return !known.end_the_process.contains(row.id); }});
+        run({.only = ids_of([&](const Case& row) { return !known.end_the_process.contains(row.id); })});
     std::size_t cases = 0, controls = 0;
     for (const Record& record : records) {
         if (!record.was_run) continue;
@@ -84,7 +92,7 @@ TEST_F(ConformanceSuite, KnowsWhatPassesAndEveryControlShowsFaults) {
 
 TEST_F(ConformanceSuite, TellsTheFirstFaultyRay) {
     if (!context().properties().ray_query) return;
-    const std::vector<Record> records = run({.is_wanted = of_topic(Topic::edges)});
+    const std::vector<Record> records = run({.only = of_topic(Topic::edges)});
     for (const Record& record : records) {
         EXPECT_EQ(record.results.at("topic"), Value("edges"));
         if (record.faults == 0) continue;
@@ -97,7 +105,7 @@ TEST_F(ConformanceSuite, TellsTheFirstFaultyRay) {
 // In full the same cases take more rays, in larger rounds.
 TEST_F(ConformanceSuite, FullSharesItsRaysOutToTheCases) {
     if (!context().properties().ray_query) return;
-    for (const Record& record : run({.is_full = true, .full_rays = 9'600'000, .is_wanted = of_topic(Topic::limits)})) {
+    for (const Record& record : run({.is_full = true, .full_rays = 9'600'000, .only = of_topic(Topic::limits)})) {
         if (is_control(record)) continue;
         EXPECT_GT(record.n, 10'000u) << record.case_id;
         EXPECT_LE(record.n, 100'000u) << record.case_id;
@@ -139,7 +147,7 @@ class ConformanceWithoutQueries : public test::VulkanTest {
 TEST_F(ConformanceWithoutQueries, ThePipelineAnswersAlone) {
     if (!context().properties().ray_tracing_pipeline) TWINRAY_LACKS("ray_tracing", "no pipelines");
     Recorder recorder({"now", "0.1", {}});
-    conformance::run(context(), {.is_wanted = of_topic(Topic::limits)}, recorder, true);
+    conformance::run(context(), {.only = of_topic(Topic::limits)}, recorder, true);
     for (const Record& record : recorder.records()) {
         EXPECT_EQ(record.was_run, record.backend == "hw-pipeline");
         EXPECT_EQ(record.pass.has_value(), record.was_run);

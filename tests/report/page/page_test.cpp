@@ -33,7 +33,8 @@ Record record(const char* id, const char* level, double ns, std::optional<bool> 
 
 std::string page_of(const std::vector<Record>& records, const std::vector<Change>& changes = {},
                     const std::string& baseline = {}) {
-    static const std::vector<suite::SuiteCase> catalogue = suite::catalogue();
+    static const std::vector<suite::SuiteCase> rows = suite::catalogue();
+    static const std::vector<frame::Case> catalogue(rows.begin(), rows.end());
     return page({.suite = "quick",
                  .catalogue = catalogue,
                  .records = records,

@@ -88,7 +88,7 @@ Reproduction leak() {
     Reproduction found;
     found.scene = scene_of({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0.1f}}, {{0, 1, 2}, {0, 2, 3}});
     found.ray = down_at(0.5f, 0.5f);
-    found.backend = suite::Backend::ray_query;
+    found.backend = frame::Backend::ray_query;
     found.kind = HitClass::hw_leak;
     found.answer = miss();
     found.right.exact = "triangle 0 of instance 0 at t = 2";

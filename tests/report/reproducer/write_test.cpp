@@ -36,18 +36,18 @@ class WriteTest : public ::testing::Test {
   protected:
     void SetUp() override {
         if (!test::make_context()) return;
-        devices_ = std::make_unique<suite::Devices>(ContextDesc{.validation = true});
-        if (!devices_->why_not({suite::Backend::ray_query, Level::watertight}).empty())
+        devices_ = std::make_unique<frame::Devices>(ContextDesc{.validation = true});
+        if (!devices_->why_not({frame::Backend::ray_query, Level::watertight}).empty())
             TWINRAY_LACKS("ray_tracing", "the device has no ray queries");
         has_driver_ = true;
     }
     bool has_driver() const { return has_driver_; }
-    suite::Devices& devices() { return *devices_; }
+    frame::Devices& devices() { return *devices_; }
     // A ray at a vertex that the driver loses, if it does.
     std::optional<Ray> lost_ray(const Scene& scene) {
         const ReferenceScene reference = ReferenceScene::of(scene);
         const std::vector<Ray> rays = vertex_aimed_rays(Reference(scene), 4000, 1);
-        AbstractAccel& accel = devices_->empty_accel({suite::Backend::ray_query, Level::watertight});
+        AbstractAccel& accel = devices_->empty_accel({frame::Backend::ray_query, Level::watertight});
         push_scene(accel, scene);
         const std::vector<Hit> hits = accel.closest_hits(rays);
         for (std::size_t i = 0; i < rays.size(); ++i)
@@ -83,7 +83,7 @@ class WriteTest : public ::testing::Test {
 
   private:
     test::TempDir folder_;
-    std::unique_ptr<suite::Devices> devices_;
+    std::unique_ptr<frame::Devices> devices_;
     bool has_driver_ = false;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Traversal on devices that flush denormals, which the CPU plays.
-#include "report/suite/flush.h"
+#include "validation/cpu_reference/flush_denormals.h"
 
 #include <gtest/gtest.h>
 

@@ -17,7 +17,7 @@
 #include "report/page/verdict.h"
 #include "report/suite/checks.h"
 #include "report/suite/factor_scenes.h"
-#include "report/suite/flush.h"
+#include "validation/cpu_reference/flush_denormals.h"
 #include "report/suite/tracing.h"
 
 namespace twinray::suite {

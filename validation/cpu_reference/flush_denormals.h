@@ -2,7 +2,7 @@
 // Denormal numbers as devices treat them that flush them.
 #pragma once
 
-namespace twinray::suite {
+namespace twinray {
 
 // While it lives, this thread's arithmetic reads denormals as 0 and gives 0 in their place.
 class FlushDenormals {
@@ -18,4 +18,4 @@ class FlushDenormals {
     unsigned long saved_ = 0;
 };
 
-}  // namespace twinray::suite
+}  // namespace twinray

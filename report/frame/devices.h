@@ -1,20 +1,37 @@
 // SPDX-License-Identifier: MIT
-// The accelerators on which cases of the suite run.
+// The accelerators on which cases run.
 #pragma once
 
+#include <array>
 #include <map>
 #include <tuple>
 #include <memory>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "engine/accel/trace_desc.h"
 #include "validation/leaks/crossings.h"
-#include "report/suite/suite.h"
 #include <twinray/abstract_accel.h>
 
-namespace twinray::suite {
+namespace twinray::frame {
+
+// Who answers: SwTlas, HwTlas by ray query, HwTlas by ray tracing pipeline.
+enum class Backend : std::uint8_t { software, ray_query, pipeline };
+inline constexpr std::array all_backends = {Backend::software, Backend::ray_query, Backend::pipeline};
+
+std::string_view name_of(Backend backend);  // "sw", "hw", "hw-pipeline"
+constexpr bool is_ours(Backend backend) { return backend == Backend::software; }
+
+// An accelerator at a level: a curve of the plots.
+struct Configuration {
+    Backend backend = Backend::software;
+    Level level = Level::watertight;
+
+    bool operator==(const Configuration&) const = default;
+};
+// False of Level::fast, which promises nothing at edges.
+constexpr bool is_robust(const Configuration& configuration) { return configuration.level != Level::fast; }
 
 // The accelerators that cases run on, one for each backend, made when first needed: kernels are compiled once. Those
 // for levels above watertight are others: they keep more than a user of watertight would have. HwTlas by pipeline has a
@@ -64,17 +81,4 @@ class Devices {
     std::map<std::pair<Backend, Level>, std::unique_ptr<CrossingCounter>> counters_;
 };
 
-// A buffer that holds them for all that is submitted later.
-template <class T>
-Buffer uploaded(Context& context, const char* name, std::span<const T> data) {
-    Buffer buffer(context, {.name = name, .bytes = data.size_bytes()});
-    Commands commands(context, name);
-    {
-        const auto pass = commands.pass(name);
-        commands.upload(buffer, data);
-    }
-    commands.submit();
-    return buffer;
-}
-
-}  // namespace twinray::suite
+}  // namespace twinray::frame

@@ -4,11 +4,12 @@
 
 #include <chrono>
 
-namespace twinray::bench {
+namespace twinray {
 
-// Wall time since it was made, in ms.
+// Wall time since it was made.
 class Stopwatch {
   public:
+    double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
     double ms() const { return std::chrono::duration<double, std::milli>(Clock::now() - start_).count(); }
 
   private:
@@ -16,4 +17,4 @@ class Stopwatch {
     Clock::time_point start_ = Clock::now();
 };
 
-}  // namespace twinray::bench
+}  // namespace twinray

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "report/suite/flush.h"
+#include "validation/cpu_reference/flush_denormals.h"
 
 #if defined(__SSE2__)
 #include <immintrin.h>
 #endif
 
-namespace twinray::suite {
+namespace twinray {
 namespace {
 
 #if defined(__SSE2__)
@@ -37,4 +37,4 @@ FlushDenormals::FlushDenormals() : saved_(control_register()) { set_control_regi
 
 FlushDenormals::~FlushDenormals() { set_control_register(saved_); }
 
-}  // namespace twinray::suite
+}  // namespace twinray

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "report/suite/devices.h"
+#include "report/frame/devices.h"
 
 #include <algorithm>
 #include <iostream>
@@ -7,7 +7,16 @@
 #include "engine/core/error.h"
 #include <twinray/tlas.h>
 
-namespace twinray::suite {
+namespace twinray::frame {
+
+std::string_view name_of(Backend backend) {
+    switch (backend) {
+        case Backend::software: return "sw";
+        case Backend::ray_query: return "hw";
+        case Backend::pipeline: return "hw-pipeline";
+    }
+    return "";
+}
 
 Devices::Devices(ContextDesc desc, const AccelOptions& trees) : desc_(std::move(desc)), trees_(trees) {
     desc_.log = [this, log = desc_.log, also = desc_.validation](std::string_view message) {
@@ -76,4 +85,4 @@ const CrossingCounter& Devices::crossing_counter(const Configuration& configurat
 
 void Devices::drop_accels() { accels_.clear(); }
 
-}  // namespace twinray::suite
+}  // namespace twinray::frame
