@@ -8,7 +8,7 @@
 #include "cli/commands.h"
 #include "cli/common.h"
 #include "engine/core/error.h"
-#include "cli/kernels/compile.h"
+#include "cli/kernels/kernel_list.h"
 #include "cli/kernels/family.h"
 
 namespace twinray::cli {

@@ -12,7 +12,7 @@
 #include "cli/commands.h"
 #include "cli/common.h"
 #include "cli/verify_conformance.h"
-#include "report/page/compare_text.h"
+#include "report/page/compare.h"
 #include "report/page/gnuplot.h"
 #include "report/page/page.h"
 #include "report/page/summary.h"

@@ -4,7 +4,7 @@
 
 #include <GLFW/glfw3.h>
 
-#include "viewer/screen_device.h"
+#include "viewer/screen.h"
 
 #include <vector>
 

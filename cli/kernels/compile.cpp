@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/kernels/compile.h"
+#include "cli/kernels/kernel_list.h"
 
 #include <cmath>
 #include <iomanip>
@@ -9,7 +9,6 @@
 #include <twinray/geometry.h>
 #include <twinray/tlas.h>
 #include "cli/kernels/family.h"
-#include "cli/kernels/kernel_list.h"
 #include "engine/accel/trace_desc.h"
 #include "engine/core/dry_device.h"
 #include "engine/core/parallel.h"

@@ -2,9 +2,12 @@
 // The kernels that hosts get, as the engine itself makes them.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "cli/kernels/limits.h"
 #include "engine/core/context.h"
 #include "engine/core/kernel.h"
 
@@ -35,5 +38,35 @@ void make_path_tracer_kernels(Context& context);
 // What the constants choose, in words: "compressed4 watertight instances". Not how many invocations make a group, so
 // that a kernel keeps its name when that changes.
 std::string variant_of(const KernelDesc& desc);
+
+// Rows of `twinray kernels`, in compile.cpp: kernels as the compiler of a device makes them, and what builds of SwTlas
+// record and move.
+
+struct BuildRow {
+    std::string what;  // "build", "refit"
+    std::string layout, quality;
+    std::uint64_t dispatches = 0, barriers = 0, copies = 0;
+    double read = 0, written = 0;  // bytes a triangle: what a time on a device is to be compared with
+};
+
+// Builds one mesh of build_triangles and one instance, by the software accelerator, in each layout and quality. The
+// context runs nothing (ContextDesc::watch_kernels).
+inline constexpr std::size_t build_triangles = 81'920;
+std::vector<BuildRow> list_builds(Context& context);
+
+std::string table_of(std::span<const BuildRow> rows);
+nlohmann::json to_json(const BuildRow& row, const std::string& device);
+
+// The kernels of list_kernels(), as the compiler of one device makes them.
+struct CompiledKernels {
+    std::string device;  // or its family
+    std::string name, driver;
+    std::vector<KernelRow> rows;   // in the order of the list
+    std::vector<BuildRow> builds;  // none with a filter
+};
+
+// For the device of `desc`, or for the family, which is in effect (see family.h), where it is not empty. `filter`: only
+// kernels with this in their name or variant; "": all.
+CompiledKernels compile_kernels(ContextDesc desc, const std::string& family, const std::string& filter);
 
 }  // namespace twinray::kernels

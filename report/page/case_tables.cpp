@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "report/page/case_tables.h"
+#include "report/page/page.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "report/page/compare_text.h"
+#include "report/page/compare.h"
 
 #include <algorithm>
 #include <iomanip>

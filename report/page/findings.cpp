@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "report/page/findings.h"
+#include "report/page/verdict.h"
 
 #include <algorithm>
 #include <functional>

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "engine/core/error.h"
-#include "report/page/case_tables.h"
 #include "report/page/verdict.h"
 #include "report/page/wording.h"
 

@@ -28,4 +28,10 @@ std::string page(const PageInput& input);
 // Throws Error naming the file.
 void write_page(const std::filesystem::path& file, const PageInput& input);
 
+// Parts of it, in case_tables.cpp.
+// A row for each accelerator, level and variant of a case, over all its settings: the file of records has these apart.
+void write_case_tables(std::ostream& out, const PageInput& input);
+// Grouped by reason.
+void write_not_run(std::ostream& out, const PageInput& input);
+
 }  // namespace twinray::report

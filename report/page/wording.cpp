@@ -5,6 +5,8 @@
 #include <iomanip>
 #include <sstream>
 
+#include "report/frame/cases.h"
+
 namespace twinray::report {
 
 std::string escaped(std::string_view text) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "samples/path_tracer/options.h"
+#include "samples/path_tracer/session.h"
 
 #include <CLI/CLI.hpp>
 

@@ -2,6 +2,7 @@
 // Light found by sampling it: the environment, emissive triangles, punctual lights.
 #ifndef TWINRAY_PATH_TRACER_LIGHTS_GLSL
 #define TWINRAY_PATH_TRACER_LIGHTS_GLSL
+#include "shaders/path_tracer/light_tree.h"
 
 struct LightSample
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/scene/importers/gltf_motion.h"
+#include "engine/scene/importers/gltf_mesh.h"
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "bench/ray_batch.h"
+#include "bench/backend.h"
 
 #include "engine/core/commands.h"
 
