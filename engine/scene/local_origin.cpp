@@ -31,8 +31,6 @@ double Bounds64::extent() const { return is_empty() ? 0 : largest_entry(hi - lo)
 
 double Bounds64::reach() const { return is_empty() ? 0 : largest_entry(max(abs(lo), abs(hi))); }
 
-bool is_far(double distance, double extent) { return distance > 16 * extent; }
-
 dvec3 choose_local_origin(const Bounds64& bounds) {
     const double reach = bounds.reach();
     constexpr double smallest = std::numeric_limits<float>::min();  // below it float32 has no steps to speak of

@@ -28,7 +28,7 @@ struct Bounds64 {
 // Whether float32 rounds a coordinate of this magnitude by more than a millionth of the extent, a micrometre a metre.
 // It rounds by up to 2^-24 of the magnitude: more than 2^-20 of the extent beyond 16 extents. About its own middle the
 // same model is rounded by up to 2^-25 of its extent.
-bool is_far(double distance, double extent);
+inline bool is_far(double distance, double extent) { return distance > 16 * extent; }
 
 // 0 unless the box is far; then a point near its middle whose coordinates are multiples of a power of ten, the largest
 // that its extent holds, so that people can read it, or where the extent is below 1 of a power of two: float64 has them
