@@ -25,6 +25,8 @@ if(TARGET twinray_cli)
     endif()
 endif()
 
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
+
 # The public face alone; beside its GLSL what that needs.
 install(DIRECTORY include/twinray DESTINATION ${headers_dir})
 set(glsl_dir ${headers_dir}/twinray/glsl)

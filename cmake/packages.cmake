@@ -1,0 +1,18 @@
+# What `cpack` packs: the tree that `cmake --install` makes, as an archive and as a package for Debian.
+set(CPACK_GENERATOR TGZ DEB)
+set(CPACK_PACKAGE_VENDOR twinray)
+set(CPACK_PACKAGE_CONTACT "the twinray maintainers <maintainers@twinray.invalid>")
+set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
+set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/packages)
+set(CPACK_STRIP_FILES ON)
+# The Python package goes into a wheel.
+set(CPACK_INSTALL_CMAKE_PROJECTS "${PROJECT_BINARY_DIR};${PROJECT_NAME};Unspecified;/")
+
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
+# dpkg-shlibdeps (Debian: dpkg-dev) finds what the command links. Without the window it loads Vulkan only when it runs.
+# Programs that link the static libraries need the suggested packages.
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libvulkan1, mesa-vulkan-drivers")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "libvulkan-dev, libopenexr-dev, zlib1g-dev, glslang-tools, spirv-tools")
+include(CPack)
