@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Holds what nobody should argue about: C++ as .clang-format has it, CMake as .gersemirc has it, shell as shellcheck
-# wants it, Python as ruff and mypy do, words as codespell knows them, and shaders of at most 120 columns.
+# wants it, Python as ruff and mypy do, words as codespell knows them, shaders of at most 120 columns, and sentences that
+# do not dangle (tools/check_openers.py).
 #   tools/lint.sh          says what is not so; exit 1 if anything is, 77 where it cannot tell
 #   tools/lint.sh --fix    formats C++, CMake and Python first
 # The tools come from PyPI into build/lint at fixed versions, so that everyone's say the same. Needs python3-venv.
@@ -53,5 +54,6 @@ check "Python" $bin/ruff check --quiet
 check "Python's form" $bin/ruff format --quiet --check
 check "Python's types" $bin/mypy --no-error-summary --cache-dir build/mypy bindings/python/twinray
 check "columns of shaders" narrow "${shaders[@]}"
+check "openers of sentences" python3 tools/check_openers.py
 check "spelling" $bin/codespell --ignore-words tools/words.txt "${texts[@]}"
 exit $status
