@@ -133,6 +133,11 @@ uint add(Scene& scene, const Rows<float, 3>& positions, const Rows<uint, 3>& tri
     return unlocked([&] { return scene.add(std::move(mesh), placed); });
 }
 
+nb::object corners_of(const Bounds& box) {
+    std::vector<Vector> corners{{box.lo.x, box.lo.y, box.lo.z}, {box.hi.x, box.hi.y, box.hi.z}};
+    return given<double>(std::move(corners), 3);
+}
+
 // Questions about rays, in float32 or float64, which are not converted.
 template <class T>
 void bind_rays(nb::class_<Scene>& scene_class) {
@@ -203,16 +208,11 @@ void bind_scene(nb::module_& m) {
              })
         .def("geometries", &Scene::geometries, nb::call_guard<nb::gil_scoped_release>())
         .def("triangle_count", &Scene::triangle_count, nb::call_guard<nb::gil_scoped_release>())
-        .def("extent", &Scene::extent, nb::call_guard<nb::gil_scoped_release>())
+        .def("around",
+             [](Scene& scene, uint geometry) { return corners_of(unlocked([&] { return scene.around(geometry); })); })
         .def("first_faces",
              [](const Scene& scene) { return given<std::uint64_t>(unlocked([&] { return scene.first_faces(); })); })
-        .def("bounds",
-             [](Scene& scene) {
-                 const Bounds box = unlocked([&] { return scene.bounds(); });
-                 std::vector<std::array<double, 3>> corners{{box.lo.x, box.lo.y, box.lo.z},
-                                                            {box.hi.x, box.hi.y, box.hi.z}};
-                 return given<double>(std::move(corners), 3);
-             })
+        .def("bounds", [](Scene& scene) { return corners_of(unlocked([&] { return scene.bounds(); })); })
         .def("closest",
              [](Scene& scene, const PointRows& points, bool with_normals) {
                  return dict_of(unlocked([&] { return scene.closest(as<dvec3>(points), with_normals); }));

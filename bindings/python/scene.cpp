@@ -293,10 +293,9 @@ Bounds Scene::around() const {
     return all;
 }
 
-double Scene::extent(uint geometry) {
+Bounds Scene::around(uint geometry) {
     const Lock lock(device_->mutex);
-    const vec3 size = around(part(geometry, "extent")).size();
-    return std::max({size.x, size.y, size.z});
+    return around(part(geometry, "around"));
 }
 
 // Calls trace(first, rays, ways) for the rays from `first` on; no ways: no ray was brought near the scene.

@@ -140,7 +140,7 @@ class Scene {
     std::size_t triangle_count() const;
     std::vector<std::uint64_t> first_faces() const;  // by number, and their count at the end
     Bounds bounds();                                 // in world space
-    double extent(uint geometry);                    // its largest side there, or a little more
+    Bounds around(uint geometry);                    // likewise, of one; it may be larger
 
     Cast cast(const RayRows& rows, bool with_normals);
     Column<bool> occlusions(const RayRows& rows);

@@ -304,7 +304,7 @@ def test_bounds_are_those_of_the_triangles(accel):
     assert np.isinf(scene.bounds()).all()
 
 
-def test_poses_far_from_the_origin_are_told_once():
+def test_poses_far_from_the_origin_are_told_once(tmp_path):
     pose = np.eye(4)
     pose[:3, 3] = [5e5, 5.6e6, 120]
     told = "stands so far"
@@ -315,8 +315,14 @@ def test_poses_far_from_the_origin_are_told_once():
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             scene.set_transform(0, pose)
+    vertices, triangles = cube()
+    lines = [f"v {x} {y} {z}" for x, y, z in vertices + pose[:3, 3]]
+    (tmp_path / "far.obj").write_text("\n".join(lines + [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in triangles]))
+    with pytest.warns(UserWarning, match=told):
+        scene_of(cube(), accel="sw").add_file(tmp_path / "far.obj")
     with warnings.catch_warnings():
         warnings.simplefilter("error")
+        twinray.Scene(accel="sw").add_file(tmp_path / "far.obj")
         near = twinray.Scene(accel="sw", origin=pose[:3, 3])
         near.add_triangles(*cube(), transform=pose)
         parts = scene_of(cube(), accel="sw")

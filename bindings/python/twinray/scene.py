@@ -225,17 +225,16 @@ class Scene:
             positions, matrix, mesh_origin = self._frame.placed(positions, given)
             geometry = self._core.add(positions, triangles, matrix)
             self._frame.keep(geometry, mesh_origin)
-        self._tell_if_far(geometry, matrix)
+        self._tell_if_far([geometry])
         return geometry
 
     def add_instance(self, geometry: int, transform: ArrayLike | None = None) -> int:
         """Add the mesh of a geometry once more, without another copy; returns the number of the new geometry."""
         number, matrix = geometry_of(geometry, "geometry"), matrix_of(transform, "transform")
         with self._adding:
-            placed = self._frame.matrix_of(number, matrix)
-            added = self._core.add_instance(number, placed)
+            added = self._core.add_instance(number, self._frame.matrix_of(number, matrix))
             self._frame.keep(added, self._frame.mesh_origin(number))
-        self._tell_if_far(added, placed)
+        self._tell_if_far([added])
         return added
 
     def add_file(self, file: str | os.PathLike[str]) -> list[int]:
@@ -248,8 +247,11 @@ class Scene:
         """
         name = os.fspath(file)
         with self._adding:
-            added, origin = self._core.add_file(name, self._frame.fixed_origin())
+            fixed = self._frame.fixed_origin()
+            added, origin = self._core.add_file(name, fixed)
             self._frame.keep_file(added, np.array(origin), name.lower().endswith((".gltf", ".glb")))
+        if fixed:
+            self._tell_if_far(added)
         self._tell()
         return added
 
@@ -260,9 +262,8 @@ class Scene:
     def set_transform(self, geometry: int, transform: ArrayLike) -> None:
         """Move a geometry: `transform` is (4, 4) or (3, 4), from its mesh to the scene."""
         number, matrix = geometry_of(geometry, "geometry"), matrix_of(transform, "transform")
-        placed = self._frame.matrix_of(number, matrix)
-        self._core.set_transform(number, placed)
-        self._tell_if_far(number, placed)
+        self._core.set_transform(number, self._frame.matrix_of(number, matrix))
+        self._tell_if_far([number])
 
     def update_vertices(self, geometry: int, vertex_positions: ArrayLike) -> None:
         """Move the vertices of a mesh, and of all its instances: as many as it has, (N, 3)."""
@@ -461,17 +462,19 @@ class Scene:
     def _is_inside(self, points):
         return np.nan_to_num(np.rint(self._windings(points))) != 0
 
-    def _tell_if_far(self, geometry, placed):
-        if self._told_of_far:
-            return
-        rounding = rounding_of(placed[:, 3])
-        if rounding > self._core.extent(geometry) * (HARMLESS if len(self) == 1 else 1000 * HARMLESS):
-            self._told_of_far = True
-            warnings.warn(
-                f"geometry {geometry} stands so far from the scene's origin {self.origin.tolist()} that float32 moves "
-                f"it by up to {rounding:.2g}; give Scene an origin near it",
-                stacklevel=3,
-            )
+    def _tell_if_far(self, geometries):
+        harmless = HARMLESS if len(self) == 1 else 1000 * HARMLESS  # small parts of a large scene are no news
+        for geometry in () if self._told_of_far else geometries:
+            low, high = self._core.around(geometry)
+            rounding = rounding_of([low, high])
+            if 0 < harmless * (high - low).max() < rounding < np.inf:
+                self._told_of_far = True
+                warnings.warn(
+                    f"geometry {geometry} stands so far from the scene's origin {self.origin.tolist()} that float32 "
+                    f"moves it by up to {rounding:.2g}; give Scene an origin near it",
+                    stacklevel=3,
+                )
+                return
 
     def _tell(self):
         for message in self._core.take_log():
