@@ -24,7 +24,7 @@ struct Bound {
 };
 
 Bound bound_of(const PlacedLight& light) {
-    return {dvec3(light.lo),   dvec3(light.hi), dvec3(light.axis),  light.axes_angle,
+    return {dvec3(light.lo),   dvec3(light.hi), dvec3(light.axis), light.axes_angle,
             light.reach_angle, light.power,     light.is_two_sided};
 }
 
@@ -46,8 +46,7 @@ void join_cones(Bound& a, const Bound& b) {
     if (std::min(between + b.axes_angle, pi) <= a.axes_angle) return;
     const double angle = (a.axes_angle + between + b.axes_angle) / 2;
     const dvec3 about = cross(a.axis, b.axis);
-    if (angle < pi && length(about) > 0)
-        a.axis = normalize(turned(a.axis, normalize(about), angle - a.axes_angle));
+    if (angle < pi && length(about) > 0) a.axis = normalize(turned(a.axis, normalize(about), angle - a.axes_angle));
     a.axes_angle = angle < pi && length(about) > 0 ? angle : pi;
 }
 
@@ -68,7 +67,8 @@ Bound around(Bound a, const Bound& b) {
 double measure_of_directions(const Bound& bound) {
     constexpr double pi = std::numbers::pi;
     const double axes = bound.axes_angle, end = std::min(axes + bound.reach_angle, pi);
-    const double beyond = 2 * end * std::sin(axes) - std::cos(axes - 2 * end) - 2 * axes * std::sin(axes) + std::cos(axes);
+    const double beyond =
+        2 * end * std::sin(axes) - std::cos(axes - 2 * end) - 2 * axes * std::sin(axes) + std::cos(axes);
     return 2 * pi * (1 - std::cos(axes)) + pi / 2 * beyond;
 }
 

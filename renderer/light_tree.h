@@ -11,13 +11,13 @@ namespace twinray::path_tracer {
 
 // A light that is somewhere: a triangle, two that make a quadrilateral, a point, a spot.
 struct PlacedLight {
-    vec3 lo, hi;              // the box around it
-    vec3 axis;                // unit
-    float power;              // as LightNode::power; above 0
-    double axes_angle = 0;    // of all directions that count as its axis, from `axis`; in radians
-    double reach_angle = 0;   // see LightNode::cos_reach
+    vec3 lo, hi;             // the box around it
+    vec3 axis;               // unit
+    float power;             // as LightNode::power; above 0
+    double axes_angle = 0;   // of all directions that count as its axis, from `axis`; in radians
+    double reach_angle = 0;  // see LightNode::cos_reach
     bool is_two_sided = false;
-    uint light = 0;           // its index, or that of the first triangle
+    uint light = 0;  // its index, or that of the first triangle
     uint count = 1;
 };
 
@@ -26,7 +26,8 @@ struct LightTree {
     std::vector<uint> ways;        // by index of a light, see chance_of_way
 };
 
-// light_count: above all indices. Splits where the orientation-aware surface area heuristic of Conty and Kulla is least.
+// light_count: above all indices. Splits where the orientation-aware surface area heuristic of Conty and Kulla is
+// least.
 LightTree build_light_tree(std::span<const PlacedLight> lights, std::size_t light_count);
 
 }  // namespace twinray::path_tracer

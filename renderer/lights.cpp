@@ -59,9 +59,9 @@ bool have_an_edge(const Mesh& mesh, uint other, const uvec3& triangle) {
 struct Collector {
     const Scene& scene;
     LocalLights lights = {};
-    std::vector<double> weights = {};        // by index of a light: an estimate of its power
-    std::vector<double> areas = {};          // of the emitters
-    std::vector<PlacedLight> placed = {};    // all but suns and lights without power
+    std::vector<double> weights = {};      // by index of a light: an estimate of its power
+    std::vector<double> areas = {};        // of the emitters
+    std::vector<PlacedLight> placed = {};  // all but suns and lights without power
 
     void add_instance(uint index) {
         const Instance& instance = scene.instances[index];

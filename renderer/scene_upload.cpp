@@ -13,8 +13,8 @@ namespace {
 void fill_absent(const Context& context, SceneData& data) {
     context.fill_absent(data.instances, data.extras, data.materials, data.layered, data.material_kinds,
                         data.textures.records, data.textures.faults, data.lights.emitters, data.lights.punctual,
-                        data.lights.faults, data.light_keys, data.light_table, data.light_tree,
-                        data.environment.pixels, data.environment.row_sums, data.environment.column_sums);
+                        data.lights.faults, data.light_keys, data.light_table, data.light_tree, data.environment.pixels,
+                        data.environment.row_sums, data.environment.column_sums);
 }
 
 LightNode dark_leaf() {
@@ -98,7 +98,9 @@ void DeviceScene::upload_all(Commands& commands, const Scene& scene, const Local
 
 // Where all lights have gone out, kernels that look for them find a key that names nothing.
 void DeviceScene::upload_lights(Commands& commands, const LocalLights& lights) {
-    const auto some_of = []<class T>(const std::vector<T>& values) { return values.empty() ? std::vector<T>(1) : values; };
+    const auto some_of = []<class T>(const std::vector<T>& values) {
+        return values.empty() ? std::vector<T>(1) : values;
+    };
     if (lights.by == LightChoice::tree && !features_.light_tree)
         fail("lights are in a tree, and the kernels of this scene choose them by a table");
     if (features_.local_lights) {
@@ -112,8 +114,8 @@ void DeviceScene::upload_lights(Commands& commands, const LocalLights& lights) {
         record_.table_chance = lights.table_chance;
     }
     if (features_.light_tree)
-        record_.light_tree = upload_moving(
-            commands, "light tree", lights.tree.nodes.empty() ? std::vector{dark_leaf()} : lights.tree.nodes);
+        record_.light_tree = upload_moving(commands, "light tree",
+                                           lights.tree.nodes.empty() ? std::vector{dark_leaf()} : lights.tree.nodes);
     const bool has_sky = record_.environment.density_per_luminance > 0;
     record_.environment.chance = has_sky ? 1.0f / static_cast<float>(1 + lights.kind_count()) : 0;
 }

@@ -19,7 +19,7 @@ struct LightNode
     float power; // the sum of radiant intensities: of a surface its radiance times its area
     float cos_axes;  // of half the opening angle of the cone
     float cos_reach; // of the largest angle between a light's axis and where it shines
-    uint child; // LIGHT_ flags and the first of two nodes, which follow each other, or, in a leaf, the index of the light
+    uint child; // LIGHT_ flags, and the first of two nodes that follow each other or, in a leaf, the index of its light
 };
 BUFFER_OF(LightNode, 4);
 

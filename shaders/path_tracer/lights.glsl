@@ -168,12 +168,14 @@ LightSample sample_light(SceneData scene, LightReceiver at, uvec2 choice, vec2 u
 {
     float environment = HAS_ENVIRONMENT ? scene.environment.chance : 0.0;
     float which = unit_float(choice.x);
-    if (HAS_ENVIRONMENT && (!HAS_LOCAL_LIGHTS || which < environment)) return sample_environment(scene.environment, u);
+    if (HAS_ENVIRONMENT && (!HAS_LOCAL_LIGHTS || which < environment))
+        return sample_environment(scene.environment, u);
     ChosenLight chosen = choose_local(scene, at, (which - environment) / (1.0 - environment), choice.y);
     chosen.chance *= 1.0 - environment;
     SetKey key = AT(scene.light_keys, chosen.light);
     LightSample light;
-    light.pdf = 0.0; // where all lights have gone out, of a key that names nothing, and where none of the tree lights it
+    // It stays 0 where all lights have gone out, for a key that names nothing, and where no light of the tree arrives.
+    light.pdf = 0.0;
     if (!(chosen.chance > 0.0)) return light;
 #define SAMPLE_LOCAL(element) light = sample_local(scene, element, chosen.chance, at.position, u)
     WITH_INDEX(LOCAL_LIGHTS, scene.lights, key, SAMPLE_LOCAL)

@@ -209,8 +209,8 @@ void shade(PathState path, Ray ray, Hit hit)
         set_layers(vertex.bsdf, AT(wave.scene, 0), vertex.surface, vertex.normal, vertex.wo, vertex.is_front);
     if (is_last && !is_pane(vertex.bsdf)) return; // panes are passed at any depth, as by shadow rays
     vertex.facing = 0u;
-    if (HAS_LIGHT_TREE)
-        vertex.facing = packed_facing(vertex.surface.point.normal * (vertex.is_front ? 1.0 : -1.0), vertex.bsdf.is_glass);
+    vec3 outside = vertex.surface.point.normal * (vertex.is_front ? 1.0 : -1.0);
+    if (HAS_LIGHT_TREE) vertex.facing = packed_facing(outside, vertex.bsdf.is_glass);
     bool samples_lights = STRATEGY != STRATEGY_BSDF && (HAS_ENVIRONMENT || HAS_LOCAL_LIGHTS);
     if (samples_lights && !is_last && scatters(vertex.bsdf)) light_directly(vertex);
     scatter(vertex, ray);

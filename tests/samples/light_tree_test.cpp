@@ -131,8 +131,13 @@ TEST(LightTree, LightsAreChosenWithTheirChance) {
 // Lights beside a receiver are asked more often than a light that is a thousand times as strong and far or hidden.
 TEST(LightTree, PlaceCountsMoreThanPower) {
     const auto point = [](vec3 at, float power, uint light) {
-        return PlacedLight{.lo = at, .hi = at, .axis = {0, 1, 0}, .power = power, .axes_angle = std::numbers::pi,
-                           .reach_angle = std::numbers::pi / 2, .light = light};
+        return PlacedLight{.lo = at,
+                           .hi = at,
+                           .axis = {0, 1, 0},
+                           .power = power,
+                           .axes_angle = std::numbers::pi,
+                           .reach_angle = std::numbers::pi / 2,
+                           .light = light};
     };
     const LightReceiver floor = receiver_of(vec3(0), packed_facing({0, 1, 0}, false));
     const LightTree far = build_light_tree(std::vector{point({0, 1, 0}, 1, 0), point({0, 100, 0}, 1000, 1)}, 2);
@@ -148,8 +153,13 @@ TEST(LightTree, AWayHasAtMost32Levels) {
     std::vector<PlacedLight> lights;
     for (uint i = 0; i < 120; ++i) {
         const vec3 at(std::ldexp(1.0f, -static_cast<int>(i)), 0, 0);
-        lights.push_back({.lo = at, .hi = at, .axis = {0, 1, 0}, .power = 1, .axes_angle = std::numbers::pi,
-                          .reach_angle = std::numbers::pi / 2, .light = i});
+        lights.push_back({.lo = at,
+                          .hi = at,
+                          .axis = {0, 1, 0},
+                          .power = 1,
+                          .axes_angle = std::numbers::pi,
+                          .reach_angle = std::numbers::pi / 2,
+                          .light = i});
     }
     const LightTree tree = build_light_tree(lights, lights.size());
     const LightReceiver at = receiver_of({0.4f, -1, 0}, packed_facing({0, 1, 0}, false));
@@ -167,7 +177,8 @@ TEST(LightTree, AFacingIsKeptToItsError) {
         EXPECT_LT(length(at.normal - normal), FACING_ERROR);
         EXPECT_EQ(at.has_two_sides, has_two_sides);
     }
-    for (const vec3& axis : {vec3(1, 0, 0), vec3(-1, 0, 0), vec3(0, 1, 0), vec3(0, -1, 0), vec3(0, 0, 1), vec3(0, 0, -1)})
+    for (const vec3& axis :
+         {vec3(1, 0, 0), vec3(-1, 0, 0), vec3(0, 1, 0), vec3(0, -1, 0), vec3(0, 0, 1), vec3(0, 0, -1)})
         EXPECT_LT(length(receiver_of(vec3(0), packed_facing(axis, false)).normal - axis), FACING_ERROR);
 }
 
