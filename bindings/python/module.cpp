@@ -208,8 +208,11 @@ void bind_scene(nb::module_& m) {
              })
         .def("geometries", &Scene::geometries, nb::call_guard<nb::gil_scoped_release>())
         .def("triangle_count", &Scene::triangle_count, nb::call_guard<nb::gil_scoped_release>())
-        .def("around",
-             [](Scene& scene, uint geometry) { return corners_of(unlocked([&] { return scene.around(geometry); })); })
+        .def("reach",
+             [](Scene& scene, uint geometry) {
+                 const Scene::Reach reach = unlocked([&] { return scene.reach(geometry); });
+                 return nb::make_tuple(reach.farthest, reach.extent);
+             })
         .def("first_faces",
              [](const Scene& scene) { return given<std::uint64_t>(unlocked([&] { return scene.first_faces(); })); })
         .def("bounds", [](Scene& scene) { return corners_of(unlocked([&] { return scene.bounds(); })); })

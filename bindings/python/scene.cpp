@@ -293,9 +293,13 @@ Bounds Scene::around() const {
     return all;
 }
 
-Bounds Scene::around(uint geometry) {
+Scene::Reach Scene::reach(uint geometry) {
     const Lock lock(device_->mutex);
-    return around(part(geometry, "around"));
+    const Bounds box = around(part(geometry, "reach"));
+    if (box.is_empty()) return {};
+    const vec3 size = box.size();
+    return {std::max({-box.lo.x, -box.lo.y, -box.lo.z, box.hi.x, box.hi.y, box.hi.z}),
+            std::max({size.x, size.y, size.z})};
 }
 
 // Calls trace(first, rays, ways) for the rays from `first` on; no ways: no ray was brought near the scene.

@@ -140,7 +140,10 @@ class Scene {
     std::size_t triangle_count() const;
     std::vector<std::uint64_t> first_faces() const;  // by number, and their count at the end
     Bounds bounds();                                 // in world space
-    Bounds around(uint geometry);                    // likewise, of one; it may be larger
+    struct Reach {
+        float farthest = 0, extent = 0;
+    };
+    Reach reach(uint geometry);  // its largest coordinate in world space and its largest side, or a little more
 
     Cast cast(const RayRows& rows, bool with_normals);
     Column<bool> occlusions(const RayRows& rows);

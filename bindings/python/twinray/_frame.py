@@ -11,7 +11,7 @@ HARMLESS = 1e-6  # a rounding, in extents of a mesh
 
 def rounding_of(coordinates):
     """By how much float32 rounds the largest of these, at most."""
-    return float(np.abs(coordinates).max()) * _ROUNDING
+    return float(np.max(np.abs(coordinates))) * _ROUNDING
 
 
 def near_point(points):
@@ -51,6 +51,10 @@ class Frame:
     def keep(self, geometry, mesh_origin):
         """Remember what a geometry's vertices are counted from."""
         self._of_mesh[geometry] = mesh_origin
+
+    def has_one_geometry(self):
+        """Whether no more than one was added so far."""
+        return len(self._of_mesh) <= 1
 
     def fixed_origin(self):
         """The origin as a tuple; None where the next mesh still says it."""

@@ -463,11 +463,12 @@ class Scene:
         return np.nan_to_num(np.rint(self._windings(points))) != 0
 
     def _tell_if_far(self, geometries):
-        harmless = HARMLESS if len(self) == 1 else 1000 * HARMLESS  # small parts of a large scene are no news
+        # Small parts of a large scene are no news.
+        harmless = HARMLESS if self._frame.has_one_geometry() else 1000 * HARMLESS
         for geometry in () if self._told_of_far else geometries:
-            low, high = self._core.around(geometry)
-            rounding = rounding_of([low, high])
-            if 0 < harmless * (high - low).max() < rounding < np.inf:
+            farthest, extent = self._core.reach(geometry)
+            rounding = rounding_of(farthest)
+            if 0 < harmless * extent < rounding < np.inf:
                 self._told_of_far = True
                 warnings.warn(
                     f"geometry {geometry} stands so far from the scene's origin {self.origin.tolist()} that float32 "

@@ -12,6 +12,8 @@
 #include "engine/core/files.h"
 #include "tests/scene/temp_dir.h"
 #include "twinray/glsl/vector_math.h"
+#include "viewer/picture/face_picture.h"
+#include "viewer/picture/face_picture.h"
 #include "viewer/picture/font.h"
 #include "viewer/picture/matrix_picture.h"
 #include "viewer/picture/page.h"
@@ -256,6 +258,17 @@ TEST(Matrix, PixelsAreMeansOfLargeOnes) {
         return count_of(draw_matrix(901, of, {}), color_at(ColorMap::magnitude, 1));
     };
     EXPECT_EQ(highest(entries) - highest({}), 3u);
+}
+
+TEST(Picture, NormalsAreOfFrontsWhichMirroringKeeps) {
+    Scene scene;
+    scene.meshes = {make_quad(vec3(0), vec3(1, 0, 0), vec3(0, 1, 0))};
+    scene.instances = {{"as it is", 0, {}}, {"mirrored", 0, Transform::scaling({-1, 1, 1})}};
+    for (uint instance = 0; instance < 2; ++instance) {
+        Hit hit{};
+        hit.instance_index = instance;
+        EXPECT_EQ(front_normal(scene, hit), dvec3(0, 0, 1));
+    }
 }
 
 }  // namespace
