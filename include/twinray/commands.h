@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Buffers, commands and kernels: what an application needs to prepare rays on the device and to read what they met.
+// Buffers, commands and kernels, with which an application prepares rays on the device and reads the results.
 //
 //     Buffer rays(context, {.name = "rays", .bytes = count * sizeof(Ray)});
 //     Kernel<Args> make_rays(context, {.name = "make rays", .spirv = make_rays_spirv});
@@ -20,13 +20,13 @@ namespace twinray {
 
 struct CompiledKernel;
 
-// Memory of a buffer of its own, shared with others.
+// The memory of a buffer that is shared with other programs or APIs.
 struct ExternalMemory {
     VkDeviceMemory memory = VK_NULL_HANDLE;
     std::uint64_t bytes = 0;
 };
 
-// What a buffer is to be.
+// Describes a buffer.
 struct BufferDesc {
     std::string name;         // required: shows in errors, debuggers and validation messages
     std::uint64_t bytes = 0;  // 0 is allowed and gives an empty buffer with address 0
@@ -35,40 +35,40 @@ struct BufferDesc {
     std::uint64_t alignment = 16;  // of the device address; a power of two
 };
 
-// Memory as others take it: an opaque file descriptor, as CUDA, HIP and Vulkan import it, and the size of all of it,
-// which they must be told.
+// Memory for other programs or APIs to import: an opaque file descriptor, which CUDA, HIP and Vulkan can import, and
+// the size of the whole memory, which they must be given.
 struct ExportedMemory {
     int fd = -1;
     std::uint64_t bytes = 0;
 };
 
-// A named range of device memory. Move-only; when destroyed it is freed after all work submitted so far.
+// A named range of device memory. Move-only; when destroyed, it is freed after all work submitted so far.
 class Buffer {
   public:
     Buffer() = default;
-    // Throws Error naming the buffer and its size when memory is out.
+    // Throws Error naming the buffer and its size if there is not enough memory.
     Buffer(Context& context, const BufferDesc& desc);
-    // Device memory that other programs and APIs can share (VK_KHR_external_memory_fd). Throws Error naming the buffer
-    // where the device has no such, or for another Memory than device.
+    // Makes device memory that other programs and APIs can share (VK_KHR_external_memory_fd). Throws Error naming the
+    // buffer if the device does not support this, or for another Memory than device.
     static Buffer exportable(Context& context, const BufferDesc& desc);
-    // Memory of the same device, or driver, that another has exported. The file descriptor becomes the buffer's; if
-    // this throws it stays the caller's. Whoever writes, the other must wait for it: nothing here orders work of two
-    // APIs.
+    // Imports memory that another program or API on the same device or driver has exported. The file descriptor becomes
+    // the buffer's; if this throws, it stays the caller's. The two sides must wait for each other's writes themselves:
+    // twinray does not order work of two APIs.
     static Buffer imported(Context& context, const BufferDesc& desc, const ExportedMemory& memory);
     ~Buffer();
     Buffer(Buffer&& other) noexcept;
     Buffer& operator=(Buffer&& other) noexcept;
 
-    VkBuffer handle() const { return made_.buffer; }    // null where it is empty
-    std::uint64_t address() const { return address_; }  // on the device; 0 where it is empty
+    VkBuffer handle() const { return made_.buffer; }    // null if it is empty
+    std::uint64_t address() const { return address_; }  // on the device; 0 if it is empty
     std::uint64_t bytes() const { return bytes_; }      // as BufferDesc asked for
     const std::string& name() const { return name_; }   // as in BufferDesc
-    // With a file descriptor of the caller's, who closes it or gives it to an import that takes it. Throws Error unless
-    // the buffer is exportable.
+    // Returns a new file descriptor, which the caller closes or passes to an import that takes it over. Throws Error
+    // unless the buffer is exportable.
     ExportedMemory exported() const;
-    std::byte* mapped() const { return static_cast<std::byte*>(made_.mapped); }  // for upload and readback
+    std::byte* mapped() const { return static_cast<std::byte*>(made_.mapped); }  // not null for upload and readback
 
-    // The typed address of what lies at an offset, as kernels take it.
+    // Returns the typed address of the data at an offset, for kernels.
     template <class T>
     Ref<T> ref(std::uint64_t byte_offset = 0) const {
         return {address_ + byte_offset};
@@ -80,7 +80,7 @@ class Buffer {
 
     Context* context_ = nullptr;
     AllocatedBuffer made_;
-    ExternalMemory external_;  // whose it is, if not the allocator's
+    ExternalMemory external_;  // the memory, if it is not the allocator's
     std::uint64_t address_ = 0;
     std::uint64_t bytes_ = 0;
     std::string name_;
@@ -96,7 +96,7 @@ struct PassTiming {
 struct CallerCommands {
     VkCommandBuffer handle = VK_NULL_HANDLE;
     // A value of a timeline semaphore of the caller that the submission will signal. Until it is reached, twinray keeps
-    // what the commands use; so it must be reached, from the host or by a later value, even if they are given up.
+    // the resources; so it must be reached, from the host or by a later value, even if the commands are dropped.
     SyncPoint done;
     // The caller's earlier work whose writes twinray must see, and the later work that uses what twinray writes.
     VkPipelineStageFlags producer_stages = VK_PIPELINE_STAGE_ALL_COMMANDS_BIT;
@@ -105,14 +105,14 @@ struct CallerCommands {
     VkAccessFlags consumer_access = VK_ACCESS_MEMORY_READ_BIT;
 };
 
-// A straight line of named passes. The end of a pass is a global memory barrier, so each pass sees all that earlier
+// A sequence of named passes. The end of a pass is a global memory barrier, so that each pass sees all that earlier
 // passes wrote; dispatches inside one pass must not depend on each other. Own commands may become several command
 // buffers, cut between passes, so that none keeps the device busy for too long (see Pace).
 class Commands {
   public:
-    // Own commands, submitted by submit().
+    // Makes own commands, submitted by submit().
     Commands(Context& context, const std::string& name);
-    // Records into the caller's. Throws Error unless caller.handle and caller.done are set.
+    // Records into the caller's command buffer. Throws Error unless caller.handle and caller.done are set.
     Commands(Context& context, const std::string& name, const CallerCommands& caller);
     ~Commands();
     Commands(const Commands&) = delete;
@@ -121,7 +121,7 @@ class Commands {
     // A scope: everything recorded while it lives belongs to it.
     class Pass {
       public:
-        // Begins it; see Commands::pass.
+        // Begins the pass; see Commands::pass.
         Pass(Commands& commands, const std::string& name);
         ~Pass();
         Pass(const Pass&) = delete;
@@ -132,7 +132,7 @@ class Commands {
     };
     [[nodiscard]] Pass pass(const std::string& name) { return Pass(*this, name); }  // begins one
     bool in_pass() const;                                                           // whether one is open
-    // Within a pass: what follows sees what went before, as from one pass to the next.
+    // Within a pass: later commands see what earlier ones wrote, as from one pass to the next.
     void barrier();
 
     // Copies into `target` through a staging buffer that lives until the GPU has read it.
@@ -141,48 +141,48 @@ class Commands {
     void upload(const Buffer& target, std::span<const T> data, std::uint64_t offset = 0) {
         upload(target, offset, std::as_bytes(data));
     }
-    // A value of at most 64 KiB, without staging.
+    // Writes a value of at most 64 KiB, without staging.
     template <class T>
     void write(const Buffer& target, const T& value, std::uint64_t offset = 0) {
         write_bytes(target, offset, std::as_bytes(std::span(&value, 1)));
     }
-    // Many pieces through one staging buffer and one copy.
+    // Uploads many pieces through one staging buffer and one copy.
     struct Region {
         std::uint64_t offset;  // in the target
         std::span<const std::byte> data;
     };
-    // Throws Error for one beyond the target.
+    // Throws Error for a region beyond the target.
     void upload_regions(const Buffer& target, std::span<const Region> regions);
-    // A range of one buffer into another.
+    // Copies a range of one buffer into another.
     void copy(const Buffer& from, std::uint64_t from_offset, const Buffer& to, std::uint64_t to_offset,
               std::uint64_t bytes);
-    // bytes must be a multiple of 4.
+    // Fills a range with `word`; `bytes` must be a multiple of 4.
     void fill(const Buffer& target, std::uint64_t offset, std::uint64_t bytes, std::uint32_t word);
 
-    // Tells of a dispatch of so many groups in the present pass: what names the work of a device that is lost, and says
+    // Reports a dispatch of so many groups in the current pass: errors about a lost device name it, and it decides
     // where commands are cut.
     void count_groups(std::uint64_t groups);
-    // The same of work of the driver that is as large as so many groups.
+    // The same for work of the driver that is as large as so many groups.
     void count_work(std::uint64_t groups);
 
     // Takes ownership until the GPU has finished these commands.
     void retain(Buffer&& temporary);
 
-    // Once, at the end, even if it fails. The object may then be destroyed at any time. Throws Error for commands of
-    // the caller.
+    // Call it once, at the end, even if it fails. The object may then be destroyed at any time. Throws Error for
+    // commands of the caller.
     SyncPoint submit();
-    // The same, and waits. How many seconds the GPU was busy; where the queue has no timestamps, the host waited.
+    // The same, and waits. Returns the seconds that the GPU was busy; without timestamps, that the host waited.
     double submit_and_wait();
-    // The same with what is recorded so far: more may follow. Not within a pass.
+    // The same for the passes recorded so far: more may follow. Not allowed within a pass.
     double submit_part();
     bool is_of_caller() const;  // whether they were made with CallerCommands
-    // When these commands are done: CallerCommands::done, or what submit() returned.
+    // The point at which these commands are done: CallerCommands::done, or the one that submit() returned.
     SyncPoint done() const;
-    // A point that they will reach, for what counts on them before they are submitted, as a sync that is recorded into
-    // them does. Own commands of which it was asked are submitted in the order in which it was.
+    // A point that they will reach, for work that relies on them before they are submitted, such as a sync recorded
+    // into them. Own commands for which it was called are submitted in the order of those calls.
     SyncPoint promise();
 
-    // After the submission: waits for the GPU. An entry per pass as recorded; none if the queue has no timestamps.
+    // After the submission: waits for the GPU. Returns an entry per pass; none if the queue has no timestamps.
     std::vector<PassTiming> timings() const;
 
     Context& context() const;        // that they were made on
@@ -198,7 +198,7 @@ class Commands {
 // Copies a range back to the host; submits and waits.
 void download_bytes(Context& context, const Buffer& buffer, std::uint64_t offset, std::span<std::byte> into);
 
-// The same, of values of one type.
+// The same for values of one type.
 template <class T>
 std::vector<T> download(Context& context, const Buffer& buffer, std::uint64_t count, std::uint64_t byte_offset = 0) {
     std::vector<T> values(count);
@@ -212,7 +212,7 @@ struct SpecializationConstant {
     std::uint32_t value;  // VkBool32 for bools
 };
 
-// What a kernel is made of.
+// Describes a kernel.
 struct KernelDesc {
     std::string name = {};                      // folder_stem: the label and the timing have this name, too
     std::span<const std::uint32_t> spirv = {};  // embedded at build time
@@ -223,20 +223,20 @@ struct KernelDesc {
     bool has_images = false;  // it reads an ImageArray, which each dispatch then takes
 };
 
-// A compute pipeline whose only input is one push-constant block and, where it has images, an ImageArray, shared with
-// all others of the context that are made from the same. Use Kernel<Args>.
+// A compute pipeline whose only inputs are one push-constant block and, if it has images, an ImageArray. All pipelines
+// of a context that are made from the same description share one. Use Kernel<Args>.
 class ComputePipeline {
   public:
-    // Compiles it. Throws Error.
+    // Compiles the kernel. Throws Error.
     ComputePipeline(Context& context, const KernelDesc& desc, std::uint32_t args_bytes);
     ~ComputePipeline();
     ComputePipeline(const ComputePipeline&) = delete;
     ComputePipeline& operator=(const ComputePipeline&) = delete;
 
-    // So many groups, spread over x and y where they are many.
+    // Dispatches so many groups, spread over x and y if there are many.
     void dispatch_groups(Commands& commands, const void* args, std::uint64_t group_count,
                          VkDescriptorSet images = VK_NULL_HANDLE) const;
-    // As many groups as the VkDispatchIndirectCommand at `offset` of `counts` says.
+    // Dispatches as many groups as the VkDispatchIndirectCommand at `offset` of `counts` says.
     void dispatch_indirect(Commands& commands, const void* args, const Buffer& counts, std::uint64_t offset) const;
 
     const std::string& name() const { return desc_.name; }         // as in KernelDesc
@@ -257,22 +257,21 @@ class Kernel {
     static_assert(sizeof(Args) <= 128 && sizeof(Args) % 4 == 0);
 
   public:
-    // As ComputePipeline.
+    // See ComputePipeline.
     Kernel(Context& context, const KernelDesc& desc) : pipeline_(context, desc, sizeof(Args)) {}
 
-    // Runs at least `count` invocations; the shader must ignore global_index() >= count. Opens a pass with the
-    // kernel's name unless one is open.
-    // `images`: of a TextureStore, for kernels made with KernelDesc::has_images.
+    // Runs at least `count` invocations; the shader must ignore global_index() >= count. Opens a pass with the kernel's
+    // name unless one is open. `images` belongs to a TextureStore, for kernels made with KernelDesc::has_images.
     void dispatch(Commands& commands, const Args& args, std::uint64_t count,
                   VkDescriptorSet images = VK_NULL_HANDLE) const {
         dispatch_groups(commands, args, (count + pipeline_.group_size() - 1) / pipeline_.group_size(), images);
     }
-    // So many groups.
+    // Dispatches so many groups.
     void dispatch_groups(Commands& commands, const Args& args, std::uint64_t group_count,
                          VkDescriptorSet images = VK_NULL_HANDLE) const {
         pipeline_.dispatch_groups(commands, &args, group_count, images);
     }
-    // As ComputePipeline::dispatch_indirect.
+    // See ComputePipeline::dispatch_indirect.
     void dispatch_indirect(Commands& commands, const Args& args, const Buffer& counts, std::uint64_t offset) const {
         pipeline_.dispatch_indirect(commands, &args, counts, offset);
     }
@@ -282,14 +281,14 @@ class Kernel {
     ComputePipeline pipeline_;
 };
 
-// Cuts work of one kind into submissions of less than ContextDesc::most_submission_seconds each, by how long the ones
-// before took. Results must not depend on where it cuts. Remembers the rate from one use to the next.
+// Cuts work of one kind into submissions of less than ContextDesc::most_submission_seconds each, from the times of the
+// previous ones. Results must not depend on where it cuts. It remembers the rate from one use to the next.
 class Pace {
   public:
     explicit Pace(const Context& context);  // with the limit of this context
 
-    // Has `record(first, count)` record all of `count` items in order, in as many parts as it takes: all but the last
-    // are submitted and waited for, with what the commands held before. Commands of the caller stay whole.
+    // Calls `record(first, count)` to record all of `count` items in order, in as many parts as needed: all but the
+    // last are submitted and waited for, with what the commands held before. Commands of the caller are never cut.
     template <class Record>
     void record(Commands& commands, std::uint64_t count, const Record& record) {
         for (std::uint64_t first = 0; first < count; first += pending_) {
@@ -298,7 +297,7 @@ class Pace {
             record(first, pending_);
         }
     }
-    // Submits the last part, waits for it and learns from it.
+    // Submits the last part, waits for it and updates the rate.
     void finish(Commands& commands);
 
   private:

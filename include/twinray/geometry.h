@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What all of twinray speaks of: errors, vectors, maps, boxes, rays, hits and meshes.
+// Basic types of twinray: errors, vectors, affine maps, boxes, rays, hits and meshes.
 //
-//     twinray::Mesh mesh = twinray::make_icosphere(4);
+// bytes because GLSL holds them as two words.
 //     mesh.positions.push_back(glm::vec3(0, 1, 2));  // vectors of any library with x, y and z
 //
 // Lengths are in the units of the scene, angles in radians, indices count from 0.
@@ -21,26 +21,26 @@
 
 namespace twinray {
 
-// The one exception of the library. Its text names the object, the value and the limit that it broke, or, for failures
-// of the world (no device, out of memory, bad file), what to do.
+// The only exception type of the library. Its text names the object, the value and the limit that it broke; for a
+// failure outside the program (no device, out of memory, bad file) it says what to do.
 class Error : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
 };
 
-// The GPU stopped answering (VK_ERROR_DEVICE_LOST). Everything of that Context throws this from then on; only
-// destroying is left.
+// The GPU stopped answering (VK_ERROR_DEVICE_LOST). From then on, every call on that Context throws this; the Context
+// can only be destroyed.
 class DeviceLost : public Error {
   public:
     using Error::Error;
 };
 
-// Vectors of two to four numbers: plain data, of which GLM's, or an application's own with the same members, convert to
-// and from. They do no arithmetic, which is for the application's own.
+// Vectors of two to four numbers. They are plain data and convert to and from GLM's vectors, or an application's own
+// with the same members. They have no arithmetic: use the application's own type for that.
 
 using uint = std::uint32_t;  // as in GLSL
 
-// Of N numbers of type T, by the names x, y, z, w.
+// A vector of N numbers of type T named x, y, z, w.
 template <int N, class T>
 struct Vec;
 
@@ -63,13 +63,13 @@ template <class V>
 constexpr bool is_twinray_vector = false;
 template <int N, class T>
 constexpr bool is_twinray_vector<Vec<N, T>> = true;
-// A vector of the application's.
+// A vector type of the application.
 template <class V, int N>
 concept ForeignVector = !is_twinray_vector<V> && HasXy<V> && (N < 3 || HasXyz<V>)&&(N < 4 || HasXyzw<V>);
 template <class V, int N>
 concept ForeignVectorOf = ForeignVector<V, N> && HasXyz<V>
 == (N > 2) && HasXyzw<V> == (N > 3);
-// Conversions that lose nothing need no words.
+// Conversions that lose nothing are implicit.
 template <class From, class To>
 constexpr bool is_widened = std::same_as<From, To> ||
                             (std::floating_point<From> && std::floating_point<To> && sizeof(From) < sizeof(To));
@@ -163,7 +163,7 @@ struct Transform {
 
     static Transform translation(vec3 offset);  // moves by it
     static Transform scaling(vec3 factors);     // along the axes
-    // Of a column-major matrix m[column][row], as GLM's, whose fourth row must be (0, 0, 0, 1). Throws Error otherwise.
+    // From a column-major matrix m[column][row], like GLM's; throws Error unless its fourth row is (0, 0, 0, 1).
     template <class Matrix>
     static Transform of(const Matrix& m) {
         return of_columns({vec4(m[0][0], m[0][1], m[0][2], m[0][3]), vec4(m[1][0], m[1][1], m[1][2], m[1][3]),
@@ -179,18 +179,18 @@ static_assert(sizeof(Transform) == 48);
 vec3 transform_point(const Transform& transform, vec3 point);
 vec3 transform_vector(const Transform& transform, vec3 vector);  // without the offset
 
-// a after b.
+// The map that applies b first, then a.
 Transform operator*(const Transform& a, const Transform& b);
 
 // Determinant of the linear part, in float64.
 double determinant(const Transform& transform);
 
-// Why the map cannot place an instance, "" if it can: an entry is not finite, the linear part is singular (a
-// determinant of exactly 0), the inverse exceeds float32, or a row or column of the linear part is denormal, which many
-// devices take for 0.
+// Says why the map cannot place an instance; "" if it can. Faults: an entry is not finite, the linear part is singular
+// (a determinant of exactly 0), the inverse exceeds float32, or a row or column of the linear part is denormal, which
+// many devices treat as 0.
 std::string fault_of(const Transform& transform);
 
-// The inverse, computed in float64 and rounded once. Throws Error, naming `object`, where it has a fault_of().
+// The inverse, computed in float64 and rounded once. Throws Error, naming `object`, if the map has a fault_of().
 Transform inverse(const Transform& transform, const char* object);
 
 // Axis-aligned box; the default is empty (lo > hi).
@@ -201,16 +201,15 @@ struct Bounds {
     bool is_empty() const { return !(lo.x <= hi.x && lo.y <= hi.y && lo.z <= hi.z); }  // holds no point
     void include(vec3 point);                                                          // grows so that it holds it
     void include(const Bounds& other);
-    vec3 size() const;    // 0 where it is empty
-    vec3 center() const;  // the middle; not a number where it is empty
+    vec3 size() const;    // 0 if it is empty
+    vec3 center() const;  // the middle; NaN if it is empty
 };
 
-// Eight bytes: a device address when pushed to the GPU, a host address in code that both run. GLSL has two words for
-// them, so that structs are to be aligned as there.
+// Eight bytes: a device address when pushed to the GPU, a host address in code that runs on both. They are aligned to
 using Address [[gnu::aligned(4)]] = std::uint64_t;
 using Uint64 [[gnu::aligned(4)]] = std::uint64_t;
 
-// The address of items of type T, as kernels take it in their arguments; 0: none.
+// The address of items of type T as kernels take it in their arguments; 0: no items.
 template <class T>
 struct Ref {
     Address address = 0;
@@ -218,45 +217,45 @@ struct Ref {
     constexpr Ref() = default;
     constexpr Ref(std::uint64_t at) : address(at) {}  // an address on the device, in bytes
 
-    T& operator[](std::size_t i) const { return reinterpret_cast<T*>(address)[i]; }   // of memory of the host
-    static Ref to(const T* host) { return {reinterpret_cast<std::uint64_t>(host)}; }  // of memory of the host
+    T& operator[](std::size_t i) const { return reinterpret_cast<T*>(address)[i]; }   // for host memory
+    static Ref to(const T* host) { return {reinterpret_cast<std::uint64_t>(host)}; }  // for host memory
 };
-// The usual ones.
+// Common element types.
 using Floats = Ref<float>;
 using Uints = Ref<uint>;
 
-// Ray and Hit, 32 bytes each, for kernels and in files too.
+// Ray and Hit have 32 bytes each, in kernels and in files.
 #include "twinray/glsl/cpp_begin.h"
 #include "twinray/glsl/ray.h"
 #include "twinray/glsl/cpp_end.h"
 static_assert(sizeof(Ray) == 32 && sizeof(Hit) == 32);
-// In every field; NaN is equal to nothing.
+// Compares every field; NaN is not equal to anything.
 constexpr bool operator==(const Hit& a, const Hit& b) {
     return a.hit == b.hit && a.t == b.t && a.primitive_index == b.primitive_index && a.custom_index == b.custom_index &&
            a.u == b.u && a.v == b.v && a.instance_index == b.instance_index && a.flags == b.flags;
 }
 
-// An indexed triangle mesh with what shading needs. Triangle i keeps its index i everywhere.
-// normals, tangents, uvs, second_uvs and colors are empty or have one entry per position; materials is empty (all 0) or
-// has one entry per triangle, an index into Scene::materials.
+// An indexed triangle mesh with the data that shading needs. Triangle i keeps its index i everywhere. normals,
+// tangents, uvs, second_uvs and colors are empty or have one entry per position; materials is empty (all 0) or has one
+// entry per triangle, an index into Scene::materials.
 struct Mesh {
     std::string name;
     std::vector<vec3> positions;
     std::vector<uvec3> triangles;
-    std::vector<vec3> normals;   // 0 where there is none: shading takes the triangle's own
+    std::vector<vec3> normals;   // 0 for a vertex without one: shading then uses the triangle's own
     std::vector<vec4> tangents;  // xyz and the sign of the bitangent, as glTF
     std::vector<vec2> uvs;
     std::vector<vec2> second_uvs;
     std::vector<vec4> colors;  // linear, from 0 to 1: factors of the base colour and its alpha
     std::vector<uint> materials;
 
-    // Texture coordinates as Texture::uv_set names them; the first stand in for a second set that the mesh lacks.
+    // Texture coordinates of Texture::uv_set; the first set replaces a second one that the mesh lacks.
     const std::vector<vec2>& uv_set(uint set) const { return set == 1 && !second_uvs.empty() ? second_uvs : uvs; }
-    // Of one triangle.
+    // Returns the material index of one triangle.
     uint material(std::size_t triangle) const { return materials.empty() ? 0 : materials[triangle]; }
 };
 
-// An array of a mesh that surfaces interpolate, not owned: so many float32 numbers a vertex, or a triangle.
+// An array of numbers that surfaces interpolate, not owned: `components` float32 numbers per vertex or per triangle.
 struct AttributeView {
     std::string_view name;
     uint components = 1;  // 1 to 4
@@ -264,8 +263,8 @@ struct AttributeView {
     std::span<const float> values;
 };
 
-// What an accelerator takes of a mesh, not owned. It keeps what follows the triangles with
-// AccelOptions::keeps_surfaces alone; each of these is empty or has one entry a vertex, face_metadata one a triangle.
+// The mesh data that an accelerator takes, not owned. The fields after the triangles are kept only with
+// AccelOptions::keeps_surfaces; each of them is empty or has one entry per vertex, face_metadata one per triangle.
 struct MeshView {
     std::string_view name;
     std::span<const vec3> positions;
@@ -274,55 +273,55 @@ struct MeshView {
     std::span<const vec4> tangents = {};
     std::span<const vec2> uv0 = {}, uv1 = {};
     std::span<const vec4> colors = {};
-    std::span<const uint> face_metadata = {};        // what kernels may tell triangles by, as a material
-    std::span<const AttributeView> attributes = {};  // further ones, by names that others of the accelerator may share
-    std::span<const std::byte> metadata = {};        // of the mesh as a whole: any struct that is copied as bytes
+    std::span<const uint> face_metadata = {};        // lets kernels tell triangles apart, such as a material
+    std::span<const AttributeView> attributes = {};  // further ones; meshes of an accelerator may share their names
+    std::span<const std::byte> metadata = {};        // for the mesh as a whole: any struct that is copied as bytes
 
-    // Positions and triangles alone.
+    // Takes positions and triangles only.
     MeshView(std::string_view mesh_name, std::span<const vec3> points, std::span<const uvec3> vertex_indices)
         : name(mesh_name), positions(points), triangles(vertex_indices) {}
-    // All that the mesh has.
+    // Takes all that the mesh has.
     MeshView(const Mesh& mesh);
 };
 
-// Box of the finite vertices that triangles use.
+// Returns the box of the finite vertices that triangles use.
 Bounds bounds_of(const MeshView& mesh);
 
-// A mesh as an instance shows it.
+// A mesh as an instance places it.
 struct PlacedMesh {
     const Mesh* mesh;
     Bounds box;  // bounds_of(*mesh)
     Transform transform;
 };
-// Box of the finite vertices that triangles use, in world space, rounded outward. It looks at the vertices of those
-// meshes alone whose own boxes, as they are turned, reach out of what others fill.
+// Returns the box of the finite vertices that triangles use, in world space, rounded outward. It only reads the
+// vertices of meshes whose own boxes, under their transforms, reach beyond those of others.
 Bounds bounds_of(std::span<const PlacedMesh> placed);
 
 // Throws Error naming the mesh, the triangle, the index and the vertex count if an index is out of range.
 void check_indices(const MeshView& mesh);
 
-// A unit normal for each vertex: those of the triangles around it, weighted by their angles there, so that they do not
-// depend on how faces were cut into triangles (Thuermer, Wuethrich 1998); in float64, rounded once. 0 where no triangle
-// with an area is.
+// Returns a unit normal for each vertex: the normals of the triangles around it, weighted by their angles there, so
+// that the result does not depend on how faces were cut into triangles (Thuermer, Wuethrich 1998). Computed in float64,
+// rounded once. 0 for a vertex without a triangle that has an area.
 std::vector<vec3> smooth_normals(const MeshView& mesh);
 
-// Meshes by formula. The same arguments give the same bits everywhere.
+// Generated meshes. The same arguments give the same bits everywhere.
 
-// Two triangles spanning vertex, vertex + u, vertex + u + v, vertex + v; the normal points along cross(u, v).
+// Makes two triangles spanning vertex, vertex + u, vertex + u + v, vertex + v; the normal points along cross(u, v).
 Mesh make_quad(vec3 vertex, vec3 u, vec3 v);
 
-// Twelve triangles facing outwards, four vertices a face, so that normals are flat.
+// Makes twelve triangles facing outwards, with four vertices per face, so that normals are flat.
 Mesh make_box(vec3 lo, vec3 hi);
 
-// A sphere about the origin of 20 * 4^subdivisions triangles facing outwards, with smooth normals. Closed: vertices
-// are shared. Throws Error above 12 subdivisions.
+// Makes a closed sphere about the origin of 20 * 4^subdivisions triangles facing outwards, with shared vertices and
+// smooth normals. Throws Error above 12 subdivisions.
 Mesh make_icosphere(uint subdivisions, float radius = 1);
 
-// A height field of 2 nx ny triangles over [0, 1]^2 in x and z, facing +y, with uvs. `height` is the amplitude of
-// random heights, 0 = flat. Throws Error when nx or ny is 0 or the vertices do not fit into 32 bits.
+// Makes a height field of 2 nx ny triangles over [0, 1]^2 in x and z, facing +y, with uvs. `height` is the amplitude of
+// random heights, 0 = flat. Throws Error if nx or ny is 0 or the vertices do not fit into 32 bits.
 Mesh make_grid(uint nx, uint ny, float height = 0, uint seed = 0);
 
-// Separate random triangles with vertices at most `size` from centres in [0, 1]^3.
+// Makes separate random triangles with vertices at most `size` from centres in [0, 1]^3.
 Mesh make_soup(uint triangle_count, uint seed, float size = 0.1f);
 
 }  // namespace twinray

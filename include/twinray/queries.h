@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
 // All hits of rays, and geometric queries that trace none: collisions of instances and of triangles, closest points,
-// distances and winding numbers. All work is done on the GPU, of the latter over a tree of boxes in Hilbert order.
+// distances and winding numbers. All work is done on the GPU; the latter queries use a tree of boxes in Hilbert order.
 //
-// - Vertices are where float64 puts them: from float32 positions p and rows r of a transform by
-//   ((r.x p.x + r.y p.y) + r.z p.z) + r.w, each sum rounded to nearest.
-// - Of these, classes of pairs and winding numbers are exact: where float64 is not certain of a sign, the host computes
-//   it by expansions (Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates",
-//   1997).
-// - Triangles count whatever their shape: one without area is the segment or the point that it covers. Those with a
-//   vertex that is not finite take no part.
-// - Each call submits and waits. It throws Error, which names what, the value and the limit, for wrong input and
-//   failures of the device.
-// - Contexts and accelerators must outlive what was made with them; memory is kept for the next call; an object is used
-//   by one thread at a time.
+// - Vertices are computed in float64 from float32 positions p and rows r of a transform by ((r.x p.x + r.y p.y) + r.z
+//   p.z) + r.w, each sum rounded to nearest.
+// - For these vertices, classes of pairs and winding numbers are exact: where float64 is not certain of a sign, the
+//   host computes it by expansions (Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric
+//   Predicates", 1997).
+// - Triangles of any shape count: one without area is the segment or the point that it covers. Those with a vertex that
+//   is not finite are ignored.
+// - Each call submits and waits. Wrong input and failures of the device throw Error naming the object, the value and
+//   the limit.
+// - Contexts and accelerators must outlive the objects made with them; memory is kept for the next call; an object is
+//   used by one thread at a time.
 #pragma once
 
 #include <array>
@@ -29,21 +29,21 @@
 
 namespace twinray {
 
-// A mesh where an instance puts it.
+// A mesh as an instance places it.
 struct MeshInstance {
     uint mesh = 0;  // index among the meshes
     Transform transform;
 };
 
-// How many pairs a search may find before it throws, unless told otherwise.
+// The number of pairs that a search may find before it throws, unless set otherwise.
 inline constexpr std::uint64_t default_max_pairs = 1u << 27;
 
 // All hits of rays ----------------------------------------------------------------------------------------------------
 
-// Hits by ray, those of all rays in one array.
+// The hits of all rays in one array.
 struct HitsOfRays {
-    std::vector<std::uint64_t> first;  // of each ray's hits, and at the end how many there are in all
-    std::vector<Hit> hits;             // of each ray ascending by t, then by (instance, primitive)
+    std::vector<std::uint64_t> first;  // index of each ray's first hit, and at the end the number of all hits
+    std::vector<Hit> hits;             // ascending by t for each ray, then by (instance, primitive)
 
     // The hits of one ray.
     std::span<const Hit> of(std::size_t ray) const {
@@ -51,19 +51,19 @@ struct HitsOfRays {
     }
 };
 
-// Finds every triangle that rays meet, each once, at level watertight: a closed surface is met as often from outside as
-// from inside, and of the triangles around an edge or a corner SwTlas names exactly one a crossing. Filters of
-// instances are not asked: what is non-opaque counts. Uses mask and cull of TraceDesc. Each call syncs the accelerator.
+// Finds every triangle that rays meet, each once, at level watertight: a closed surface is hit as often from outside as
+// from inside, and of the triangles around an edge or a corner SwTlas reports exactly one per crossing. No filters
+// are called: non-opaque triangles count. Uses mask and cull of TraceDesc. Each call syncs the accelerator.
 class AllHits {
   public:
-    // Throws Error where kernels cannot trace the accelerator (Feature::kernel_queries).
+    // Throws Error if kernels cannot trace the accelerator (Feature::kernel_queries).
     explicit AllHits(AbstractAccel& accel);
     ~AllHits();
 
-    // Throws Error for a scene with boxes, and one that says how many hits there are where they exceed max_hits().
+    // Throws Error for a scene with boxes, and if there are more than max_hits() hits, naming their number.
     HitsOfRays operator()(std::span<const Ray> rays, const TraceDesc& desc = {});
 
-    // 36 bytes of device memory each. Default: 2^27; at most 2^32 - 1.
+    // The limit on hits, which take 36 bytes of device memory each. Default: 2^27; at most 2^32 - 1.
     std::uint64_t max_hits() const;
     void set_max_hits(std::uint64_t count);  // for the calls to come
 
@@ -86,44 +86,44 @@ struct InstancePair {
 struct DevicePairs {
     std::uint64_t first = 0, second = 0;  // device addresses
     std::uint64_t count = 0;
-    const Buffer* buffer = nullptr;  // that holds both; null where there are none
+    const Buffer* buffer = nullptr;  // holds both arrays; null if there are no pairs
 };
 
 // Finds instances whose boxes in world space overlap: the box of each geometry's active triangles (or boxes) under the
-// transform, rounded outward, so that no contact of what can be hit is lost. Boxes are closed: those that touch
-// overlap. Instances that cannot be hit, with an empty geometry or an unusable transform, have no box. Works alike for
-// every accelerator, which each call brings up to date (AbstractAccel::sync). Throws Error for a dead handle, another
-// context, and the count where more than max_pairs() are found.
+// transform, rounded outward, so that no contact of hittable geometry is lost. Boxes are closed: those that touch
+// overlap. Instances that cannot be hit, with an empty geometry or an unusable transform, have no box. Works for every
+// accelerator and brings it up to date in each call (AbstractAccel::sync). Throws Error for a dead handle, another
+// context, and more than max_pairs() pairs, naming their number.
 class BroadPhase {
   public:
     explicit BroadPhase(Context& context);  // keeps memory between calls
     ~BroadPhase();
 
-    // All pairs, also within one handle, each once: a < b, ascending.
+    // Returns all pairs, also within one handle, each once: a < b, ascending.
     std::vector<InstancePair> instance_pairs(AbstractAccel& accel);
-    // Pairs of an instance of handle `a` and one of handle `b`, in this order, ascending; within the handle, as above,
-    // where they are the same.
+    // Returns pairs of an instance of handle `a` and one of handle `b`, in this order, ascending; if the handles are
+    // the same, pairs within it as above.
     std::vector<InstancePair> instance_pairs(AbstractAccel& accel, AccelHandle a, AccelHandle b);
-    // Pairs of an instance of one accelerator and one of the other, ascending. Two accelerators, not one twice.
+    // Returns pairs of an instance of one accelerator and one of the other, ascending. The accelerators must differ.
     std::vector<InstancePair> instance_pairs(AbstractAccel& a, AbstractAccel& b);
 
-    // How many there are, without memory for them and without limit.
+    // Return the number of pairs, without memory for them and without limit.
     std::uint64_t count(AbstractAccel& accel);
     std::uint64_t count(AbstractAccel& accel, AccelHandle a, AccelHandle b);
     std::uint64_t count(AbstractAccel& a, AbstractAccel& b);
 
-    // Whether there is a pair: ends soon after the first.
+    // Return whether there is a pair: they end soon after the first.
     bool any(AbstractAccel& accel);
     bool any(AbstractAccel& accel, AccelHandle a, AccelHandle b);
     bool any(AbstractAccel& a, AbstractAccel& b);
 
-    // The same as the first function, for kernels: valid until the next call.
+    // The same as the first function for kernels: valid until the next call.
     DevicePairs instance_pairs_on_device(AbstractAccel& accel);
 
-    // A pair takes 8 bytes of device memory, and 16 while they are sorted.
+    // The limit on pairs. A pair takes 8 bytes of device memory, and 16 while they are sorted.
     std::uint64_t max_pairs() const;
     void set_max_pairs(std::uint64_t count);  // at most 2^32 - 1
-    std::uint64_t bytes() const;              // of device memory that is kept
+    std::uint64_t bytes() const;              // device memory that is kept
 
   private:
     struct State;
@@ -132,8 +132,8 @@ class BroadPhase {
 
 // Narrow phase: triangles that touch or cross -------------------------------------------------------------------------
 
-// How two triangles lie to each other, as closed sets of points. Does not depend on the order of the triangles or of
-// their vertices. "Inside" is without edges and vertices; of a segment, without its ends.
+// The relation of two triangles as closed sets of points. It does not depend on the order of the triangles or of their
+// vertices. "Inside" excludes edges and vertices; for a segment, its ends.
 enum class PairClass : std::uint8_t {
     separate = 0,          // no common point
     vertex_touch = 1,      // one common point, an end or vertex of at least one, and not inside of both
@@ -146,7 +146,7 @@ inline constexpr std::array all_pair_classes = {PairClass::separate,         Pai
                                                 PairClass::edge_touch,       PairClass::coplanar_touch,
                                                 PairClass::coplanar_overlap, PairClass::crossing};
 
-// As `twinray collide` writes it.
+// The spelling of `twinray collide`.
 constexpr std::string_view name_of(PairClass pair_class) {
     constexpr std::string_view names[] = {"separate",       "vertex_touch",     "edge_touch",
                                           "coplanar_touch", "coplanar_overlap", "crossing"};
@@ -158,7 +158,7 @@ struct WorldTriangle {
     dvec3 a, b, c;
 };
 
-// Two triangles whose class is asked for.
+// Two triangles to classify.
 struct TrianglePair {
     WorldTriangle a, b;
 };
@@ -172,32 +172,32 @@ struct TriangleContact {
     auto operator<=>(const TriangleContact&) const = default;
 };
 
-// Where the insides of two triangles of class crossing meet: the two ends of it, which are one where a triangle without
+// The segment in which the insides of two triangles of class crossing meet. Its ends are equal if a triangle without
 // area stands for a segment. Coordinates are off by at most 2^-49 of the largest coordinate of a vertex in magnitude.
 struct ContactSegment {
     dvec3 from, to;
 };
 
-// Which vertices of a mesh are one, so that triangles that have them are neighbours.
+// How vertices of a mesh are identified, so that triangles that share them are neighbours.
 enum class SharedVertices : std::uint8_t { by_index, by_position };
 
-// What NarrowPhase::find() looks for.
+// Options of NarrowPhase::find().
 struct ContactOptions {
-    // Also pairs within an instance, but for those that have no more in common than vertices that they share and the
-    // edge between two of them. Pairs of its neighbours that are folded onto each other overlap.
+    // Also reports pairs within an instance, except those that have only shared vertices and the edge between two of
+    // them in common. Neighbours that are folded onto each other overlap.
     bool self = false;
     SharedVertices shared = SharedVertices::by_index;
-    bool segments = false;  // of pairs of class crossing
+    bool segments = false;  // for pairs of class crossing
 };
 
-// What NarrowPhase::find() found.
+// The result of NarrowPhase::find().
 struct Contacts {
     std::vector<TriangleContact> list;     // ascending
-    std::vector<ContactSegment> segments;  // by contact, of class crossing, others (0, 0, 0); empty unless asked for
-    std::uint64_t instances = 0;           // whose boxes overlap others, or all where pairs within them count
-    std::uint64_t triangles = 0;           // of them
+    std::vector<ContactSegment> segments;  // by contact; (0, 0, 0) unless of class crossing; empty unless asked for
+    std::uint64_t instances = 0;           // those whose boxes overlap others, or all if pairs within them count
+    std::uint64_t triangles = 0;           // triangles of those instances
     std::uint64_t candidates = 0;          // pairs of triangles whose boxes overlap
-    std::uint64_t host_decided = 0;        // of those, undecided by float64
+    std::uint64_t host_decided = 0;        // candidates that float64 could not decide
     double search_seconds = 0, classify_seconds = 0, host_seconds = 0;  // the last is part of the one before
 
     std::size_t count(PairClass pair_class) const;  // of the list
@@ -210,20 +210,20 @@ class NarrowPhase {
     explicit NarrowPhase(Context& context);
     ~NarrowPhase();
 
-    // Throws Error naming what is wrong with a mesh or an instance, or the number of pairs of boxes that overlap where
-    // that exceeds max_pairs().
+    // Throws Error naming the fault of a mesh or an instance, or the number of overlapping pairs of boxes if that
+    // exceeds max_pairs().
     Contacts find(const Scene& scene, const ContactOptions& options = {});
-    Contacts find(AbstractAccel& accel, const ContactOptions& options = {});  // of what it holds: see scene_of()
-    // Of meshes where instances put them.
+    Contacts find(AbstractAccel& accel, const ContactOptions& options = {});  // for its contents: see scene_of()
+    // The same for meshes as instances place them.
     Contacts find(std::span<const MeshView> meshes, std::span<const MeshInstance> instances,
                   const ContactOptions& options = {});
-    // The class of each pair given. Throws Error for a coordinate that is neither 0 nor of a magnitude from 2^-245 to
-    // 2^259.
+    // Returns the class of each given pair. Throws Error for a coordinate that is neither 0 nor of a magnitude from
+    // 2^-245 to 2^259.
     std::vector<PairClass> classify(std::span<const TrianglePair> pairs);
 
-    // Of boxes, of instances and of triangles. At most 2^32 - 1.
+    // The limit on pairs of boxes, of instances and of triangles. At most 2^32 - 1.
     std::uint64_t max_pairs() const;
-    // For the calls to come.
+    // Applies to later calls.
     void set_max_pairs(std::uint64_t count);
 
   private:
@@ -249,53 +249,53 @@ struct NearTriangle {
     double distance = 0;
 };
 
-// Finds what of a scene is near to points. A distance is off by at most some 2^-50 of the largest of itself and the
-// sides of the triangle; boxes are bounds of it, so that none is passed over. No point that is not finite is near.
+// Finds triangles of a scene that are near to points. A distance is off by at most some 2^-50 of the largest of itself
+// and the sides of the triangle; boxes bound it, so that none is passed over. Points that are not finite are near none.
 class PointQuery {
   public:
     static constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-    // Throws Error where the device has no float64.
+    // Throws Error if the device has no float64.
     explicit PointQuery(Context& context);
     ~PointQuery();
 
-    // What is searched from now on: builds a tree. What the spans refer to must outlive the use of this. Throws Error
-    // naming what is wrong with a mesh or an instance.
+    // Sets what is searched from now on: builds a tree. The data that the spans refer to must outlive this object.
+    // Throws Error naming the fault of a mesh or an instance.
     void set(const Scene& scene);
-    // What the accelerator holds now: see scene_of(). It may change or end.
+    // Takes what the accelerator holds now: see scene_of(). It may change or end.
     void set(AbstractAccel& accel);
     void set(std::span<const MeshView> meshes, std::span<const MeshInstance> instances);
-    std::size_t triangle_count() const;  // of what is searched
+    std::size_t triangle_count() const;  // the triangles that are searched
 
-    // Of each point, the closest triangle that is at most `max_distance` away: of several, the first by (instance,
-    // triangle). Throws Error for a distance below 0 or NaN.
+    // Returns for each point the closest triangle that is at most `max_distance` away; among several, the first by
+    // (instance, triangle). Throws Error for a distance below 0 or NaN.
     std::vector<ClosestPoint> closest(std::span<const dvec3> points, double max_distance = unlimited);
-    // All triangles that are at most `radius` from a point, ascending by (point, instance, triangle). Throws Error for
-    // a radius that is below 0 or not finite, and one that says how many there are where they exceed max_found().
+    // Returns all triangles that are at most `radius` from a point, ascending by (point, instance, triangle). Throws
+    // Error for a radius that is below 0 or not finite, and if there are more than max_found(), naming their number.
     std::vector<NearTriangle> within(std::span<const dvec3> points, double radius);
 
-    // How often the scene winds around each point (Jacobson et al. 2013, here counted along a ray with simulation of
-    // simplicity): exactly, 0 outside and 1 inside of a closed mesh whose fronts look outward, n inside of n that
-    // overlap; a mirrored instance counts as its mesh does. Of points on a triangle it may be either side's. Throws
-    // Error naming a mesh that is not closed and one of its edges that lack a neighbour, for points with a coordinate
-    // that is neither 0 nor of a magnitude from 2^-245 to 2^259, and where more crossings are undecided than
-    // max_found().
+    // Returns how often the scene winds around each point (Jacobson et al. 2013, here counted along a ray with
+    // simulation of simplicity). The number is exact: 0 outside and 1 inside a closed mesh whose fronts look outward, n
+    // inside n that overlap; a mirrored instance counts as its mesh does. For a point on a triangle it may be that of
+    // either side. Throws Error naming a mesh that is not closed and one of its edges that lack a neighbour, for points
+    // with a coordinate that is neither 0 nor of a magnitude from 2^-245 to 2^259, and if more crossings are undecided
+    // than max_found().
     std::vector<int> winding_numbers(std::span<const dvec3> points);
-    // The same of any scene, closed or not (Jacobson et al. 2013): the solid angle of all triangles over 4 pi, between
+    // The same for any scene, closed or not (Jacobson et al. 2013): the solid angle of all triangles over 4 pi, between
     // whole numbers near holes. Off by some 2^-50 times the number of edges without a neighbour, and time grows with
     // that number: crossings of a line, exactly, and what the boundary adds (Martens, Trettner, Bessmeltsev 2026).
     std::vector<double> generalized_winding_numbers(std::span<const dvec3> points);
-    // Whether all meshes are closed, so that there are winding numbers.
+    // Returns whether all meshes are closed, so that there are winding numbers.
     bool is_closed();
-    // The distance of closest(), negative where the winding number is not 0.
+    // Returns the distance of closest(), negative if the winding number is not 0.
     std::vector<double> signed_distances(std::span<const dvec3> points);
-    // Of the last winding numbers: how many crossings float64 could not decide, and the host did.
+    // Returns the number of crossings of the last winding numbers that float64 could not decide, so that the host did.
     std::uint64_t host_decided() const;
 
-    // Of all that a call of within() finds, 16 bytes of device memory each. Default: 2^27; at most 2^32 - 1.
+    // The limit on what a call of within() finds, 16 bytes of device memory each. Default: 2^27; at most 2^32 - 1.
     std::uint64_t max_found() const;
     void set_max_found(std::uint64_t count);  // for the calls to come
-    std::uint64_t bytes() const;              // of device memory that is kept
+    std::uint64_t bytes() const;              // device memory that is kept
 
   private:
     struct State;

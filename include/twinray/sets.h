@@ -27,14 +27,14 @@ namespace twinray {
 
 // ---- Lists of types, as multi_type_set.h describes them, as template arguments --------------------------------------
 
-// A name as a template argument.
+// A string as a template argument.
 template <std::size_t size>
 struct FixedName {
     char text[size];
     constexpr FixedName(const char (&name)[size]) { std::copy_n(name, size, text); }
 };
 
-// One line of a list.
+// One line of a list of types.
 template <std::size_t number_, class T, FixedName name_>
 struct ListEntry {
     using Type = T;
@@ -42,7 +42,7 @@ struct ListEntry {
     static constexpr std::string_view name = name_.text;
 };
 
-// Passed to a list: its lines, each after a comma.
+// Passed to a list: makes its lines, each after a comma.
 #define TWINRAY_LIST_ENTRY(P, number, Type, name) , ::twinray::ListEntry<number, Type, #name>
 
 // Whether the lines are numbered 0, 1, 2, ...
@@ -64,7 +64,7 @@ constexpr bool has_distinct_types = ((number_of<typename Entries::Type, Entries.
 
 // ---- Loops over tuples, unrolled at compile time. Nothing here allocates; all of it works in constant expressions ---
 
-// A functor that captures nothing: what it needs is passed as arguments, as its GLSL counterpart takes it.
+// A functor that captures nothing: it gets what it needs as arguments, as its GLSL counterpart does.
 template <class F>
 concept Captureless = std::is_empty_v<F>;
 
@@ -97,7 +97,7 @@ constexpr void for_unrolled(F f, Tuple&& tuple, Args&&... args) {
     each(unrolled::Indices<Tuple>{});
 }
 
-// f(i, args...) for i = 0, 1, ... count - 1. Each i is a std::integral_constant: it may stand as a template argument.
+// f(i, args...) for i = 0, 1, ... count - 1. Each i is a std::integral_constant and may be a template argument.
 template <std::size_t count, Captureless F, class... Args>
 constexpr void for_unrolled(F f, Args&&... args) {
     const auto each = [&]<std::size_t... I>(std::index_sequence<I...>) {
@@ -115,7 +115,7 @@ constexpr auto map_unrolled(F f, Tuple&& tuple, Args&&... args) {
     return map(unrolled::Indices<Tuple>{});
 }
 
-// sum = f(sum, element, args...) over the elements in order, beginning with `init`; that itself for an empty tuple.
+// sum = f(sum, element, args...) over the elements in order, beginning with `init`; returns `init` for an empty tuple.
 template <Captureless F, class Tuple, class T, class... Args>
 constexpr T reduce_unrolled(F f, Tuple&& tuple, T init, Args&&... args) {
     for_unrolled([](auto&& element, F call, T& sum, auto&... rest) { sum = call(std::move(sum), element, rest...); },
@@ -143,15 +143,15 @@ constexpr decltype(auto) get_unrolled(F f, Tuple&& tuple, std::size_t index, Arg
 
 // ---- Sets of elements of several types ------------------------------------------------------------------------------
 
-// What a set's view holds of each type.
+// One type's entry in a set's view.
 struct SetSlot {
     std::uint64_t address = 0;  // of its first element
     uint count = 0;
     uint reserved = 0;
 };
 
-// The device's side of a MultiTypeSet, which knows its elements as bytes only: one array for each type. Elements that
-// the host did not change stay as kernels wrote them.
+// The device side of a MultiTypeSet, which knows its elements as bytes only: one array for each type. Elements that the
+// host did not change stay as kernels wrote them.
 class SetStorage {
   public:
     struct Type {
@@ -162,10 +162,10 @@ class SetStorage {
     ~SetStorage();
     SetStorage(SetStorage&&) noexcept;
 
-    // The host is about to append to so many elements of a type, or changed one.
+    // Called before the host appends to so many elements of a type, and when it changed one.
     void note_push(std::size_t size);
     void note_update(std::size_t type, uint index);
-    // The elements of each type as the host has them.
+    // The elements of each type as the host holds them.
     using Elements = std::span<const std::span<const std::byte>>;
     SyncPoint sync(Elements elements);
     void sync(Commands& commands, Elements elements);
@@ -177,7 +177,7 @@ class SetStorage {
     Ref<Faults> faults() const;
     Context& context() const;
 
-    // sizes: how many elements each type has.
+    // The number of elements of each type.
     using Sizes = std::span<const std::size_t>;
     std::string described(SetKey key, Sizes sizes) const;
     void check_key(SetKey key, uint wanted_type, Sizes sizes, const char* action) const;
@@ -188,10 +188,10 @@ class SetStorage {
     std::unique_ptr<State> state_;
 };
 
-// Elements of several types in one set, for kernels: materials, lights, or what the user likes. Each type has an array
-// of its own on the device; a SetKey names the type and the index in it, and stays valid for as long as the set lives.
-// Edits only change the host's copy; sync() uploads what changed and never waits for the GPU. Wrong use throws Error
-// naming the set, the key and the limit, and leaves the set as it was.
+// Elements of several types in one set, for kernels: materials, lights, or any others. Each type has an array of its
+// own on the device; a SetKey names the type and the index in it, and stays valid as long as the set lives. Edits only
+// change the host's copy; sync() uploads the changes and never waits for the GPU. Wrong use throws Error naming the
+// set, the key and the limit, and leaves the set unchanged.
 //
 // Use TWINRAY_MULTI_TYPE_SET: View is the struct that kernels take, Entries are the lines of its list of types.
 template <class View, class... Entries>
@@ -202,7 +202,7 @@ class MultiTypeSet {
     static_assert(sizeof(View) == sizeof...(Entries) * sizeof(SetSlot) + 16, "the view is that of another list");
 
   public:
-    // Of which element type there can be elements.
+    // Whether T is one of the set's element types.
     template <class T>
     static constexpr bool holds = number_of<T, Entries...> < sizeof...(Entries);
 
@@ -210,7 +210,7 @@ class MultiTypeSet {
     MultiTypeSet(Context& context, const std::string& name)
         : storage_(context, name, {{std::string(Entries::name), sizeof(typename Entries::Type)}...}) {}
 
-    // A new element, behind the others of its type.
+    // Adds an element behind the others of its type and returns its key.
     template <class T>
     SetKey push(const T& element) {
         std::vector<T>& elements = std::get<std::vector<T>>(elements_);
@@ -218,22 +218,22 @@ class MultiTypeSet {
         elements.push_back(element);
         return {type_of<T>, static_cast<uint>(elements.size() - 1)};
     }
-    // Another value for an element, of the same type. Views stay valid.
+    // Replaces the value of an element of the same type. Views stay valid.
     template <class T>
     void update(SetKey key, const T& element) {
         check<T>(key, "update");
         std::get<std::vector<T>>(elements_)[key.index] = element;
         storage_.note_update(number_of<T, Entries...>, key.index);
     }
-    // As the host last wrote it, whatever kernels did to the device's copy.
+    // Returns the value that the host last wrote, whatever kernels did to the device's copy.
     template <class T>
     const T& get(SetKey key) const {
         check<T>(key, "get");
         return std::get<std::vector<T>>(elements_)[key.index];
     }
-    // Whether it names an element.
+    // Returns whether the key names an element.
     bool contains(SetKey key) const { return key.type - 1u < slots() && key.index < sizes()[key.type - 1]; }
-    // How many elements there are.
+    // Returns the number of elements.
     std::size_t size() const {
         return sum_unrolled([](const auto& elements) { return elements.size(); }, elements_);
     }
@@ -241,10 +241,10 @@ class MultiTypeSet {
     std::size_t size() const {
         return std::get<std::vector<T>>(elements_).size();
     }
-    // How many types there are.
+    // Returns the number of types.
     static constexpr std::size_t slots() { return sizeof...(Entries); }
 
-    // The elements of a type as kernels left them; submits and waits. Throws Error if edits are pending.
+    // Returns the elements of a type as kernels left them; submits and waits. Throws Error if edits are pending.
     template <class T>
     std::vector<T> download() const {
         constexpr std::size_t type = number_of<T, Entries...>;
@@ -253,12 +253,12 @@ class MultiTypeSet {
 
     // Uploads the elements that changed since the last sync; a clean set does nothing and returns the last sync point.
     SyncPoint sync() { return storage_.sync(bytes()); }
-    // The same into commands that hold other work, as AbstractAccel::sync does.
+    // Records the same into commands that may hold other work, as AbstractAccel::sync does.
     void sync(Commands& commands) { storage_.sync(commands, bytes()); }
 
-    // What kernels take, by value: addresses and counts, until the next sync() after which revision() has grown.
-    // Kernels may write elements; the host's next update() of an element replaces what they wrote, and nothing else
-    // does. Throws Error if edits are pending.
+    // Returns the struct that kernels take by value: addresses and counts, until the next sync() after which revision()
+    // has grown. Kernels may write elements; only the host's next update() of an element replaces what they wrote.
+    // Throws Error if edits are pending.
     View view() const {
         struct ViewBytes {
             SetSlot slots[sizeof...(Entries)];
@@ -270,9 +270,9 @@ class MultiTypeSet {
         view.revision = storage_.revision();
         return std::bit_cast<View>(view);
     }
-    // Counts the syncs that brought new elements: views of before are stale.
+    // Counts the syncs that added elements: earlier views are stale.
     std::uint64_t revision() const { return storage_.revision(); }
-    // Bytes of the arrays of elements, with the room that they have to grow.
+    // Returns the bytes of the arrays of elements, including their spare capacity.
     std::uint64_t buffer_bytes() const { return storage_.buffer_bytes(); }
 
     // Throws Error if kernels compiled with TWINRAY_DEBUG met keys that name nothing. Waits for the GPU.
@@ -281,7 +281,7 @@ class MultiTypeSet {
     // The arrays of elements by type, in the order of the list, as the host last wrote them: a tuple of std::vector.
     const auto& elements() const { return elements_; }
 
-    // "(type 2, index 7), where type 2 is glass, of which there are 3".
+    // Describes the key: "(type 2, index 7), where type 2 is glass, of which there are 3".
     std::string described(SetKey key) const { return storage_.described(key, sizes()); }
 
   private:
@@ -308,8 +308,8 @@ class MultiTypeSet {
 // The set whose view is declared by TWINRAY_SET_VIEW(View, LIST).
 #define TWINRAY_MULTI_TYPE_SET(View, LIST) ::twinray::MultiTypeSet<View LIST(TWINRAY_LIST_ENTRY, 0)>
 
-// f(element, args...) for the element that the key names, as the host last wrote it; f returns the same type for all
-// types of the set. Throws Error for a key that names nothing, and calls nothing. In kernels: WITH_INDEX.
+// Returns f(element, args...) for the element that the key names, as the host last wrote it; f returns the same type
+// for all types of the set. Throws Error, and calls nothing, for a key that names nothing. In kernels: WITH_INDEX.
 template <Captureless F, class View, class... Entries, class... Args>
 decltype(auto) with_index(F f, const MultiTypeSet<View, Entries...>& set, SetKey key, Args&&... args) {
     if (!set.contains(key)) throw Error("with_index: the key is " + set.described(key));
@@ -318,8 +318,8 @@ decltype(auto) with_index(F f, const MultiTypeSet<View, Entries...>& set, SetKey
                         set.elements(), key.type - 1, key.index, f, args...);
 }
 
-// f(element, i, args...) for all elements, type after type in the order of the list; i counts them from 0. In kernels:
-// FOREACH_ELEMENT.
+// Calls f(element, i, args...) for all elements, type after type in the order of the list; i counts them from 0. In
+// kernels: FOREACH_ELEMENT.
 template <Captureless F, class View, class... Entries, class... Args>
 void foreach_element(F f, const MultiTypeSet<View, Entries...>& set, Args&&... args) {
     std::size_t i = 0;
@@ -332,7 +332,7 @@ void foreach_element(F f, const MultiTypeSet<View, Entries...>& set, Args&&... a
 
 // ---- Structures of arrays -------------------------------------------------------------------------------------------
 
-// The device's side of a Soa: one buffer, and what kernels were refused.
+// The device side of a Soa: one buffer, and the record of faults in kernels.
 class SoaStorage {
   public:
     SoaStorage(Context& context, const std::string& name, uint count, std::uint64_t bytes);
@@ -351,14 +351,14 @@ class SoaStorage {
     std::unique_ptr<State> state_;
 };
 
-// The part that device and host have in common. View is what TWINRAY_SOA_VIEW declares, Entries are the lines of its
-// list of fields.
+// The common part of device and host. View is declared by TWINRAY_SOA_VIEW; Entries are the lines of its list of
+// fields.
 template <class View, class... Entries>
 struct SoaFields {
     static_assert(sizeof...(Entries) > 0 && is_numbered<Entries...>, "a list of fields is numbered from 0");
     static_assert(sizeof(View) == sizeof...(Entries) * 8 + 16, "the view is that of another list");
 
-    // Where the arrays of `count` items begin in one range of memory, at multiples of 16 bytes; last, where it ends.
+    // Offsets of the arrays of `count` items in one range of memory, at multiples of 16 bytes; the last is its end.
     static std::array<std::uint64_t, sizeof...(Entries) + 1> offsets(std::uint64_t count) {
         std::array<std::uint64_t, sizeof...(Entries) + 1> offsets{};
         ((offsets[Entries::number + 1] =
@@ -376,27 +376,27 @@ struct SoaFields {
     }
 };
 
-// On the device, in one buffer. Use TWINRAY_SOA.
+// A structure of arrays on the device, in one buffer. Use TWINRAY_SOA.
 template <class View, class... Entries>
 class Soa {
     using Fields = SoaFields<View, Entries...>;
 
   public:
-    // Its items are undefined until something writes them.
+    // The items are undefined until they are written.
     Soa(Context& context, const std::string& name, uint count)
         : storage_(context, name, count, Fields::offsets(count).back()) {}
 
     uint count() const { return storage_.count(); }  // of items
-    // What kernels take, by value. Valid as long as this lives.
+    // Returns the struct that kernels take by value. Valid as long as this lives.
     View view() const { return Fields::view(buffer().address(), count(), storage_.faults()); }
 
-    // One field of items `first` and up, within a pass. Throws Error if they reach beyond the last.
+    // Uploads one field of the items from `first` on, within a pass. Throws Error if they reach beyond the last.
     template <class T>
     void upload(Commands& commands, Ref<T> View::*field, std::span<const T> values, uint first = 0) const {
         storage_.check_range(first, values.size(), "upload");
         commands.upload(buffer(), values, offset_of(field) + first * sizeof(T));
     }
-    // All items of one field; submits and waits.
+    // Returns all items of one field; submits and waits.
     template <class T>
     std::vector<T> download(Ref<T> View::*field) const {
         return twinray::download<T>(context(), buffer(), count(), offset_of(field));
@@ -404,8 +404,8 @@ class Soa {
     // Throws Error if kernels compiled with TWINRAY_DEBUG met indices out of range. Waits for the GPU.
     void check_faults() const { storage_.check_faults(); }
 
-    Context& context() const { return storage_.context(); }     // that it was made on
-    const Buffer& buffer() const { return storage_.buffer(); }  // that holds all fields
+    Context& context() const { return storage_.context(); }     // the one that it was made on
+    const Buffer& buffer() const { return storage_.buffer(); }  // holds all fields
 
   private:
     template <class T>
@@ -415,17 +415,17 @@ class Soa {
     SoaStorage storage_;
 };
 
-// In the host's memory, for serial references of kernels.
+// A structure of arrays in host memory, for serial references of kernels.
 template <class View, class... Entries>
 class HostSoa {
     using Fields = SoaFields<View, Entries...>;
 
   public:
-    // Its items are zero.
+    // The items are zero.
     explicit HostSoa(uint count) : count_(count), memory_(Fields::offsets(count).back()) {}
 
     uint count() const { return count_; }  // of items
-    // Addresses of the host, for soa_get, soa_set and functions of shared headers. Valid as long as this lives.
+    // Returns host addresses, for soa_get, soa_set and functions of shared headers. Valid as long as this lives.
     View view() { return Fields::view(reinterpret_cast<std::uint64_t>(memory_.data()), count_, {}); }
 
   private:
@@ -435,15 +435,15 @@ class HostSoa {
 
 // The structure of arrays whose view is declared by TWINRAY_SOA_VIEW(View, LIST), on the device.
 #define TWINRAY_SOA(View, LIST) ::twinray::Soa<View LIST(TWINRAY_LIST_ENTRY, 0)>
-// The same in the host's memory.
+// The same in host memory.
 #define TWINRAY_HOST_SOA(View, LIST) ::twinray::HostSoa<View LIST(TWINRAY_LIST_ENTRY, 0)>
 
-// As many fields, in another number of items. Nothing is copied.
+// Makes a structure with the same fields and another number of items. Nothing is copied.
 template <class View, class... Entries>
 Soa<View, Entries...> similar_soa(const Soa<View, Entries...>& like, uint count) {
     return {like.context(), like.buffer().name(), count};
 }
-// The same, in the host's memory.
+// The same in host memory.
 template <class View, class... Entries>
 HostSoa<View, Entries...> similar_soa(const HostSoa<View, Entries...>&, uint count) {
     return HostSoa<View, Entries...>(count);
@@ -452,13 +452,13 @@ HostSoa<View, Entries...> similar_soa(const HostSoa<View, Entries...>&, uint cou
 // Throws Error: "<function>: index 3 of 3 items".
 [[noreturn]] void fail_index(const char* function, std::size_t index, std::size_t count);
 
-// One field of one item in the host's memory. Throws Error for an index out of range. In kernels: SOA_GET, SOA_SET.
+// Returns one field of one item in host memory. Throws Error for an index out of range. In kernels: SOA_GET, SOA_SET.
 template <class View, class T>
 T soa_get(const View& view, uint i, Ref<T> View::*field) {
     if (i >= view.count) fail_index("soa_get", i, view.count);
     return (view.*field)[i];
 }
-// The same, to write it.
+// Writes one field of one item.
 template <class View, class T>
 void soa_set(const View& view, uint i, Ref<T> View::*field, const std::type_identity_t<T>& value) {
     if (i >= view.count) fail_index("soa_set", i, view.count);

@@ -16,76 +16,76 @@ class SwBackend;
 // The software accelerator: a two-level BVH built and traversed by compute shaders. Needs no ray tracing extension.
 class SwTlas final : public AbstractAccel {
   public:
-    explicit SwTlas(Context& context, const AccelOptions& options = {});  // throws Error naming what is lacking
+    explicit SwTlas(Context& context, const AccelOptions& options = {});  // throws Error naming what the device lacks
 
-    // What the software accelerator can do on a device that it runs on.
+    // Returns what the software accelerator supports on a device that it runs on.
     static Capability capability_on(const DeviceProperties& device, Feature feature);
 
-    // Writes the built geometries and their instances, without what AccelOptions::keeps_surfaces keeps. Throws Error
-    // when edits are pending and when the file cannot be written, which is then as it was before.
+    // Writes the built geometries and their instances, without the data of AccelOptions::keeps_surfaces. Throws Error
+    // if edits are pending or the file cannot be written; an existing file is then unchanged.
     void save(const std::filesystem::path& file) const;
-    // What load() has read.
+    // The result of load().
     struct Loaded {
         std::unique_ptr<SwTlas> accel;
         std::vector<AccelHandle> handles;  // in the order in which they were pushed
     };
-    // A new accelerator with what save() has written. Its first sync() builds the top level alone; closest hits
-    // are equal to the last bit, any hits too unless the saved top level had been refitted. Throws Error naming the
-    // file, what was found and what was expected when it is missing, damaged, of another format version, or not a saved
-    // SwTlas.
+    // Makes a new accelerator from a file written by save(). Its first sync() builds the top level only; closest hits
+    // are equal to the last bit, as are any hits unless the saved top level had been refitted. If the file is missing,
+    // damaged, of another format version or not a saved SwTlas, throws Error naming the file, what was found and what
+    // was expected.
     static Loaded load(Context& context, const std::filesystem::path& file);
 
-    // What the library itself needs of it.
+    // Internal: the library's own parts use it.
     SwBackend& backend() const;
 };
 
 // The order in which triangles and instances go to the driver. Results do not depend on it.
 enum class BuildOrder : std::uint8_t {
-    automatic,  // morton where the driver is known to build in the order of its input, else input
-    input,      // as pushed; no table to map ids back exists then
+    automatic,  // morton if the driver is known to build in the order of its input, else input
+    input,      // as pushed; needs no table to map ids back
     morton,
 };
 
-// The hardware accelerator, on VK_KHR_acceleration_structure. Traces with ray queries where they are enabled, else with
-// a ray tracing pipeline. Where the driver finds two triangles at the same distance, the driver chooses.
+// The hardware accelerator, on VK_KHR_acceleration_structure. Traces with ray queries if they are enabled, else with a
+// ray tracing pipeline. If two triangles are at the same distance, the driver chooses.
 class HwTlas final : public AbstractAccel {
   public:
     // Throws Error naming the device and what it lacks.
     explicit HwTlas(Context& context, BuildOrder order = BuildOrder::automatic, const AccelOptions& options = {});
 
-    // What the hardware accelerator can do on a device that it runs on.
+    // Returns what the hardware accelerator supports on a device that it runs on.
     static Capability capability_on(const DeviceProperties& device, Feature feature);
 
     // "ray query" or "ray tracing pipeline".
     const char* trace_path() const;
-    // Whether the driver gets the input along a Morton curve, so that its ids are mapped back to the user's.
+    // Returns whether the driver gets the input along a Morton curve, so that its ids are mapped back to the user's.
     bool reorders() const;
 };
 
-// What the program will ask for.
+// The features that the program will need.
 struct AccelNeeds {
     Level level = Level::watertight;
     bool kernel_queries = false;  // Feature::kernel_queries
 };
 
-// What choose_accel() chose, and why.
+// The choice of choose_accel() and its reason.
 struct AccelChoice {
     bool is_software = false;
     std::string why;  // "device 'cpu' is a CPU, without hardware for rays"
 
-    const char* name() const { return is_software ? "sw" : "hw"; }  // as --accel takes it
+    const char* name() const { return is_software ? "sw" : "hw"; }  // the value of --accel
 
     bool operator==(const AccelChoice&) const = default;
 };
 
-// "SwTlas" or "HwTlas", as AbstractAccel::name() is.
+// Returns "SwTlas" or "HwTlas", as AbstractAccel::name() does.
 const char* name_of(const AccelChoice& choice);
 
-// request, as --accel takes it: "sw", "hw" or "auto": hardware, but software where the device is a CPU, on which a
-// driver's structures are code, too, and where hardware lacks something. Throws Error for "hw" in the latter case; it
-// names what is lacking.
+// Chooses by `request`, the value of --accel: "sw", "hw" or "auto". "auto" is hardware, but software on a CPU device,
+// whose acceleration structures are code too, and if hardware lacks a need. For "hw", a lacking need throws Error
+// naming it.
 AccelChoice choose_accel(const DeviceProperties& device, const std::string& request, const AccelNeeds& needs = {});
-// The one that was chosen, empty. Throws Error as its constructor does.
+// Makes the chosen accelerator, empty. Throws Error as its constructor does.
 std::unique_ptr<AbstractAccel> make_accel(Context& context, const AccelChoice& choice,
                                           const AccelOptions& options = {});
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// AllocatorHooks of a VmaAllocator. The library does not contain this code: a host compiles it against its own version
-// of the Vulkan Memory Allocator, whose header it includes first.
+// Makes AllocatorHooks from a VmaAllocator. The library does not contain this code: an application compiles it against
+// its own version of the Vulkan Memory Allocator, whose header it includes first.
 #pragma once
 
 #ifndef AMD_VULKAN_MEMORY_ALLOCATOR_H
