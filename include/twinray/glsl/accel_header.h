@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What AccelView::scene is the address of, of either accelerator.
+// The header at address AccelView::scene, which both accelerators share.
 #ifndef TWINRAY_ACCEL_HEADER_H
 #define TWINRAY_ACCEL_HEADER_H
 
-// Where to find what only some accelerators keep.
+// The addresses of data that only some accelerators keep.
 struct AccelHeader {
     Address surfaces;    // of a SurfaceTable, absent without AccelOptions::keeps_surfaces
     Address refinement;  // of a RefineScene, absent below Level::refined

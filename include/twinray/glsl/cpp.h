@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What C++ needs to compile headers that are written for both languages, as twinray's own and those of an application's
-// kernels: structs of arguments and of buffers, and functions that the host runs too. Include this, then such headers
+// Definitions that C++ needs to compile headers written for both languages, those of twinray and of an application's
+// kernels: structs of arguments and of buffers, and functions that the host also runs. Include this, then such headers
 // in namespace twinray between twinray/glsl/cpp_begin.h and twinray/glsl/cpp_end.h. Needs GLM.
 #pragma once
 
@@ -12,9 +12,9 @@
 
 namespace twinray {
 
-constexpr bool FUSED_FMA = false;  // compilers of C++ may, but need not fuse
+constexpr bool FUSED_FMA = false;  // C++ compilers may fuse but need not
 
-// Of NaN and a number b it is b.
+// They return b if a is NaN.
 inline float min_no_nan(float a, float b) { return a < b ? a : b; }
 inline float max_no_nan(float a, float b) { return a > b ? a : b; }
 
@@ -22,7 +22,7 @@ inline float uintBitsToFloat(uint bits) { return std::bit_cast<float>(bits); }
 inline uint floatBitsToUint(float value) { return std::bit_cast<uint>(value); }
 
 constexpr std::uint64_t NULL_ADDRESS = 0;
-// On the host 0 stands for what is absent, too: kernels get Context::absent for it.
+// On the host, 0 also means absent; kernels get Context::absent instead.
 inline bool is_absent(std::uint64_t address) { return address == NULL_ADDRESS || (address & 1) != 0; }
 inline std::uint64_t absent_near(std::uint64_t present) { return present | 1; }
 inline std::uint64_t address_after(std::uint64_t base, uint bytes) { return base + bytes; }

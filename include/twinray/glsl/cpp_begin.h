@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// No include guard on purpose: opens the vocabulary of headers that are written for C++ and GLSL; cpp_end.h closes it.
+// Defines the vocabulary of headers written for C++ and GLSL; cpp_end.h undefines it. It has no include guard on
+// purpose.
 #define FUNC inline
 #define TWINRAY_REFINED
 #define INOUT(T) T&

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Closes what cpp_begin.h opened.
+// Undefines the vocabulary of cpp_begin.h.
 #undef FUNC
 #undef TWINRAY_REFINED
 #undef INOUT

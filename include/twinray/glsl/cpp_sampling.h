@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Random and evenly spread numbers and their warps, for C++: the same values as kernels get.
+// Random and evenly spread numbers and their warps, for C++: the same values as in kernels.
 #pragma once
 
 #include <glm/integer.hpp>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Instances, triangles and spawn points for C++: the same text that kernels get of twinray/glsl/spawn.glsl. Needs GLM.
+// Instances, triangles and spawn points for C++: the same text that kernels include as twinray/glsl/spawn.glsl. Needs
+// GLM.
 #pragma once
 
 #include "twinray/glsl/cpp.h"

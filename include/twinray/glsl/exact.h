@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: MIT
-// Error-free float transformations. `precise` is repeated in every helper: it does not reach into callees, and a
-// contracted product would break both the exactness here and the watertightness that rests on it.
+// Error-free float transformations. Every helper repeats `precise`: it does not reach into callees, and a contracted
+// product would break both the exactness here and the watertightness that depends on it.
 #ifndef TWINRAY_EXACT_H
 #define TWINRAY_EXACT_H
 
 const float HALF_ULP = 5.9604644775390625e-08f;  // u = 2^-24, the unit roundoff of float32
 
-// A number with the first 12 bits of its significand. What is left has 12, too, so that products of two parts are
-// exact.
+// Returns the number with only the first 12 bits of its significand. The remainder has 12 too, so that products of two
+// parts are exact.
 FUNC float high_part(float x) { return uintBitsToFloat(floatBitsToUint(x) & 0xfffff000u); }
 
 // The rounding error of the product p = fl(a b): a b = p + error, exactly, barring over- and underflow. Dekker, "A
-// floating-point technique for extending the available precision", 1971, but numbers are cut, not rounded, in two.
+// floating-point technique for extending the available precision", 1971, but numbers are split by cutting, not by
+// rounding.
 FUNC float product_error(float a, float b, float p) {
     PRECISE float error = 0.0f;
     if (FUSED_FMA) {
@@ -43,7 +44,7 @@ FUNC float sum_error(float a, float b, float s) {
     return error;
 }
 
-// p - q in doubled precision for the products p = a b and q = c d: the difference, and what is missing from it.
+// p - q in doubled precision for the products p = a b and q = c d: returns the difference; `missing` is its error.
 FUNC float doubled_difference(float a, float b, float c, float d, INOUT(float) missing) {
     PRECISE float p = a * b;
     PRECISE float q = c * d;
@@ -54,9 +55,9 @@ FUNC float doubled_difference(float a, float b, float c, float d, INOUT(float) m
     return difference;
 }
 
-// a.x b.x + a.y b.y + a.z b.z + c in doubled precision: the sum rounded in float32, which is returned, and what is
-// missing from it (Ogita, Rump, Oishi, "Accurate sum and dot product", 2005), with the sum of the magnitudes that this
-// is made of: it is off by five roundings of those.
+// a.x b.x + a.y b.y + a.z b.z + c in doubled precision (Ogita, Rump, Oishi, "Accurate sum and dot product", 2005):
+// returns the sum rounded to float32. `missing` is the rest, and `missing_size` the sum of the magnitudes of its terms:
+// the rest is off by five roundings of that.
 FUNC float doubled_dot(vec3 a, vec3 b, float c, INOUT(float) missing, INOUT(float) missing_size) {
     PRECISE float p0 = a.x * b.x;
     PRECISE float p1 = a.y * b.y;
@@ -81,7 +82,7 @@ FUNC float doubled_dot(vec3 a, vec3 b, float c, INOUT(float) missing, INOUT(floa
     return s2;
 }
 
-// The same, rounded once; where something overflows, the plain sum.
+// The same, rounded once; the plain sum if a part overflows.
 FUNC float accurate_dot(vec3 a, vec3 b, float c) {
     float missing = 0.0f;
     float missing_size = 0.0f;

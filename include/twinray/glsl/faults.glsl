@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// In kernels compiled with TWINRAY_DEBUG: tells the host of a key or an index that names nothing.
+// In kernels compiled with TWINRAY_DEBUG: reports to the host a key or an index that names nothing.
 #ifndef TWINRAY_FAULTS_GLSL
 #define TWINRAY_FAULTS_GLSL
 #include "twinray/glsl/common.glsl"
@@ -14,7 +14,8 @@ void note_fault(REF(Faults) faults, uint type, uint index)
 }
 #define TWINRAY_FAULT(faults, type, index) note_fault(faults, type, index);
 #else
-// A statement with its semicolon: notes that a kernel was refused `index` of `type`; nothing without TWINRAY_DEBUG.
+// A statement with its semicolon: records that a kernel used the invalid `index` of `type`; empty without
+// TWINRAY_DEBUG.
 #define TWINRAY_FAULT(faults, type, index)
 #endif
 #endif

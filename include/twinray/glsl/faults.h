@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// What kernels compiled with TWINRAY_DEBUG were refused: how often, and the first of it.
+// The record of invalid accesses in kernels compiled with TWINRAY_DEBUG: their number and the first of them.
 #ifndef TWINRAY_SHARED_FAULTS_H
 #define TWINRAY_SHARED_FAULTS_H
 
-// How often kernels were refused something, and the first of it.
+// The number of invalid accesses in kernels, and the first of them.
 struct Faults {
     uint count;
-    uint type;  // of a SetKey; 0 for an index into a structure of arrays
+    uint type;  // SetKey::type; 0 for an index into a structure of arrays
     uint index;
     uint reserved;
 };

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Numbers of 16 bits: IEEE 754 binary16.
+// 16-bit numbers: IEEE 754 binary16.
 #ifndef TWINRAY_HALF_H
 #define TWINRAY_HALF_H
 
-// The value of an IEEE half.
+// Returns the value of an IEEE half.
 FUNC float float_of_half(uint bits) {
     uint sign = (bits & 0x8000u) << 16u;
     uint exponent = (bits >> 10u) & 31u;

@@ -14,19 +14,18 @@ struct InstanceRecord {
 };
 BUFFER_OF(InstanceRecord, 16);
 
-// What the block of every geometry begins with: a box around its active triangles in object space. lo > hi: it has
-// none.
+// The start of every geometry's block: a box around its active triangles in object space. lo > hi: there are none.
 struct GeometryBox {
     vec3 lo;
     vec3 hi;
 };
 BUFFER_OF(GeometryBox, 8);
 
-// What follows in the block of every geometry, at GEOMETRY_SOURCE_OFFSET, whichever accelerator it belongs to. Meshes
-// are built in units of `scale`, a power of two near their size, so that neither tiny nor huge ones leave the range of
-// float32; the unit is put back into the map to world space.
+// The next part of every geometry's block, at GEOMETRY_SOURCE_OFFSET, for both accelerators. Meshes are built in units
+// of `scale`, a power of two near their size, so that neither tiny nor huge ones leave the range of float32; the map to
+// world space includes the unit.
 struct GeometrySource {
-    Floats positions;  // of the mesh, in units of scale; absent unless level refined needs them
+    Floats positions;  // the mesh's, in units of scale; absent unless level refined needs them
     Uints indices;
     float scale;
     uint reserved;
@@ -40,24 +39,24 @@ const uint INSTANCE_DISABLE_CULLING = 1u;
 const uint INSTANCE_FLIP_FACING = 2u;
 const uint INSTANCE_NON_OPAQUE = 8u;  // not opaque: the trace program decides about each hit
 
-// What a geometry is made of.
+// The kind of a geometry.
 const uint GEOMETRY_TRIANGLES = 0u;
 const uint GEOMETRY_BOXES = 1u;
 
-// As VkGeometryInstanceFlagBitsKHR.
+// The bits of VkGeometryInstanceFlagBitsKHR.
 FUNC uint flags_of(InstanceRecord instance) { return instance.sbt_offset_flags >> 24u; }
 FUNC uint custom_index_of(InstanceRecord instance) { return instance.custom_index_mask & 0xffffffu; }  // 24 bits
 FUNC uint mask_of(InstanceRecord instance) { return instance.custom_index_mask >> 24u; }               // 8 bits
 
-// Whether a geometry is placed: kernels that write instances may take it away.
+// Returns whether the instance has a geometry: kernels that write instances may remove it.
 FUNC bool has_geometry(InstanceRecord instance) { return instance.geometry != NULL_ADDRESS; }
 
-// From object space.
+// The map from object space.
 FUNC Rows to_world_of(InstanceRecord instance) { return instance.object_to_world; }
 
 // The row with its linear part in units of `scale`.
 FUNC vec4 scaled_row(vec4 row, float scale) { return vec4(row.x * scale, row.y * scale, row.z * scale, row.w); }
-// The map of what is in units of `scale`.
+// The map of points in units of `scale`.
 FUNC Rows scaled_map(Rows m, float scale) {
     m.r0 = scaled_row(m.r0, scale);
     m.r1 = scaled_row(m.r1, scale);
@@ -65,7 +64,7 @@ FUNC Rows scaled_map(Rows m, float scale) {
     return m;
 }
 
-// The instance of what was built, not of what was given.
+// The instance in the units of the built geometry instead of the given ones.
 FUNC InstanceRecord in_built_units(InstanceRecord instance) {
     if (has_geometry(instance)) {
         float scale = AT(REF(GeometrySource)(address_after(instance.geometry, GEOMETRY_SOURCE_OFFSET)), 0).scale;
@@ -74,12 +73,12 @@ FUNC InstanceRecord in_built_units(InstanceRecord instance) {
     return instance;
 }
 
-// Whether a map has no entry that is infinite or NaN. An instance whose transform or its inverse has one is inactive:
-// kernels write transforms, too, and nobody can throw there.
+// Returns whether no entry of a map is infinite or NaN. An instance is inactive if its transform or its inverse has
+// such an entry: kernels also write transforms and cannot throw.
 FUNC bool is_finite_map(Rows m) {
     return is_finite(vec3(m.r0.x, m.r0.y, m.r0.z)) && is_finite(vec3(m.r1.x, m.r1.y, m.r1.z)) &&
            is_finite(vec3(m.r2.x, m.r2.y, m.r2.z)) && is_finite(vec3(m.r0.w, m.r1.w, m.r2.w));
 }
-// Whether an instance with this map and its inverse can be hit: both are finite.
+// Returns whether an instance with this map and its inverse can be hit: both are finite.
 FUNC bool is_usable(Rows to_world, Rows to_object) { return is_finite_map(to_world) && is_finite_map(to_object); }
 #endif

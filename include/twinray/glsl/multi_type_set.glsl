@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Elements of a MultiTypeSet in kernels: what MultiTypeSet::view() gives, declared by TWINRAY_SET_VIEW.
+// Access to the elements of a MultiTypeSet in kernels: its view() is a struct declared by TWINRAY_SET_VIEW.
 //
 //     vec3 color_of(Diffuse diffuse, vec2 uv) { ... }
 //     vec3 color_of(Glass glass, vec2 uv) { ... }
@@ -15,7 +15,7 @@
 #include "twinray/glsl/faults.glsl"
 #include "twinray/glsl/multi_type_set.h"
 
-// The parts of what lists pass on to each type.
+// The arguments that lists pass on to each type.
 #define SET_OF_(set, key, ACTION) set
 #define KEY_OF_(set, key, ACTION) key
 #define ACTION_OF_(set, key, ACTION) ACTION

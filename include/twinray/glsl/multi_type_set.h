@@ -14,7 +14,7 @@ struct SetKey {
 };
 BUFFER_OF(SetKey, 4);
 
-// Whether it can name an element: is not all zero.
+// Returns whether it can name an element: it is not all zero.
 FUNC bool is_valid(SetKey key) { return key.type != 0u; }
 
 // A type's part of TWINRAY_SET_VIEW.
@@ -22,8 +22,9 @@ FUNC bool is_valid(SetKey key) { return key.type != 0u; }
     REF(Type) name;                              \
     uint name##_count;                           \
     uint name##_reserved;
-// TWINRAY_SET_VIEW(MaterialSet, MATERIALS): struct MaterialSet with, for each type, the array `diffuse` of its elements
-// and their number `diffuse_count`. 16 bytes a type and 16 more. The element types need a BUFFER_OF before it.
+// TWINRAY_SET_VIEW(MaterialSet, MATERIALS) declares struct MaterialSet with, for each type, the array `diffuse` of its
+// elements and their number `diffuse_count`. It has 16 bytes per type and 16 more. The element types need a BUFFER_OF
+// before it.
 #define TWINRAY_SET_VIEW(Name, LIST)                   \
     struct Name {                                      \
         LIST(TWINRAY_SET_FIELD, 0) REF(Faults) faults; \

@@ -9,8 +9,8 @@
 //
 // Levels from refined on need TWINRAY_REFINED defined (twinray_add_kernel(... REFINED)) and a device with float64.
 //
-// Specialise FEATURES_CONSTANT with AccelView::features, or AbstractAccel::features_for, to leave out what the scene
-// does not need, and LEVEL_CONSTANT with the level. With TWINRAY_PROGRAM defined, the kernel defines
+// Specialise FEATURES_CONSTANT with AccelView::features, or AbstractAccel::features_for, to leave out code that the
+// scene does not need, and LEVEL_CONSTANT with the level. With TWINRAY_PROGRAM defined, the kernel defines
 // intersect_primitive and accept_hit itself (see twinray/glsl/program.h), before or after this include.
 #ifndef TWINRAY_QUERY_GLSL
 #define TWINRAY_QUERY_GLSL
@@ -23,7 +23,7 @@ layout(constant_id = LEVEL_CONSTANT) const uint TRACE_LEVEL = LEVEL_WATERTIGHT;
 #if defined(TWINRAY_SW)
 #include "twinray/glsl/stack.glsl"
 #include "shaders/shared/traverse.h"
-// The hit by float32 alone, whatever options.level: what trace() begins with. A miss has hit = 0.
+// Returns the hit by float32 only, whatever options.level: trace() starts with it. A miss has hit = 0.
 Hit trace_float32(Address accel, Ray ray, TraceOptions options)
 {
     return traverse(AT(REF(SwTlasHeader)(accel), 0), ray, options);
@@ -52,11 +52,11 @@ Hit trace(Address accel, Ray ray, TraceOptions options)
     return refined(hit, ray, advance, load_given_mesh(scene.instances, hit.instance_index));
 }
 #else
-// The hit that `options` ask for, by their level; t counts in units of the direction. A miss has hit = 0.
+// Returns the hit for `options`, by their level; t is in units of the direction. A miss has hit = 0.
 Hit trace(Address accel, Ray ray, TraceOptions options) { return trace_float32(accel, ray, options); }
 #endif
 
-// Options of this kernel, with its level and features: mask of 8 bits, flags CULL_BACK, CULL_FRONT or 0, query
+// Returns options with this kernel's level and features. mask: 8 bits; flags: CULL_BACK, CULL_FRONT or 0; query:
 // QUERY_CLOSEST or QUERY_ANY.
 TraceOptions trace_options(uint mask, uint flags, uint query, Address user_data)
 {
@@ -70,15 +70,16 @@ TraceOptions trace_options(uint mask, uint flags, uint query, Address user_data)
     return options;
 }
 
-// What closest_hit() and any_hit() do with their options: whether there is a hit.
+// Shared by closest_hit() and any_hit(): returns whether there is a hit.
 bool find_hit(Address accel, Ray ray, TraceOptions options, out Hit hit)
 {
     hit = trace(accel, ray, options);
     return hit.hit != 0u;
 }
 
-// The closest hit of the instances that share a bit with mask; flags: CULL_BACK, CULL_FRONT or 0. False: hit is a miss.
-// user_data is for kernels with a program of their own (twinray/glsl/program.h), which finds it in its candidates.
+// Finds the closest hit of the instances that share a bit with mask; flags: CULL_BACK, CULL_FRONT or 0. Returns false
+// if there is none; hit is then a miss. user_data is for kernels with a program of their own (twinray/glsl/program.h),
+// which gets it in its candidates.
 bool closest_hit(Address accel, Ray ray, uint mask, uint flags, Address user_data, out Hit hit)
 {
     return find_hit(accel, ray, trace_options(mask, flags, QUERY_CLOSEST, user_data), hit);
@@ -89,7 +90,7 @@ bool closest_hit(Address accel, Ray ray, uint mask, uint flags, out Hit hit)
 }
 bool closest_hit(Address accel, Ray ray, out Hit hit) { return closest_hit(accel, ray, 0xffu, 0u, hit); }
 
-// Any hit of them, whichever is found first. False: hit is a miss.
+// Finds any hit of them. Returns false if there is none; hit is then a miss.
 bool any_hit(Address accel, Ray ray, uint mask, uint flags, Address user_data, out Hit hit)
 {
     return find_hit(accel, ray, trace_options(mask, flags, QUERY_ANY, user_data), hit);
@@ -99,7 +100,7 @@ bool any_hit(Address accel, Ray ray, uint mask, uint flags, out Hit hit)
     return any_hit(accel, ray, mask, flags, absent_near(accel), hit);
 }
 
-// Whether anything lies on the ray.
+// Returns whether anything is on the ray.
 bool any_hit(Address accel, Ray ray, uint mask, uint flags)
 {
     TraceOptions options = trace_options(mask, flags, QUERY_ANY, absent_near(accel));

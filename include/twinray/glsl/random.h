@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Random numbers as a pure function of (pixel, sample, dimension, seed): integers only, so every device and the host
-// get the same ones.
+// Random numbers as a pure function of (pixel, sample, dimension, seed): integers only, so that every device and the
+// host get the same ones.
 #ifndef TWINRAY_RANDOM_H
 #define TWINRAY_RANDOM_H
 
@@ -21,8 +21,8 @@ FUNC uvec4 random_words(uvec4 key) {
     return v ^ (v >> 16u);
 }
 
-// A random permutation in which each bit is flipped depending on the bits below it: Owen's scrambling of a number
-// written with its bits reversed (Laine and Karras 2011, constants of Burley 2020).
+// A random permutation in which each bit is flipped depending on the lower bits: Owen's scrambling of a number in
+// reversed bit order (Laine and Karras 2011, constants of Burley 2020).
 FUNC uint scrambled(uint x, uint seed) {
     x += seed;
     x ^= x * 0x6c50b47cu;
@@ -32,8 +32,8 @@ FUNC uint scrambled(uint x, uint seed) {
     return x;
 }
 
-// The second dimension of the Sobol sequence with its bits reversed; the first is the index itself. The matrix is
-// Pascal's triangle modulo 2, which is built of four copies of its half: five steps instead of 32.
+// The second dimension of the Sobol sequence in reversed bit order; the first is the index itself. The matrix is
+// Pascal's triangle modulo 2, which consists of four copies of its half: five steps instead of 32.
 FUNC uint sobol_second(uint index) {
     index ^= index >> 16u;
     index ^= (index & 0xff00ff00u) >> 8u;
@@ -52,8 +52,8 @@ FUNC uvec2 sample_pair(uint pixel, uint sample_index, uint dimension, uint seed)
     return uvec2(bitfieldReverse(scrambled(index, seeds.y)), bitfieldReverse(scrambled(sobol_second(index), seeds.z)));
 }
 
-// In [0, 1), a multiple of 2^-24.
+// A number in [0, 1), a multiple of 2^-24.
 FUNC float unit_float(uint word) { return float(word >> 8u) * 5.9604644775390625e-08f; }
-// Two of them: each in [0, 1), a multiple of 2^-24.
+// Two numbers in [0, 1), multiples of 2^-24.
 FUNC vec2 unit_floats(uvec2 words) { return vec2(unit_float(words.x), unit_float(words.y)); }
 #endif

@@ -3,7 +3,7 @@
 #ifndef TWINRAY_RAY_H
 #define TWINRAY_RAY_H
 
-// The points origin + t * direction with t_min < t < t_max. direction need not be normalised.
+// The ray covers the points origin + t * direction with t_min < t < t_max. direction need not be normalised.
 struct Ray {
     vec3 origin;
     float t_min;  // >= 0; a negative value counts as 0
@@ -12,11 +12,11 @@ struct Ray {
 };
 BUFFER_OF(Ray, 8);
 
-// What a ray met. The point is (1-u-v) v0 + u v1 + v v2. A miss has hit = 0, t = -1 and zeros.
+// The hit of a ray. The point is (1-u-v) v0 + u v1 + v v2. A miss has hit = 0, t = -1 and zeros.
 struct Hit {
     uint hit;              // 0 or 1
     float t;               // in units of the ray's direction
-    uint primitive_index;  // position in the mesh's triangle list, degenerate ones counted
+    uint primitive_index;  // position in the mesh's triangle list, including degenerate ones
     uint custom_index;     // the instance's 24-bit index given by the user
     float u;
     float v;
@@ -25,12 +25,12 @@ struct Hit {
 };
 BUFFER_OF(Hit, 8);
 
-const uint QUERY_CLOSEST = 0u;  // the smallest t, then the lowest (instance, primitive); ties of HwTlas: the driver's
+const uint QUERY_CLOSEST = 0u;  // the smallest t, then the lowest (instance, primitive); HwTlas: the driver breaks ties
 const uint QUERY_ANY = 1u;      // whichever hit is found first
 
 // Flags of a trace, with the values of SPIR-V's ray flags.
 const uint CULL_BACK = 0x10u;  // triangles seen from behind are not hit
 const uint CULL_FRONT = 0x20u;
 
-const uint HIT_FRONT = 1u;  // of a hit: of the front of a triangle, as culling has it; boxes have none
+const uint HIT_FRONT = 1u;  // of a hit: on a triangle's front, by the rules of culling; boxes have no front
 #endif

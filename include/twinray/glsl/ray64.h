@@ -3,7 +3,7 @@
 #ifndef TWINRAY_RAY64_H
 #define TWINRAY_RAY64_H
 
-// As Ray, in float64.
+// Like Ray, in float64.
 struct Ray64 {
     dvec3 origin;
     double t_min;

@@ -19,26 +19,26 @@ FUNC vec2 unit_circle(float turns) {
     return quadrant < 2 ? even : -even;
 }
 
-// Density cos / pi.
+// The density is cos / pi.
 FUNC vec3 sample_cosine_hemisphere(vec2 u) {
     vec2 circle = unit_circle(u.y) * sqrt(u.x);
     return vec3(circle.x, circle.y, sqrt(1.0f - u.x));
 }
 
-// Barycentric u and v, uniform by area.
+// Returns barycentric u and v, uniform by area.
 FUNC vec2 sample_triangle(vec2 u) {
     float root = sqrt(u.x);
     return vec2(1.0f - root, u.y * root);
 }
 
-// Three unit axes at right angles, right-handed.
+// Three perpendicular unit axes, right-handed.
 struct Frame {
     vec3 x;
     vec3 y;
     vec3 z;
 };
 
-// Duff et al., "Building an Orthonormal Basis, Revisited", 2017.
+// Makes a frame about z: Duff et al., "Building an Orthonormal Basis, Revisited", 2017.
 FUNC Frame frame_about(vec3 z) {
     float s = z.z < 0.0f ? -1.0f : 1.0f;
     float a = -1.0f / (s + z.z);
@@ -50,9 +50,9 @@ FUNC Frame frame_about(vec3 z) {
     return frame;
 }
 
-// Components of v along the axes of the frame.
+// Returns the components of v along the axes of the frame.
 FUNC vec3 to_local(Frame frame, vec3 v) { return vec3(dot(frame.x, v), dot(frame.y, v), dot(frame.z, v)); }
-// The vector with these components.
+// Returns the vector with these components.
 FUNC vec3 to_world(Frame frame, vec3 v) { return frame.x * v.x + frame.y * v.y + frame.z * v.z; }
 
 #endif

@@ -28,8 +28,8 @@ FUNC uvec2 sobol_third_and_fourth(uint index) {
 }
 
 // Point `index` of the sequence of `key`, as 32-bit fractions: Owen-scrambled with a seed of its own for each dimension
-// and key (Burley, "Practical Hash-based Owen Scrambling", 2020). Keys give independent estimates of which each is
-// unbiased; within one, the first 2^k points are stratified.
+// and key (Burley, "Practical Hash-based Owen Scrambling", 2020). Keys give independent, unbiased estimates; within
+// one, the first 2^k points are stratified.
 FUNC uvec4 sobol_point(uvec4 key, uint index) {
     uvec4 seeds = random_words(key);
     uvec2 rest = sobol_third_and_fourth(index);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Points on triangles from which rays start without meeting their own triangle, and without an absolute epsilon: a
+// Points on triangles from which rays start without hitting their own triangle, and without an absolute epsilon: a
 // bound of all rounding errors between the triangle and the ray as an accelerator sees it, in the manner of Bitterli et
 // al., "Self-Intersection Avoidance", NVIDIA 2023.
 //
@@ -16,7 +16,7 @@
 //    condition up to 10^3, in units of u |W| |M| |W| (|P| + |t|): 3.2 for twinray's inverse, 4.1 for plain float32
 //    cofactors. tests/shared/spawn_test.cpp holds the whole bound against both.
 // It holds for meshes of 2^-60 to 2^60 under instances that keep world coordinates within 2^-100 to 2^100. It cannot
-// hold for hardware whose inverse is wrong by more than INVERSE_ERROR says; case F02 of `twinray report` tells.
+// hold for hardware whose inverse has a larger error than INVERSE_ERROR; case F02 of `twinray report` tests that.
 #ifndef TWINRAY_SPAWN_H
 #define TWINRAY_SPAWN_H
 #include "twinray/glsl/instance.h"
@@ -27,20 +27,20 @@
 const float TEST_ERROR = 4.0f * HALF_ULP;
 const float INVERSE_ERROR = 5.0f * HALF_ULP;
 
-// How an instance lies in the world.
+// The placement of an instance in the world.
 struct Placement {
     Rows to_world;
     Rows to_object;  // its inverse
 };
 
-// Of a triangle, in object space.
+// The vertices of a triangle in object space.
 struct TriangleVertices {
     vec3 a;
     vec3 b;
     vec3 c;
 };
 
-// Of a map to world space that has an inverse.
+// Makes a placement from an invertible map to world space.
 FUNC Placement placement_of(Rows to_world) {
     Placement placement;
     placement.to_world = to_world;
@@ -48,10 +48,10 @@ FUNC Placement placement_of(Rows to_world) {
     return placement;
 }
 
-// Of an instance on the device: AbstractAccel::instance_buffer() tells where.
+// Makes it for an instance on the device, such as in AbstractAccel::instance_buffer().
 FUNC Placement placement_of(InstanceRecord instance) { return placement_of(to_world_of(instance)); }
 
-// positions: 3 tightly packed floats a vertex. indices: 3 a triangle.
+// positions: 3 tightly packed floats per vertex. indices: 3 per triangle.
 FUNC TriangleVertices vertices_of(Floats positions, Uints indices, uint primitive_index) {
     TriangleVertices vertices;
     uvec3 places = load_indices(indices, primitive_index);
@@ -61,9 +61,9 @@ FUNC TriangleVertices vertices_of(Floats positions, Uints indices, uint primitiv
     return vertices;
 }
 
-// The first three components.
+// Returns the first three components.
 FUNC vec3 xyz(vec4 v) { return vec3(v.x, v.y, v.z); }
-// Where a map takes the origin: its fourth column.
+// Returns the image of the origin: the map's fourth column.
 FUNC vec3 offset_of(Rows m) { return vec3(m.r0.w, m.r1.w, m.r2.w); }
 
 // |m| |v|, without m's offset: the scale of the rounding errors of the product.
@@ -71,22 +71,24 @@ FUNC vec3 magnitude(Rows m, vec3 v) {
     return vec3(dot(abs(xyz(m.r0)), abs(v)), dot(abs(xyz(m.r1)), abs(v)), dot(abs(xyz(m.r2)), abs(v)));
 }
 
-// The transpose of m's linear part times v: of a map's inverse it takes normals the way the map takes points.
+// The transpose of m's linear part times v: with a map's inverse, it transforms normals as the map transforms points.
 FUNC vec3 transposed_times(Rows m, vec3 v) { return xyz(m.r0) * v.x + xyz(m.r1) * v.y + xyz(m.r2) * v.z; }
 
-// Bound of what an accelerator's own inverse and the product with it add to a vector of this size in world space.
+// Bound of the error that an accelerator's own inverse and the product with it add to a vector of this size in world
+// space.
 FUNC vec3 inverse_error(Placement placement, vec3 size) {
     vec3 back = magnitude(placement.to_object, size);
     return magnitude(placement.to_object, magnitude(placement.to_world, back)) * INVERSE_ERROR;
 }
 
-// Scaled by a power of two before, so that squares stay within float32.
+// Scales by a power of two first, so that squares stay within float32.
 FUNC float scaled_length(vec3 v) {
     float scale = power_of_two_below(largest_entry(v));
     return scale == 0.0f ? 0.0f : length(v / scale) * scale;
 }
 
-// The least of the three heights of a triangle with these edges from one corner, in their unit; 0 if it is a point.
+// Returns the least of the three heights of a triangle with these edges from one corner, in their unit; 0 if it is a
+// point.
 FUNC float least_height(vec3 edge1, vec3 edge2) {
     float scale = power_of_two_below(max(largest_entry(edge1), largest_entry(edge2)));
     if (scale == 0.0f) return 0.0f;
@@ -96,9 +98,9 @@ FUNC float least_height(vec3 edge1, vec3 edge2) {
     return length(cross_precise(edge1, edge2)) / longest * scale;
 }
 
-// The point (1-u-v) a + u b + v c, as a + (u (b - a) + v (c - a)): the corner is added last, so that only one rounding
-// is of the size of the coordinates. 0 <= u, v and u + v <= 1 but for rounding. A triangle without area has no normal:
-// its point is not a number.
+// Returns the point (1-u-v) a + u b + v c, as a + (u (b - a) + v (c - a)): the corner is added last, so that only one
+// rounding has the size of the coordinates. 0 <= u, v and u + v <= 1 but for rounding. A triangle without area has no
+// normal: its point is NaN.
 FUNC SurfacePoint surface_point(Placement placement, TriangleVertices vertices, vec2 uv) {
     PRECISE vec3 edge1 = vertices.b - vertices.a;
     PRECISE vec3 edge2 = vertices.c - vertices.a;
@@ -125,14 +127,14 @@ FUNC SurfacePoint surface_point(Placement placement, TriangleVertices vertices, 
     return point;
 }
 
-// Where a ray on the given side of the surface starts. The ray's t_min is 0.
+// Returns the start of a ray on the given side of the surface. The ray's t_min is 0.
 FUNC vec3 spawn_position(SurfacePoint point, bool is_front) {
     PRECISE vec3 position = point.position + point.normal * (is_front ? point.offset : -point.offset);
     return position;
 }
 
-// A t_min with which the ray goes on behind the triangle that it met at `t`: every accelerator finds that triangle
-// before it, whatever its own t is within rounding.
+// Returns a t_min with which the ray continues behind the triangle that it hit at `t`: every accelerator finds that
+// triangle before it, whatever its own t is within rounding.
 FUNC float passing_t(SurfacePoint point, Placement placement, Ray ray, float t) {
     vec3 error = point.error_object + inverse_error(placement, abs(ray.origin) + abs(offset_of(placement.to_world))) +
                  inverse_error(placement, ray.direction) * t;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Where the entries of a traversal's stack lie: in the memory of the workgroup, a column for each invocation, or in
-// registers (STACK_CONSTANT). A kernel whose groups have more than 64 invocations defines TWINRAY_INVOCATIONS as their
-// number before it includes twinray/glsl/query.glsl; TWINRAY_PRIVATE_STACK, in stages without such memory, leaves it
-// out.
+// The memory of a traversal's stack: the workgroup's, a column for each invocation, or registers (STACK_CONSTANT). A
+// kernel whose groups have more than 64 invocations defines TWINRAY_INVOCATIONS as their number before it includes
+// twinray/glsl/query.glsl; TWINRAY_PRIVATE_STACK, in stages without workgroup memory, leaves the column out.
 #ifndef TWINRAY_STACK_GLSL
 #define TWINRAY_STACK_GLSL
 #include "shaders/shared/features.h"
@@ -10,14 +9,14 @@
 
 uint twinray_stack_registers[REGISTER_STACK_SIZE];
 
-// An entry in registers; `slot` is below REGISTER_STACK_SIZE. It is selected: registers have no index.
+// An entry in registers; `slot` is below REGISTER_STACK_SIZE. It is selected, because registers have no index.
 uint entry_of_registers(uint slot)
 {
     uint entry = twinray_stack_registers[0];
     UNROLL for (uint i = 1u; i < REGISTER_STACK_SIZE; ++i) entry = slot == i ? twinray_stack_registers[i] : entry;
     return entry;
 }
-// Writes it.
+// Writes the entry.
 void set_entry_of_registers(uint slot, uint entry)
 {
     UNROLL for (uint i = 0u; i < REGISTER_STACK_SIZE; ++i)
@@ -30,13 +29,13 @@ uint load_entry(uint slot) { return entry_of_registers(slot); }
 void store_entry(uint slot, uint entry) { set_entry_of_registers(slot, entry); }
 #else
 #ifndef TWINRAY_INVOCATIONS
-// Of a workgroup.
+// The workgroup's stacks.
 #define TWINRAY_INVOCATIONS 64
 #endif
 layout(constant_id = STACK_CONSTANT) const uint STACK = STACK_SHARED;
 shared uint twinray_stack[STACK_SIZE * TWINRAY_INVOCATIONS];
 
-// How many entries an invocation has.
+// The number of entries that an invocation has.
 uint stack_size() { return STACK == STACK_REGISTERS ? REGISTER_STACK_SIZE : STACK_SIZE; }
 // The entry at `slot`, which is below stack_size().
 uint load_entry(uint slot)

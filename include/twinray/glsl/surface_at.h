@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// From a hit to the surface: what accelerators with AccelOptions::keeps_surfaces hold of meshes, and functions of it
-// for kernels and C++. Each is a function of its own, so that what is not asked for is left out.
+// Functions that get the surface of a hit, and the mesh data that accelerators with AccelOptions::keeps_surfaces hold,
+// for kernels and C++. Each is separate, so that unused ones are left out.
 #ifndef TWINRAY_SURFACE_AT_H
 #define TWINRAY_SURFACE_AT_H
 #include "twinray/glsl/crossing.h"
 #include "twinray/glsl/surface.h"
 
-// An array of a mesh: float32 numbers, `components` (1 to 4) a vertex, or a face.
+// An array of a mesh: float32 numbers, `components` (1 to 4) per vertex or per face.
 struct SurfaceAttribute {
-    Floats values;  // absent where the mesh has none
+    Floats values;  // absent if the mesh has none
     uint components;
     uint is_per_face;
 };
@@ -23,17 +23,17 @@ const uint ATTRIBUTE_UV1 = 3u;
 const uint ATTRIBUTE_COLORS = 4u;
 const uint ATTRIBUTES_NAMED = 5u;
 
-// What one push brought.
+// The data of one push.
 struct SurfaceGeometry {
     Uint64 handle;        // AccelHandle::id
-    Uints face_metadata;  // one a face, or absent
+    Uints face_metadata;  // one per face, or absent
     Address metadata;     // MeshView::metadata, or absent
     uint first_instance;  // Hit::instance_index of its first instance
-    uint face_count;      // 0 of boxes, and where no mesh is kept
+    uint face_count;      // 0 for boxes, and if no mesh is kept
 };
 BUFFER_OF(SurfaceGeometry, 8);
 
-// What an accelerator holds of its surfaces, on the device.
+// The surface data of an accelerator, on the device.
 struct SurfaceTable {
     REF(InstanceRecord) instances;     // by Hit::instance_index
     Uints geometry_of_instance;        // likewise: the number of its geometry
@@ -44,8 +44,8 @@ struct SurfaceTable {
 };
 BUFFER_OF(SurfaceTable, 8);
 
-// The triangle that a hit names, as the ray meets it. `vertices`, `placement` and what point_at() says of object space
-// are in units of `unit`, a power of two that is the accelerator's choice.
+// The triangle that a hit names, and the ray's hit on it. `vertices`, `placement` and the object-space part of
+// point_at() are in units of `unit`, a power of two that the accelerator chooses.
 struct SurfacePlace {
     Placement placement;
     TriangleVertices vertices;
@@ -60,12 +60,12 @@ struct SurfacePlace {
     uint attribute_count;
 };
 
-// Of an instance: what the push of its geometry brought.
+// Returns the data of the push that made an instance's geometry.
 FUNC SurfaceGeometry surface_geometry(SurfaceTable table, uint instance_index) {
     return AT(table.geometries, AT(table.geometry_of_instance, instance_index));
 }
 
-// Of a hit of a triangle, not of a miss or a box.
+// Needs a hit on a triangle, not a miss or a box.
 FUNC SurfacePlace surface_place(SurfaceTable table, Ray ray, Hit hit) {
     uint number = AT(table.geometry_of_instance, hit.instance_index);
     InstanceRecord record = AT(table.instances, hit.instance_index);
@@ -87,18 +87,18 @@ FUNC SurfacePlace surface_place(SurfaceTable table, Ray ray, Hit hit) {
     return place;
 }
 
-// Where a ray may start: spawn_position(), passing_t() with the placement.
+// Returns the point from which a ray may start, with spawn_position(), or passing_t() and the placement.
 FUNC SurfacePoint point_at(SurfacePlace place) {
     return surface_point(place.placement, place.vertices, place.crossing.uv);
 }
 
-// Whether the front is seen: the side on which the vertices turn counter-clockwise in object space, or the other one of
-// instances with flip_facing.
+// Returns whether the front is seen: the side from which the vertices are counter-clockwise in object space, or the
+// other one for instances with flip_facing.
 FUNC bool is_front_at(SurfacePlace place) {
     return place.crossing.is_front == ((place.instance_flags & INSTANCE_FLIP_FACING) == 0u);
 }
 
-// As many as there are; (0, 0, 0, 1) for the others.
+// Reads the existing components; (0, 0, 0, 1) for the others.
 FUNC vec4 load_attribute(SurfaceAttribute array, uint components, uint item) {
     uint at = item * components;
     vec4 value = vec4(0.0f, 0.0f, 0.0f, 1.0f);
@@ -121,7 +121,7 @@ FUNC vec4 interpolated(vec4 a, vec4 b, vec4 c, vec2 uv) {
     return sum;
 }
 
-// The array of an attribute by its number; its values are absent where the mesh has none.
+// Returns the array of an attribute by its number; its values are absent if the mesh has none.
 FUNC SurfaceAttribute attribute_of(SurfacePlace place, uint number) {
     SurfaceAttribute none;
     none.values = Floats(absent_near(place.attributes.address));
@@ -131,7 +131,7 @@ FUNC SurfaceAttribute attribute_of(SurfacePlace place, uint number) {
     return AT(place.attributes, number);
 }
 
-// Where the mesh has the attribute. `components`: of which it is known to be.
+// Needs a mesh with the attribute. `components` is its known number of components.
 FUNC vec4 interpolated_attribute(SurfaceAttribute array, uint components, SurfacePlace place) {
     if (array.is_per_face != 0u) return load_attribute(array, components, place.primitive_index);
     vec4 value = interpolated(load_attribute(array, components, place.indices.x),
@@ -141,34 +141,34 @@ FUNC vec4 interpolated_attribute(SurfaceAttribute array, uint components, Surfac
     return value;
 }
 
-// An attribute by its number: interpolated, or the face's; `missing` where the mesh has none of it. What it has of
-// fewer than four components is followed by 0, 0, 1.
+// Returns an attribute by its number: interpolated, or the face's; `missing` if the mesh does not have it. Fewer than
+// four components are completed by 0, 0, 1.
 FUNC vec4 attribute_at(SurfacePlace place, uint number, vec4 missing) {
     SurfaceAttribute array = attribute_of(place, number);
     if (is_absent(array.values)) return missing;
     return interpolated_attribute(array, array.components, place);
 }
 
-// Texture coordinates by their attribute number, interpolated; (0, 0) where the mesh has none.
+// Returns texture coordinates by their attribute number, interpolated; (0, 0) if the mesh has none.
 FUNC vec2 uv_at(SurfacePlace place, uint number) {
     SurfaceAttribute array = attribute_of(place, number);
     if (is_absent(array.values)) return vec2(0.0f, 0.0f);
     vec4 uv = interpolated_attribute(array, 2u, place);
     return vec2(uv.x, uv.y);
 }
-// The first.
+// The first set.
 FUNC vec2 uv0_at(SurfacePlace place) { return uv_at(place, ATTRIBUTE_UV0); }
-// The second.
+// The second set.
 FUNC vec2 uv1_at(SurfacePlace place) { return uv_at(place, ATTRIBUTE_UV1); }
 
-// Colour of the vertices, interpolated, as it was pushed; (1, 1, 1, 1) where the mesh has none.
+// Returns the colour of the vertices, interpolated, as it was pushed; (1, 1, 1, 1) if the mesh has none.
 FUNC vec4 color_at(SurfacePlace place) {
     SurfaceAttribute array = attribute_of(place, ATTRIBUTE_COLORS);
     if (is_absent(array.values)) return vec4(1.0f, 1.0f, 1.0f, 1.0f);
     return interpolated_attribute(array, 4u, place);
 }
 
-// Unit; `otherwise` for what has no direction: of length 0, infinite or not a number.
+// Returns the unit vector along v; `otherwise` if v has no direction: its length is 0, infinite or NaN.
 FUNC vec3 unit_or(vec3 v, vec3 otherwise) {
     float scale = power_of_two_below(largest_entry(v));
     if (!(scale > 0.0f) || !is_finite(v)) return otherwise;
@@ -176,8 +176,8 @@ FUNC vec3 unit_or(vec3 v, vec3 otherwise) {
     return scaled / length(scaled);
 }
 
-// Interpolated, in object space, of length 1; the triangle's where there is none. A vertex whose normal is 0 takes the
-// triangle's, on the side of the others.
+// Returns the interpolated normal in object space, of length 1; the triangle's if there is none. A vertex whose normal
+// is 0 takes the triangle's, on the side of the others.
 FUNC vec3 object_normal(SurfacePlace place, vec3 of_triangle) {
     vec3 zero = vec3(0.0f, 0.0f, 0.0f);
     SurfaceAttribute normals = attribute_of(place, ATTRIBUTE_NORMALS);
@@ -192,7 +192,8 @@ FUNC vec3 object_normal(SurfacePlace place, vec3 of_triangle) {
     return unit_or(xyz(interpolated(vec4(a, 0.0f), vec4(b, 0.0f), vec4(c, 0.0f), place.crossing.uv)), of_triangle);
 }
 
-// Unit, world space: interpolated vertex normals by the inverse transpose, on the side of point.normal.
+// Returns a unit vector in world space: interpolated vertex normals by the inverse transpose, on the side of
+// point.normal.
 FUNC vec3 normal_at(SurfacePlace place, SurfacePoint point) {
     if (is_absent(attribute_of(place, ATTRIBUTE_NORMALS).values)) return point.normal;
     vec3 normal = object_normal(place, point.normal_object);
@@ -200,8 +201,8 @@ FUNC vec3 normal_at(SurfacePlace place, SurfacePoint point) {
     return dot(world, point.normal) < 0.0f ? -world : world;
 }
 
-// xyz: unit, world space; w: 1 or -1, so that the bitangent is cross(normal, xyz) * w for this normal, also of mirrored
-// instances. 0 where none were pushed or it has no direction.
+// Returns xyz: unit, world space; w: 1 or -1, so that the bitangent is cross(normal, xyz) * w for this normal, also for
+// mirrored instances. 0 if none were pushed or it has no direction.
 FUNC vec4 tangent_at(SurfacePlace place, SurfacePoint point, vec3 normal) {
     vec4 none = vec4(0.0f, 0.0f, 0.0f, 0.0f);
     SurfaceAttribute tangents = attribute_of(place, ATTRIBUTE_TANGENTS);
@@ -209,21 +210,21 @@ FUNC vec4 tangent_at(SurfacePlace place, SurfacePoint point, vec3 normal) {
     vec4 tangent = interpolated_attribute(tangents, 4u, place);
     vec3 world = unit_or(transform_vector(place.placement.to_world, xyz(tangent)), xyz(none));
     if (world == xyz(none)) return none;
-    // Whether the map, or the choice of the normal's side, has turned the frame over.
+    // Whether the map, or the choice of the normal's side, has flipped the frame.
     vec3 given = object_normal(place, point.normal_object);
     vec3 bitangent = transform_vector(place.placement.to_world, cross(given, xyz(tangent)));
     bool is_same = dot(cross(normal, world), bitangent) >= 0.0f;
     return vec4(world, is_same == (tangent.w >= 0.0f) ? 1.0f : -1.0f);
 }
 
-// The instance's custom index where that is not 0, else what the face was given, else 0.
+// The instance's custom index if it is not 0, else the face's own, else 0.
 FUNC uint face_metadata_at(SurfacePlace place) {
     if (place.custom_index != 0u) return place.custom_index;
     if (is_absent(place.geometry.face_metadata)) return 0u;
     return AT(place.geometry.face_metadata, place.primitive_index);
 }
 
-// Of a miss.
+// The surface of a miss.
 FUNC Surface no_surface() {
     vec3 zero = vec3(0.0f, 0.0f, 0.0f);
     Surface surface;
@@ -250,7 +251,7 @@ FUNC Surface no_surface() {
     return surface;
 }
 
-// All of it.
+// Returns the whole surface.
 FUNC Surface surface_at(SurfacePlace place, uint instance_index) {
     Surface surface;
     surface.point = point_at(place);

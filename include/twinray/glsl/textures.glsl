@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Textures of a TextureStore in kernels: what TextureStore::view() gives.
+// Access to the textures of a TextureStore in kernels, by TextureStore::view().
 //
 //     vec4 color = sample_texture(push.textures, material.base_color, uv);
 //
-// Compiled with TWINRAY_BINDLESS for stores whose textures are images (TextureStore::has_images()), and without for
-// those whose textures lie in buffers. With it set 0, binding 0 is the store's array of images.
+// Compile it with TWINRAY_BINDLESS for stores whose textures are images (TextureStore::has_images()), and without for
+// those whose textures are in buffers. With it set 0, binding 0 is the store's array of images.
 //
-// sample_texture() is of the whole image, sample_texture_lod() of its mipmaps, which blurs over 2^lod texels.
+// sample_texture() samples the whole image, sample_texture_lod() its mipmaps, which blur over 2^lod texels.
 //
-// A reference that names nothing, TextureRef(0) too, is white, so that it changes no factor. Kernels compiled with
-// TWINRAY_DEBUG note those that are not TextureRef(0), for TextureStore::check_faults().
+// A reference that names nothing, including TextureRef(0), is white, so that it changes no factor. Kernels compiled
+// with TWINRAY_DEBUG record those that are not TextureRef(0), for TextureStore::check_faults().
 #ifndef TWINRAY_TEXTURES_GLSL
 #define TWINRAY_TEXTURES_GLSL
 #ifdef TWINRAY_BINDLESS
@@ -20,7 +20,7 @@
 #include "twinray/glsl/textures.h"
 layout(constant_id = TEXEL_FORMATS_CONSTANT) const bool TEXEL_FORMATS = true;
 
-// Whether the reference names a texture of the table.
+// Returns whether the reference names a texture of the table.
 bool has_texture(TextureTable table, TextureRef ref)
 {
     if (ref.number - 1u < table.count) return true;
@@ -32,51 +32,52 @@ bool has_texture(TextureTable table, TextureRef ref)
 layout(set = 0, binding = 0) uniform sampler2D twinray_images[];
 #define TWINRAY_IMAGE(ref) twinray_images[nonuniformEXT(ref.number - 1u)]
 
-// (0, 0) where there is none.
+// Returns (0, 0) if there is none.
 uvec2 texture_size(TextureTable table, TextureRef ref)
 {
     if (!has_texture(table, ref)) return uvec2(0u);
     return uvec2(textureSize(TWINRAY_IMAGE(ref), 0));
 }
 
-// One texel, decoded; (x, y) outside are those of the nearest edge.
+// Returns one texel, decoded; for (x, y) outside, that of the nearest edge.
 vec4 fetch_texel(TextureTable table, TextureRef ref, ivec2 at)
 {
     if (!has_texture(table, ref)) return vec4(1.0);
     return texelFetch(TWINRAY_IMAGE(ref), clamp(at, ivec2(0), textureSize(TWINRAY_IMAGE(ref), 0) - 1), 0);
 }
 
-// Bilinear, with the precision of the device's samplers, or the nearest texel, as the texture was pushed.
+// Samples bilinearly, with the precision of the device's samplers, or takes the nearest texel, as the texture was
+// pushed.
 vec4 sample_texture(TextureTable table, TextureRef ref, vec2 uv)
 {
     if (!has_texture(table, ref)) return vec4(1.0);
     return textureLod(TWINRAY_IMAGE(ref), uv, 0.0);
 }
 
-// The same of a texture that was not pushed as sRGB: kernels then lack the decoding, where that is theirs to do.
+// The same for a texture that was not pushed as sRGB: kernels that decode themselves then leave that code out.
 vec4 sample_linear_texture(TextureTable table, TextureRef ref, vec2 uv) { return sample_texture(table, ref, uv); }
 
-// Trilinear, or of one level, as the texture was pushed; lod counts levels from 0, the whole image.
+// Samples trilinearly, or from one level, as the texture was pushed; lod counts levels from 0, the whole image.
 vec4 sample_texture_lod(TextureTable table, TextureRef ref, vec2 uv, float lod)
 {
     if (!has_texture(table, ref)) return vec4(1.0);
     return textureLod(TWINRAY_IMAGE(ref), uv, lod);
 }
 
-// 0 where there is none.
+// Returns 0 if there is none.
 uint texture_levels(TextureTable table, TextureRef ref)
 {
     if (!has_texture(table, ref)) return 0u;
     return uint(textureQueryLevels(TWINRAY_IMAGE(ref)));
 }
 #else
-// From sRGB in [0, 1] to linear light.
+// Converts sRGB in [0, 1] to linear light.
 vec3 texture_srgb_to_linear(vec3 c)
 {
     return mix(pow((c + 0.055) / 1.055, vec3(2.4)), c / 12.92, lessThanEqual(c, vec3(0.04045)));
 }
 
-// To [0, 1] within one period.
+// Maps x to [0, 1] within one period.
 float texture_wrapped(float x, uint mode)
 {
     if (mode == TEXTURE_CLAMP) return clamp(x, 0.0, 1.0);
@@ -84,14 +85,14 @@ float texture_wrapped(float x, uint mode)
     return x - floor(x);
 }
 
-// The neighbour of a texel just outside; never out of range, whatever a NaN became.
+// Returns the neighbour of a texel just outside; never out of range, even from a NaN.
 uint texture_neighbour(int i, uint size, uint mode)
 {
     if (mode == TEXTURE_REPEAT) i = i < 0 ? int(size) - 1 : (i >= int(size) ? 0 : i);
     return min(uint(max(i, 0)), size - 1u);
 }
 
-// Number `index` from the start of a level.
+// Returns number `index` from the start of a level.
 float texel_number(TextureRecord record, uint format, uint index)
 {
     if (format == TEXEL_FLOAT32) return uintBitsToFloat(AT(record.texels, index));
@@ -100,7 +101,7 @@ float texel_number(TextureRecord record, uint format, uint index)
     return format == TEXEL_FLOAT16 ? float_of_half(bits) : float(bits) / 65535.0;
 }
 
-// Texel (x, y) of a level, both in range, decoded; what it has of fewer than four channels is followed by 0, 0, 1.
+// Returns texel (x, y) of a level, both in range, decoded; fewer than four channels are completed by 0, 0, 1.
 vec4 texture_texel(TextureRecord record, uint x, uint y, bool is_srgb)
 {
     uint texel = y * record.width + x, format = record.format & 3u, channels = record.format >> 2u;
@@ -118,7 +119,7 @@ vec4 texture_texel(TextureRecord record, uint x, uint y, bool is_srgb)
     return is_srgb ? vec4(texture_srgb_to_linear(color.rgb), color.a) : color;
 }
 
-// A level as a texture of its own.
+// Returns a level as a texture of its own.
 TextureRecord texture_level(TextureRecord record, uint level)
 {
     uint channels = record.format >> 2u, format = record.format & 3u;
@@ -133,14 +134,14 @@ TextureRecord texture_level(TextureRecord record, uint level)
     return record;
 }
 
-// 0 where there is none.
+// Returns 0 if there is none.
 uint texture_levels(TextureTable table, TextureRef ref)
 {
     if (!has_texture(table, ref)) return 0u;
     return AT(table.records, ref.number - 1u).levels;
 }
 
-// (0, 0) where there is none.
+// Returns (0, 0) if there is none.
 uvec2 texture_size(TextureTable table, TextureRef ref)
 {
     if (!has_texture(table, ref)) return uvec2(0u);
@@ -148,7 +149,7 @@ uvec2 texture_size(TextureTable table, TextureRef ref)
     return uvec2(record.width, record.height);
 }
 
-// One texel, decoded; (x, y) outside are those of the nearest edge.
+// Returns one texel, decoded; for (x, y) outside, that of the nearest edge.
 vec4 fetch_texel(TextureTable table, TextureRef ref, ivec2 at)
 {
     if (!has_texture(table, ref)) return vec4(1.0);
@@ -157,7 +158,7 @@ vec4 fetch_texel(TextureTable table, TextureRef ref, ivec2 at)
     return texture_texel(record, uint(inside.x), uint(inside.y), (record.options & 1u) != 0u);
 }
 
-// Bilinear in float32, after decoding; the nearest texel by weights of 0 and 1.
+// Samples bilinearly in float32, after decoding; takes the nearest texel by weights of 0 and 1.
 vec4 texture_filtered(TextureRecord record, vec2 uv, bool is_srgb)
 {
     uint wrap_u = record.wraps & 3u, wrap_v = record.wraps >> 2u;
@@ -171,7 +172,7 @@ vec4 texture_filtered(TextureRecord record, vec2 uv, bool is_srgb)
     uint y1 = texture_neighbour(int(low.y) + 1, record.height, wrap_v);
     if (TEXEL_FORMATS)
     {
-        vec4 sum = vec4(0.0); // a loop, as reading any format is long
+        vec4 sum = vec4(0.0); // a loop, because the code that reads any format is long
         DONT_UNROLL for (uint corner = 0u; corner < 4u; corner = corner + 1u)
         {
             bool is_right = (corner & 1u) != 0u, is_lower = (corner & 2u) != 0u;
@@ -185,7 +186,8 @@ vec4 texture_filtered(TextureRecord record, vec2 uv, bool is_srgb)
     return mix(top, bottom, weight.y);
 }
 
-// Bilinear in float32, or the nearest texel, as the texture was pushed. v = 0 is the edge of the first row.
+// Samples bilinearly in float32, or takes the nearest texel, as the texture was pushed. v = 0 is the edge of the first
+// row.
 vec4 sample_texture(TextureTable table, TextureRef ref, vec2 uv)
 {
     if (!has_texture(table, ref)) return vec4(1.0);
@@ -193,14 +195,14 @@ vec4 sample_texture(TextureTable table, TextureRef ref, vec2 uv)
     return texture_filtered(record, uv, (record.options & 1u) != 0u);
 }
 
-// The same of a texture that was not pushed as sRGB: kernels then lack the decoding.
+// The same for a texture that was not pushed as sRGB: kernels then leave the decoding out.
 vec4 sample_linear_texture(TextureTable table, TextureRef ref, vec2 uv)
 {
     if (!has_texture(table, ref)) return vec4(1.0);
     return texture_filtered(AT(table.records, ref.number - 1u), uv, false);
 }
 
-// Trilinear, or of one level, as the texture was pushed.
+// Samples trilinearly, or from one level, as the texture was pushed.
 vec4 sample_texture_lod(TextureTable table, TextureRef ref, vec2 uv, float lod)
 {
     if (!has_texture(table, ref)) return vec4(1.0);
@@ -208,7 +210,7 @@ vec4 sample_texture_lod(TextureTable table, TextureRef ref, vec2 uv, float lod)
     bool is_srgb = (record.options & 1u) != 0u;
     lod = clamp(lod, 0.0, float(record.levels - 1u));
     if ((record.options & 4u) != 0u) lod = ceil(lod + 0.5) - 1.0;
-    uint level = min(uint(lod), record.levels - 1u); // whatever a NaN became
+    uint level = min(uint(lod), record.levels - 1u); // in range even from a NaN
     TextureRecord large = texture_level(record, level);
     vec4 color = texture_filtered(large, uv, is_srgb);
     float share = lod - float(level);

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Which triangles can be hit at all: those with finite vertices that span an area. Decided exactly: three distinct
-// vertices on a line would otherwise be hit now and then, because a sheared image of them is not quite on a line.
+// Which triangles can be hit at all: those with finite vertices that span an area. The decision is exact: three
+// distinct vertices on a line would otherwise be hit now and then, because a sheared image of them is not quite on a
+// line.
 #ifndef TWINRAY_TRIANGLE_H
 #define TWINRAY_TRIANGLE_H
 #include "twinray/glsl/exact.h"
 #include "twinray/glsl/rays.h"
 #include "twinray/glsl/transform.h"
 
-// Whether 12 floats sum to 0, exactly: they are added one by one to an expansion, a sum of floats that do not overlap,
-// which is 0 only if all of them are (Shewchuk, "Adaptive Precision Floating-Point Arithmetic", 1997, theorem 10).
+// Returns whether 12 floats sum to 0, exactly: they are added one by one to an expansion, a sum of floats that do not
+// overlap, which is 0 only if all of them are (Shewchuk, "Adaptive Precision Floating-Point Arithmetic", 1997, theorem
+// 10).
 FUNC bool sums_to_zero(float terms[12]) {
     float expansion[12];
     for (uint i = 0u; i < 12u; i = i + 1u) {
@@ -25,7 +27,7 @@ FUNC bool sums_to_zero(float terms[12]) {
     return zero;
 }
 
-// Whether (b - a) x (c - a) = 0 for points of the plane: the six products and their rounding errors cancel.
+// Returns whether (b - a) x (c - a) = 0 for points of the plane: the six products and their rounding errors cancel.
 FUNC bool is_flat(vec2 a, vec2 b, vec2 c) {
     float terms[12];
     PRECISE float bc = b.x * c.y;
@@ -49,22 +51,24 @@ FUNC bool is_flat(vec2 a, vec2 b, vec2 c) {
     return sums_to_zero(terms);
 }
 
-// Whether rounding cannot hide that p - q is not 0, for products p and q of rounded differences: 8 roundings of 2^-24.
+// Returns whether p - q is surely not 0 despite rounding, for products p and q of rounded differences: 8 roundings of
+// 2^-24.
 FUNC bool is_surely_not_zero(float p, float q) {
     PRECISE float difference = p - q;
     PRECISE float size = abs(p) + abs(q);
     return abs(difference) > size * 4.76837158203125e-07f;
 }
 
-// Whether no coordinate is infinite or NaN.
+// Returns whether no coordinate is infinite or NaN.
 FUNC bool is_finite_triangle(vec3 a, vec3 b, vec3 c) { return is_finite(a) && is_finite(b) && is_finite(c); }
 
 // 0 for a denormal coordinate, decided by its bits, so that devices which flush denormals and those which do not agree.
 FUNC float flushed(float x) { return (floatBitsToUint(x) & 0x7f800000u) == 0u ? 0.0f : x; }
-// The same of each coordinate.
+// The same for each coordinate.
 FUNC vec3 flushed_point(vec3 p) { return vec3(flushed(p.x), flushed(p.y), flushed(p.z)); }
 
-// Whether it can be hit: its vertices are finite, and not on one line, exactly; denormal coordinates count as 0.
+// Returns whether the triangle can be hit: its vertices are finite and exactly not on one line; denormal coordinates
+// count as 0.
 FUNC bool is_active_triangle(vec3 a, vec3 b, vec3 c) {
     if (!is_finite_triangle(a, b, c)) return false;
     a = flushed_point(a);
@@ -75,7 +79,7 @@ FUNC bool is_active_triangle(vec3 a, vec3 b, vec3 c) {
     if (is_surely_not_zero(u.x * v.y, u.y * v.x) || is_surely_not_zero(u.y * v.z, u.z * v.y) ||
         is_surely_not_zero(u.z * v.x, u.x * v.z))
         return true;
-    // Scaled by a power of two, which is exact, so that the products neither overflow nor vanish.
+    // Scales by a power of two, which is exact, so that the products neither overflow nor vanish.
     float largest = max(largest_entry(a), max(largest_entry(b), largest_entry(c)));
     if (largest == 0.0f) return false;
     float scale = power_of_two_below(largest);
@@ -92,9 +96,9 @@ FUNC bool is_active_triangle(vec3 a, vec3 b, vec3 c) {
     return !flat_so_far;
 }
 
-// Of 3 tightly packed floats a vertex.
+// Reads 3 tightly packed floats per vertex.
 FUNC vec3 load_position(Floats positions, uint vertex) { return AT(Vec3s(positions.address), vertex); }
 
-// Of 3 tightly packed indices a triangle.
+// Reads 3 tightly packed indices per triangle.
 FUNC uvec3 load_indices(Uints indices, uint triangle) { return AT(Uvec3s(indices.address), triangle); }
 #endif
