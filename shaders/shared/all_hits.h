@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Every hit of a ray, not only the closest.
+// All hits of a ray, not only the closest.
 #ifndef TWINRAY_SHARED_ALL_HITS_H
 #define TWINRAY_SHARED_ALL_HITS_H
 #include "shaders/shared/list.h"

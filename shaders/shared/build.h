@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the build kernels of the software accelerator share. A batch builds many trees at once: its leaves stand one
-// tree after the other, in chunks of up to BUILD_GROUP leaves of one tree.
+// The common part of the build kernels of the software accelerator. A batch builds many trees at once: its leaves are
+// in order of the trees, in chunks of up to BUILD_GROUP leaves of one tree.
 #ifndef TWINRAY_SHARED_BUILD_H
 #define TWINRAY_SHARED_BUILD_H
 #include "shaders/shared/bvh.h"
@@ -46,11 +46,11 @@ struct LeafChunk
 };
 BUFFER_OF(LeafChunk, 4);
 
-// Where Morton codes collide, as in a mesh with parts that are far smaller than the whole, the leaves of that tree are
-// sorted again, by the lower half of 60-bit codes too: else their order would mean nothing there.
+// If Morton codes collide, as in a mesh with parts that are far smaller than the whole, the leaves of that tree are
+// sorted again, also by the lower half of 60-bit codes: else their order would mean nothing there.
 const uint MANY_DUPLICATES = 16u; // leaves that follow one of the same code, in order
 
-// Written on the device, which dispatches the second sort, or nothing.
+// Written on the device, which then dispatches the second sort, or nothing.
 struct DuplicateCodes
 {
     uint has_low_codes;  // 1: some trees are sorted by low codes; the others have 0 for them
@@ -60,10 +60,10 @@ struct DuplicateCodes
 };
 BUFFER_OF(DuplicateCodes, 4);
 
-// `duplicates`: leaves of a tree that MANY_DUPLICATES follow.
+// `duplicates`: leaves of a tree that are followed by MANY_DUPLICATES equal ones.
 FUNC bool needs_low_codes(uint duplicates, uint leaf_count) { return duplicates > leaf_count / 8u; }
 
-// What a batch consists of: the argument of all stages of a build that take nothing else.
+// The contents of a batch: the argument of all stages of a build that take nothing else.
 struct BuildArgs
 {
     REF(BuildTree) trees;
@@ -127,7 +127,7 @@ struct GatherKeysArgs
 const uint HIERARCHY_FAST = 0u;
 const uint HIERARCHY_HIGH = 1u; // with rotations
 
-// Of quality ploc, see ploc.h.
+// For quality ploc, see ploc.h.
 const uint PLOC_GROUP = 32u; // invocations at most, as many as clusters that they merge
 
 // New boxes for an old topology. A tree's slots are its indices of records; they begin at 2 * BuildTree::first.
@@ -191,7 +191,7 @@ FUNC BvhTriangle fetch_primitive(BuildTree tree, uint primitive)
     return triangle;
 }
 
-// In place of a denormal, which devices may flush, what is next to it below and above. By its bits.
+// Denormals, which devices may flush, are found by their bits and replaced by the nearest numbers below and above.
 FUNC bool is_denormal(float x) { return (floatBitsToUint(x) << 1u) - 1u < 0xffffffu; }
 FUNC float normal_next_to(float x, bool is_below)
 {
@@ -218,7 +218,7 @@ FUNC LeafBox box_around_vertices(BvhTriangle t)
     return box;
 }
 
-// A primitive as traversal wants it, and the box around it.
+// A primitive in the form for traversal, and the box around it.
 struct BoxedPrimitive
 {
     BvhTriangle primitive;
@@ -255,7 +255,7 @@ FUNC BoxedPrimitive boxed_primitive(BuildTree tree, uint index)
     return boxed;
 }
 
-// A leaf as traversal wants it.
+// A leaf in the form for traversal.
 struct BoxedLeaf
 {
     BvhTriangle last; // of its primitives

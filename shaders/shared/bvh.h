@@ -30,7 +30,7 @@ struct LeafBox
 };
 BUFFER_OF(LeafBox, 8);
 
-// By comparisons, which give the same bits everywhere: min() and max() may give either of two zeros.
+// Comparisons give the same bits everywhere: min() and max() may give either of two zeros.
 FUNC vec3 min_by_comparison(vec3 a, vec3 b)
 {
     return vec3(a.x < b.x ? a.x : b.x, a.y < b.y ? a.y : b.y, a.z < b.z ? a.z : b.z);
@@ -47,7 +47,7 @@ FUNC LeafBox around_both(LeafBox a, LeafBox b)
     return box;
 }
 
-// 64 bytes. Child boxes lie in the parent, so that one fetch decides both. A box is empty where lo > hi.
+// 64 bytes. Child boxes are in the parent, so that one fetch decides both. A box is empty if lo > hi.
 struct BvhNode
 {
     vec3 lo0;
@@ -80,8 +80,8 @@ FUNC BvhChild child_of(BvhNode node, uint side)
     return child;
 }
 
-// 40 bytes; all vertices 0 for a triangle that is not active (see triangle.h), which is never hit. Of a box, v0 and v1
-// are its lowest and highest corner.
+// 40 bytes; all vertices are 0 for a triangle that is not active (see triangle.h), which is never hit. For a box, v0
+// and v1 are its lowest and highest corner.
 struct BvhTriangle
 {
     vec3 v0;
@@ -123,7 +123,7 @@ struct Bvh
 };
 BUFFER_OF(Bvh, 8);
 
-// What InstanceRecord::geometry points at for the software accelerator. Begins with a GeometryBox.
+// The target of InstanceRecord::geometry for the software accelerator. Begins with a GeometryBox.
 struct SwGeometry
 {
     Bvh bvh;
@@ -162,13 +162,13 @@ struct SwTlasHeader
 };
 BUFFER_OF(SwTlasHeader, 8);
 
-// How many leaves are below a child, and of how many nodes, it being the first, no way down from it has more.
+// Packs the number of leaves below a child, and the most nodes on a way down from it, itself included.
 FUNC uint subtree_info(uint leaves, uint height) { return leaves | height << 25u; }
 FUNC uint leaves_in(uint subtree) { return subtree & 0x1ffffffu; }
 FUNC uint height_in(uint subtree) { return subtree >> 25u; }
 
-// A child of a node of layout bvh2, as the node above it and its side. A built tree knows the edges of its inner nodes,
-// as a way up to the root, whose edge is 0.
+// A child of a node of layout bvh2, given by the node above it and its side. A built tree stores the edges of its inner
+// nodes, as a way up to the root, whose edge is 0.
 FUNC uint make_edge(uint node, uint side) { return (node + 1u) << 1u | side; }
 FUNC uint parent_of_edge(uint edge) { return (edge >> 1u) - 1u; }
 FUNC uint edge_of(REF(BvhNode) nodes, uint node) { return AT(nodes, node).subtree0; }

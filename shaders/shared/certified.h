@@ -111,9 +111,9 @@ FUNC bool may_begin_in_plane_double(dvec3 a, dvec3 b, dvec3 c, double mean)
     return is_around && abs(mean) <= ROUNDINGS * size.z * across * (across + size.z);
 }
 
-// Whether the given ray meets the triangle in world space within its interval, and where: t of the traced ray, which
-// begins `advance` behind the given one, as t + t_low. False with sign_of_t asked: float64 is not certain of it, see
-// told_sign(), which tells it in object space.
+// Returns whether the given ray meets the triangle in world space within its interval, and where: t of the traced ray,
+// which begins `advance` behind the given one, as t + t_low. Returns false with sign_of_t asked if float64 is not
+// certain of it: told_sign() then tells it in object space.
 FUNC bool intersect_in_world(uint primitive_index, uint instance_index, TraceOptions options, INOUT(uint) sign_of_t,
                              INOUT(TriangleHit) hit)
 {

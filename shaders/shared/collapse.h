@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// From a binary tree to nodes of four or eight children, `width`. Where the records of a subtree go follows from the
-// number of its leaves and of those before it, so that the result does not depend on the order in which invocations
+// Turns a binary tree into nodes of four or eight children, `width`. The places of a subtree's records follow from the
+// numbers of its leaves and of those before it, so that the result does not depend on the order in which invocations
 // run.
 //
-// A node takes the place of two levels of the binary tree wherever that must be for no path to have more than
-// DEEPEST_RECORDS of them, and where it need not be, of those with the largest boxes. With eight children small
-// subtrees go first, so that few nodes are nearly empty (see record_count).
+// A node replaces two levels of the binary tree wherever that is necessary for no path to have more than
+// DEEPEST_RECORDS of them, and elsewhere those with the largest boxes. With eight children small subtrees go first, so
+// that few nodes are nearly empty (see record_count).
 #ifndef TWINRAY_SHARED_COLLAPSE_H
 #define TWINRAY_SHARED_COLLAPSE_H
 #include "shaders/shared/encode_node.h"
@@ -60,9 +60,9 @@ struct CollapseArgs
     uint subtree_leaves;             // a subtree has at most
 };
 
-// The queue of a subtree has room for its nodes, half as many as it has records below it at most. Where that of a
-// subtree begins: `before` is the first record below it, less the second half of the root, if that has one. With the
-// number of leaves and 0 it is where all end.
+// The queue of a subtree has room for its nodes, half as many as it has records below it at most. This is the start of
+// a subtree's queue: `before` is the first record below it, less the second half of the root, if that has one. With the
+// number of leaves and 0 it is the end of all.
 FUNC uint queue_begin(uint tree_first, uint before)
 {
     return tree_first / 6u * 5u + tree_first % 6u * 5u / 6u + before / 2u; // 5/6 of it, which 32 bits hold all the way
@@ -89,12 +89,12 @@ FUNC void open_child(REF(BvhNode) nodes, uint node, uint i, INOUT(NodeChildren) 
     children.count = children.count + 1u;
 }
 
-// How many levels of the binary tree may be below the children of a node.
+// The number of levels of the binary tree that may be below the children of a node.
 FUNC uint tallest_below(uint level) { return 2u * (DEEPEST_RECORDS - 1u - level); }
 
-// Which child is opened next, the one with the most; below 0: it has no children of its own. Never NaN, so that a node
-// with room has leaves alone, on which the bounds of record_count rest. Of eight children, subtrees of two or three
-// leaves go first, so that two of them are left in a full node at most.
+// The priority of a child: the one with the most is opened next; below 0: it has no children of its own. It is never
+// NaN, so that a node with room has only leaves, on which the bounds of record_count rest. Among eight children,
+// subtrees of two or three leaves go first, so that a full node has at most two of them left.
 FUNC float priority_of(NodeChildren children, uint i, float unit, uint tallest, uint width)
 {
     const float SMALL = 3.402823466e+38f;
@@ -177,7 +177,7 @@ FUNC NodeOrder order_of(NodeChildren children, uint width)
     return given_order((1u << children.count) - 1u, 0u);
 }
 
-// Writes the node of an item, whose children_of() these are, and where the leaves among them go.
+// Writes the node of an item, whose children_of() these are, and the destinations of the leaves among them.
 FUNC CollapseStep write_node(BuildTree tree, Uints leaf_indices, CollapseItem item, NodeChildren children, uint width)
 {
     NodeOrder order = order_of(children, width);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Layouts compressed4 and compressed8: one array of records, of which each is a node, a primitive or an instance. The
-// children of a node lie side by side, so that one number leads to all of them. A node has up to four children; in
+// Layouts compressed4 and compressed8: one array of records, each of which is a node, a primitive or an instance. The
+// children of a node are side by side, so that one number leads to all of them. A node has up to four children; in
 // layout compressed8 it is two records, and has up to eight.
 //
 // A node keeps its children's boxes as planes of a grid, 8 bits each, rounded outwards by more than a traversal's
@@ -13,7 +13,7 @@
 
 const uint MOST_RECORDS = 1u << 26u; // a tree may have: what an entry on the stack can name; 40 million leaves
 
-// How many records a node takes, by how many children it may have.
+// The number of records of a node, by the most children that it may have.
 FUNC uint records_of_node(uint width) { return width == 8u ? 2u : 1u; }
 
 // Records that a tree of so many leaves needs at most; those that it does not use are `none`.
@@ -66,13 +66,13 @@ FUNC void store_record(REF(CompressedRecord) records, uint index, CompressedReco
     AT(records, index) = record;
 }
 
-// Where no node leads to; the other words are as they were.
+// Writes a record that no node leads to; its other words stay.
 FUNC void store_no_record(REF(CompressedRecord) records, uint index)
 {
     AT(records, index).a.w = 0u;
 }
 
-// Where the children of a node lie: one after the other, by slot.
+// The places of a node's children: one after the other, by slot.
 struct ChildSlots
 {
     uint first;
@@ -100,8 +100,8 @@ FUNC CompressedRecord second_half_of(REF(CompressedRecord) records, uint index, 
     return load_record(records, is_wide_node(node) ? index + 1u : index);
 }
 
-// In which slot of a node the record `target` is, or what lies above it. Records below different children do not mix,
-// so that it is the child whose own children begin last of those that begin no later.
+// The slot of a node that the record `target` is in or below. Records below different children do not mix, so that it
+// is the child whose own children begin last of those that begin no later.
 FUNC uint slot_towards(REF(CompressedRecord) records, ChildSlots slots, uint target)
 {
     uint found = 0u;
@@ -178,7 +178,7 @@ FUNC BvhTriangle primitive_of(CompressedRecord record)
 // second, and says whether the second has their edge in the other direction, counted from that corner on.
 const uint PAIR_FLIPPED = 16u;
 
-// The vertices of a leaf's primitives. Of a box, `first` is its lowest corner and `begin` its highest.
+// The vertices of a leaf's primitives. For a box, `first` is its lowest corner and `begin` its highest.
 struct LeafVertices
 {
     vec3 begin; // of the edge that two triangles share

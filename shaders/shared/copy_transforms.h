@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What shaders/engine/copy_transforms.comp takes.
+// The arguments of shaders/engine/copy_transforms.comp.
 #ifndef TWINRAY_SHARED_COPY_TRANSFORMS_H
 #define TWINRAY_SHARED_COPY_TRANSFORMS_H
 #include "twinray/glsl/instance.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Nodes and leaves of layouts of records, as they are written.
+// Writes nodes and leaves of layouts of records.
 //
-// The children of a node of layout compressed8 are in slots by where they lie in it, so that a ray finds an order of
-// them, near ones first, from the signs of its direction alone (after Ylitie, Karras, Laine, 2017): it visits the slots
+// The children of a node of layout compressed8 are in slots by their positions in it, so that a ray finds an order of
+// them, near ones first, only from the signs of its direction (after Ylitie, Karras, Laine, 2017): it visits the slots
 // in the order of slot ^ octant. Bit 2 of a slot tells in which half of the children its child is along the first axis,
 // that along which the node is longest; bit 1 in which half of those along the second, bit 0 along the third.
 #ifndef TWINRAY_SHARED_ENCODE_NODE_H
@@ -56,7 +56,7 @@ FUNC uint cell_above(float plane, float origin, float per_unit)
     return uint(ceil(cell_within(cells)));
 }
 
-// Only ever indexed by constants, so that drivers keep it in registers; a node of `width` children has the first.
+// It is only indexed by constants, so that drivers keep it in registers; a node of `width` children has the first.
 struct NodeChildren
 {
     uint child[8]; // as in BvhNode
@@ -65,7 +65,7 @@ struct NodeChildren
     uint count;
 };
 
-// Where the children of a node go.
+// The destinations of a node's children.
 struct NodeOrder
 {
     uint slots;  // of child i, from bit 4 i on
@@ -260,7 +260,7 @@ FUNC uint in_order_of_octant(uint slots, uint octant)
 }
 
 // Each group of children that share their bits of `slots` so far is split in half along an axis: the bits of the upper
-// halves. Of an odd number the lower half is the larger one.
+// halves. If their number is odd, the lower half is the larger one.
 FUNC uint upper_halves(NodeChildren children, uint slots, uint axis)
 {
     const float LARGEST_FLOAT = uintBitsToFloat(0x7f7fffffu);

@@ -6,24 +6,24 @@
 #include "shaders/shared/encode_node.h"
 #include "shaders/shared/visit.h"
 
-// The children of a node that a ray has still to visit, in order, as one word, an entry of the stack: where the
-// siblings begin (26 bits), and up to three of them to visit, the next one in the lowest bits (2 bits each, the last
-// one repeated). No siblings begin at the root, so that no group is EMPTY_NODE_GROUP.
+// The children of a node that a ray still has to visit, in order, as one word, an entry of the stack: the index of the
+// first sibling (26 bits), and up to three of them to visit, the next one in the lowest bits (2 bits each, the last one
+// repeated). No siblings begin at the root, so that no group is EMPTY_NODE_GROUP.
 const uint EMPTY_NODE_GROUP = 0u;
 FUNC uint make_node_group(uint siblings, uint second, uint third, uint fourth)
 {
     return siblings << 6u | fourth << 4u | third << 2u | second;
 }
 FUNC uint next_of(uint group) { return (group >> 6u) + (group & 3u); }
-// Without the next one; EMPTY_NODE_GROUP: there is no other.
+// Removes the next one; EMPTY_NODE_GROUP: there is no other.
 FUNC uint rest_of(uint group)
 {
     bool is_last = ((group ^ group >> 2u) & 3u) == 0u;
     return is_last ? EMPTY_NODE_GROUP : (group & 0xfffffff0u) | (group >> 2u & 15u);
 }
 
-// Where the children of a node come in order, the least first (see visit_order), each with its number in the last
-// two bits; NO_ENTRY or more: the ray does not enter it.
+// The positions of a node's children in order, the least first (see visit_order), each with its number in the last two
+// bits; NO_ENTRY or more: the ray does not enter it.
 struct ChildKeys
 {
     uint key0;
@@ -48,7 +48,7 @@ FUNC void sort_keys(INOUT(ChildKeys) keys)
     sort_pair(keys.key1, keys.key2);
 }
 
-// All that are entered but the first, of sorted keys, as a group. `siblings`: where the children begin.
+// All entered children but the first, of sorted keys, as a group. `siblings`: the index of the first sibling.
 FUNC uint node_group_of(ChildKeys keys, uint siblings)
 {
     if (keys.key1 >= NO_ENTRY) return EMPTY_NODE_GROUP;
@@ -63,7 +63,7 @@ FUNC uint key_of(ChildKeys keys, uint child)
     return child < 2u ? low : high;
 }
 
-// `child` first, and then those that come after it: as a traversal that went on to it left them.
+// `child` first, and then those that come after it, as in a traversal that continued to it.
 FUNC uint key_from(uint key, uint first, uint number, uint child)
 {
     return number == child ? child : (key > first ? key : NO_ENTRY);
@@ -118,8 +118,8 @@ FUNC float distance_along(uint planes, uint shift, float scale, float base)
     return FMA(float(planes >> shift & 0xffu), scale, base);
 }
 
-// Where the ray crosses the box of child `shift / 8`, between t_min and t_max in t * ray.t_scale: as cross_box of
-// ray_space.h.
+// The interval in which the ray crosses the box of child `shift / 8`, between t_min and t_max in t * ray.t_scale, like
+// cross_box of ray_space.h.
 FUNC vec2 cross_planes(SeenGrid grid, uint shift, float t_min, float t_max)
 {
     float near_x = distance_along(grid.near_planes.x, shift, grid.scale.x, grid.near_base.x);
@@ -148,7 +148,7 @@ FUNC ChildKeys enter_compressed(CompressedRecord node, BoxRay ray, float t_min, 
     PRECISE float first = t_min * ray.t_scale;
     PRECISE float last = t_max * ray.t_scale;
     // All four are computed, then chosen: branches cost more.
-    // Boxes that are not there may be crossed, too: a ray's padding can be wider than the grid.
+    // Boxes that do not exist may also be crossed: a ray's padding can be wider than the grid.
     uint children = children_in(node);
     ChildKeys keys;
     keys.key0 = enter_planes(grid, 0u, first, last, true, query);
@@ -164,7 +164,7 @@ FUNC ChildKeys enter_compressed(CompressedRecord node, BoxRay ray, float t_min, 
 FUNC uint make_visits(uint in_order, uint slots, uint octant) { return in_order | slots << 8u | octant << 24u; }
 FUNC uint octant_in(uint visits) { return visits >> 24u; }
 FUNC uint next_slot(uint visits) { return uint(findLSB(visits)) ^ octant_in(visits); }
-// Without the next one; EMPTY_NODE_GROUP: there is no other.
+// Removes the next one; EMPTY_NODE_GROUP: there is no other.
 FUNC uint rest_of_visits(uint visits)
 {
     uint rest = visits & (visits - 1u);
@@ -203,13 +203,13 @@ FUNC uint enter_wide(CompressedRecord node, CompressedRecord second_half, BoxRay
     uint crossed = slots_crossed(grid, first, last);
     see_planes(grid, second_half, ray);
     crossed = crossed | slots_crossed(grid, first, last) << 4u;
-    // Boxes that are not there may be crossed, too: a ray's padding can be wider than the grid.
+    // Boxes that do not exist may also be crossed: a ray's padding can be wider than the grid.
     uint slots = second_half.a.x & 0xffffu;
     uint octant = octant_at(second_half, ray);
     return make_visits(in_order_of_octant(crossed & slots, octant), slots, octant);
 }
 
-// The child in `slot`, and of the others those that come after it: as a traversal that went on to it left them.
+// The child in `slot`, and those that come after it, as in a traversal that continued to it.
 FUNC uint visits_from(uint visits, uint slot)
 {
     uint bit = 1u << (slot ^ octant_in(visits));
@@ -294,7 +294,7 @@ struct EnteredChildren
     uint siblings; // in layout compressed8 the entry's other word, else 0
 };
 
-// `target`: not NOTHING, but what the ray is on its way back to.
+// `target`: not NOTHING, but the node or leaf that the ray is on its way back to.
 FUNC EnteredChildren children_of_record(CompressedRecord record, SwTree tree, BoxRay ray, Search search, uint target,
                                          TraceOptions options)
 {
@@ -354,7 +354,7 @@ FUNC ChildKeys enter_binary(BvhNode node, BoxRay ray, Search search, uint query)
     return keys;
 }
 
-// Below which child of `node` the edge `target` lies.
+// Returns the child of `node` that the edge `target` is below.
 FUNC uint binary_child_towards(REF(BvhNode) nodes, uint node, uint target)
 {
     uint edge = target;

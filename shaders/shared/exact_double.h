@@ -54,7 +54,7 @@ FUNC double product_error_double(double a, double b, double p)
     return error;
 }
 
-// By Veltkamp's splitting. Not double(float(x)), which compilers may take for x: conversions cannot be `precise`.
+// Uses Veltkamp's splitting. Compilers may take double(float(x)) for x: conversions cannot be `precise`.
 FUNC double rounded_to_24_bits(double x)
 {
     PRECISE double scaled = double(536870913u) * x; // 2^29 + 1

@@ -23,7 +23,7 @@ struct ExactHitsArgs
     uint reserved;
 };
 
-// What float64 says of the triangle that a hit names; the hit's own where its plane contains the ray.
+// The float64 result for the triangle that a hit names; the hit's own if the triangle's plane contains the ray.
 FUNC HitDouble exact_hit(REF(RefineInstance) instances, Ray64 ray, Hit hit)
 {
     HitDouble exact;

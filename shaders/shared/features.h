@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What a scene or a trace may need and traversal leaves out where it does not: one bit each of the specialisation
-// constant FEATURES, which features_of() of engine/accel/features_of.h chooses. A kernel specialised for more than is
-// needed is right, too, and gives the same hits, bit for bit; at LEVEL_FAST but for the signs of zeros.
+// Features that a scene or a trace may need and that traversal otherwise leaves out: one bit each of the specialisation
+// constant FEATURES, which features_of() of engine/accel/features_of.h chooses. A kernel specialised for more is also
+// right and gives the same hits, bit for bit; at LEVEL_FAST but for the signs of zeros.
 #ifndef TWINRAY_SHARED_FEATURES_H
 #define TWINRAY_SHARED_FEATURES_H
 
@@ -32,7 +32,7 @@ const uint INTERLEAVE_CONSTANT = 102u;     // of a batch kernel: see interleaved
 const uint RAY_GROUP_CONSTANT = 103u; // of a batch kernel: invocations of a group
 const uint STACK_CONSTANT = 104u;     // of every kernel that includes twinray/glsl/query.glsl: STACK_*
 
-// Where the stack of a traversal of software lies.
+// The memory of a software traversal's stack.
 const uint STACK_SHARED = 0u;    // in the workgroup's memory
 const uint STACK_REGISTERS = 1u; // in registers that are found by comparison: where groups have no memory of their own
 #endif

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// From a mesh as its caller has it in device memory to 3 floats a vertex and 3 indices a triangle.
+// Converts a caller's mesh in device memory to 3 floats per vertex and 3 indices per triangle.
 #ifndef TWINRAY_SHARED_GATHER_MESH_H
 #define TWINRAY_SHARED_GATHER_MESH_H
 #include "twinray/glsl/half.h"
 
-// As VertexFormat and IndexFormat.
+// The values of VertexFormat and IndexFormat.
 const uint VERTEX_FLOAT32 = 0u;
 const uint VERTEX_FLOAT16 = 1u;
 const uint INDEX_NONE = 0u;

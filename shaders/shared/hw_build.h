@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// What the kernels take that prepare the driver's input. Needs hw_tlas_header.h and surface_area.h before it.
+// The arguments of the kernels that prepare the driver's input. Needs hw_tlas_header.h and surface_area.h before it.
 #ifndef TWINRAY_SHARED_HW_BUILD_H
 #define TWINRAY_SHARED_HW_BUILD_H
 #include "twinray/glsl/triangle.h"
 
-// What the driver builds from: the records in their build order, each with the address of its bottom-level structure.
+// The driver's input: the records in their build order, each with the address of its bottom-level structure.
 struct HwGatherArgs
 {
     REF(InstanceRecord) records;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// What the hardware accelerator leaves on the device. Needs ray.h and world_bound.h before it.
+// The hardware accelerator's structs on the device. Needs ray.h and world_bound.h before it.
 #ifndef TWINRAY_SHARED_HW_TLAS_HEADER_H
 #define TWINRAY_SHARED_HW_TLAS_HEADER_H
 #include "twinray/glsl/accel_header.h"
 
-// What InstanceRecord::geometry points at for the hardware accelerator. Begins with a GeometryBox.
+// The target of InstanceRecord::geometry for the hardware accelerator. Begins with a GeometryBox.
 struct HwGeometry
 {
     vec3 lo;
@@ -16,7 +16,7 @@ struct HwGeometry
 };
 BUFFER_OF(HwGeometry, 8);
 
-// Leads from one instance as the driver numbers it back to the user's numbering.
+// Maps one instance in the driver's numbering back to the user's numbering.
 struct HwInstance
 {
     Uints triangles;      // primitive of the built geometry -> the user's

@@ -7,7 +7,7 @@
 #include "shaders/shared/ray_space.h"
 
 // A vertex seen along the ray: x, y sheared so that the ray is the point (0, 0), z along the dominant axis. It depends
-// on the vertex and the ray alone, so all triangles that share the vertex see the same point.
+// only on the vertex and the ray, so that all triangles that share the vertex see the same point.
 FUNC vec3 sheared(vec3 vertex, RaySpace space)
 {
     PRECISE vec3 relative = vertex - space.origin;
@@ -32,20 +32,20 @@ FUNC float edge_function(vec3 a, vec3 b)
     return area;
 }
 
-// The same to a rounding or two of itself, where edge_function is right to roundings of its products alone: in slivers
-// they cancel, and the weights of the vertices with them.
+// The same, with an error of a rounding or two of the result, while that of edge_function is roundings of its products:
+// in slivers they cancel, and the weights of the vertices with them.
 FUNC float accurate_edge_function(vec3 a, vec3 b)
 {
     float missing = 0.0f;
     PRECISE float area = doubled_difference(a.x, b.y, a.y, b.x, missing);
-    // Never to the other sign; and what overflows has no known error.
+    // The sign must not change, and an overflowed result has no known error.
     if (abs(missing) <= abs(area) || area == 0.0f) area = area + missing;
     return area;
 }
 
-// By which power of two x and y of two sheared vertices may be multiplied, exactly and without overflow of a product:
-// where a ray passes a vertex by a denormal distance, the products that decide would underflow, some to 0, and
-// triangles around the vertex would disagree. It depends on the edge alone, so that both of its triangles see the same.
+// The power of two by which x and y of two sheared vertices may be multiplied, exactly and without overflow of a
+// product. If a ray passes a vertex by a denormal distance, the products that decide would underflow, some to 0, and
+// triangles around the vertex would disagree. It depends only on the edge, so that both of its triangles see the same.
 FUNC float room_above(vec3 a, vec3 b)
 {
     const float TARGET = 1.152921504606846976e+18f;    // 2^60
@@ -62,9 +62,9 @@ FUNC vec3 scaled_across(vec3 v, float scale)
     return vec3(x, y, v.z);
 }
 
-// The sign of the exact edge function, and where that is 0, the sign after moving the ray by (e, e^2) for a vanishing
-// e > 0 (simulation of simplicity), so that exactly one of the triangles around an edge or a vertex is hit, for any
-// winding. 0 only for a collapsed edge.
+// The sign of the exact edge function; if that is 0, the sign after moving the ray by (e, e^2) for a vanishing e > 0
+// (simulation of simplicity), so that exactly one of the triangles around an edge or a vertex is hit, for any winding.
+// 0 only for a collapsed edge.
 FUNC int exact_side(vec3 vertex_a, vec3 vertex_b)
 {
     float scale = room_above(vertex_a, vertex_b);
@@ -96,7 +96,7 @@ FUNC TriangleHit crossing(vec3 a, vec3 b, vec3 c, float shear_z)
     float area_c = accurate_edge_function(a, b);
     PRECISE float det = area_a + area_b;
     det = det + area_c;
-    // Divided before it is multiplied: a product of three lengths leaves the range of float32 at 1e13 and at 1e-13.
+    // It divides before it multiplies: a product of three lengths leaves the range of float32 at 1e13 and at 1e-13.
     PRECISE float weight_a = area_a / det;
     PRECISE float weight_b = area_b / det;
     PRECISE float weight_c = area_c / det;
@@ -115,8 +115,8 @@ FUNC TriangleHit crossing(vec3 a, vec3 b, vec3 c, float shear_z)
     return hit;
 }
 
-// Whether one of them is 0 or denormal, which devices may take for 0. By their bits: compilers make the least of the
-// magnitudes of three comparisons, for which drivers on CPUs take three times as long.
+// Returns whether one of them is 0 or denormal, which devices may take for 0. It uses the bits: compilers make the
+// least of the magnitudes from three comparisons, for which drivers on CPUs take three times as long.
 FUNC bool is_any_zero(float a, float b, float c)
 {
     return min(min(floatBitsToUint(a) << 1u, floatBitsToUint(b) << 1u), floatBitsToUint(c) << 1u) < 0x1000000u;
@@ -145,8 +145,8 @@ FUNC SeenTriangle seen_triangle(vec3 v0, vec3 v1, vec3 v2, RaySpace space)
     return seen;
 }
 
-// Whether the ray's line meets it, by exact_side: rarely asked, so that a loop of little code is better than a fast
-// one. Its vertices change places until each is where it was, as copies would take registers.
+// Returns whether the ray's line meets it, by exact_side. This is rarely called, so that a loop of little code is
+// better than a fast one. Its vertices change places until each is where it was, because copies would take registers.
 FUNC bool is_exactly_around(INOUT(SeenTriangle) seen)
 {
     int sides = 0;
@@ -161,7 +161,7 @@ FUNC bool is_exactly_around(INOUT(SeenTriangle) seen)
     return sides == 3 || sides == -3;
 }
 
-// Whether the ray's line meets it.
+// Returns whether the ray's line meets it.
 FUNC bool is_around_ray(INOUT(SeenTriangle) seen)
 {
     bool is_met = (seen.area_a < 0.0f) == (seen.area_b < 0.0f) && (seen.area_b < 0.0f) == (seen.area_c < 0.0f);
@@ -206,10 +206,10 @@ FUNC uvec3 plus_product(uvec3 sum, int a, int b, int c)
     return uvec3(first.x, second.x, sum.z + (high.y ^ flips) + second.y);
 }
 
-// The sign of det(v0 - from, v1 - from, v2 - from), 0 in the plane, in whole numbers. False where they have more than
-// 30 bits: where coordinates of an axis differ by more than 2^30 of their lowest bit, and where that is below 2^-126.
-// Rarely asked: loops that turn the axes, as is_exactly_around() turns vertices. The whole numbers take the places of
-// the coordinates, and none a register of its own.
+// The sign of det(v0 - from, v1 - from, v2 - from), 0 in the plane, in whole numbers. Returns false if these have more
+// than 30 bits: if coordinates of an axis differ by more than 2^30 of their lowest bit, or that is below 2^-126. It is
+// rarely called: loops turn the axes, as is_exactly_around() turns vertices. The whole numbers take the places of the
+// coordinates, and none a register of its own.
 FUNC bool plane_side(vec3 v0, vec3 v1, vec3 v2, vec3 from, INOUT(int) side)
 {
     const float MOST = 1073741824.0f; // 2^30
@@ -246,9 +246,9 @@ FUNC bool plane_side(vec3 v0, vec3 v1, vec3 v2, vec3 from, INOUT(int) side)
     return is_whole;
 }
 
-// Whether rounding may hide on which side of the triangle's plane the ray begins: where the triangle reaches behind the
-// origin and ahead of it, and its areas' mean of z is 0 but for an error. Vertices are sheared to within 6 u of their
-// distance from the origin, areas are off by that times the triangle's width and height (u = 2^-24).
+// Returns whether rounding may hide on which side of the triangle's plane the ray begins: the triangle reaches behind
+// the origin and ahead of it, and its areas' mean of z is 0 but for an error. Vertices are sheared to within 6 u of
+// their distance from the origin, areas are off by that times the triangle's width and height (u = 2^-24).
 FUNC bool may_begin_in_plane(SeenTriangle seen)
 {
     const float ROUNDINGS = 3.814697265625e-06f; // 64 u
@@ -259,8 +259,8 @@ FUNC bool may_begin_in_plane(SeenTriangle seen)
     return is_around && abs(mean) <= ROUNDINGS * along * across * (across + along);
 }
 
-// The sign of t where rounding may hide it, at all levels but fast. It is asked for in one visit of the triangle, told
-// between two, and used in the next: telling it needs many registers, which a visit holds for itself.
+// The sign of t if rounding may hide it, at all levels but fast. It is asked for in one visit of the triangle, told
+// between two, and used in the next: telling it needs many registers, which a visit needs for itself.
 const uint SIGN_UNASKED = 0u;       // nothing is asked; or told: the triangle is not ahead of the ray's origin
 const uint SIGN_ASKED_AGAINST = 1u; // asked; TriangleHit::along is false
 const uint SIGN_ASKED_ALONG = 2u;   // asked; it is true
@@ -285,8 +285,8 @@ FUNC float signed_t(float t, uint sign_of_t)
     return sign_of_t == SIGN_POSITIVE ? max(t, LEAST_NORMAL) : t;
 }
 
-// Whether the ray's line meets the triangle, and where. No interval test. False with sign_of_t asked: not known yet,
-// see told_sign().
+// Returns whether the ray's line meets the triangle, and where, without an interval test. Returns false with sign_of_t
+// asked if it is not known yet: see told_sign().
 FUNC bool intersect_seen(INOUT(SeenTriangle) seen, RaySpace space, INOUT(uint) sign_of_t, INOUT(TriangleHit) hit)
 {
     bool is_met = is_around_ray(seen);
@@ -306,8 +306,8 @@ FUNC bool intersect_triangle(vec3 v0, vec3 v1, vec3 v2, RaySpace space, INOUT(ui
     return intersect_seen(seen, space, sign_of_t, hit);
 }
 
-// The same, with the sign of t told at once: for hosts, which have registers enough. False where t is not positive by
-// what was told.
+// The same, with the sign of t told at once: for hosts, which have registers enough. Returns false if the told sign is
+// not positive.
 FUNC bool intersect_triangle_signed(vec3 v0, vec3 v1, vec3 v2, RaySpace space, INOUT(TriangleHit) hit)
 {
     uint sign_of_t = SIGN_UNASKED;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A ray visits one primitive of a leaf, and sees it from its origin. Of two triangles that share an edge it visits the
-// one that its line may cross, and both, one after the other, only where it may cross both. A ray that need not
-// know where triangles stop it only asks whether they do.
+// A ray visits one primitive of a leaf, as seen from its origin. If two triangles share an edge, it visits the one that
+// its line may cross, and both, one after the other, only if it may cross both. A ray that only needs to know whether
+// it is stopped does not compute where.
 #ifndef TWINRAY_SHARED_LEAF_VISIT_H
 #define TWINRAY_SHARED_LEAF_VISIT_H
 #include "shaders/shared/compressed.h"
@@ -20,8 +20,8 @@ struct LeafVisit
     bool is_followed; // the leaf's second triangle is to be visited, too
 };
 
-// The vertices of a leaf as a ray sees them, and twice the signed areas between the ray and each edge: one that two
-// triangles share is looked at once.
+// The vertices of a leaf as a ray sees them, and twice the signed areas between the ray and each edge; a shared edge is
+// computed once.
 struct SeenLeaf
 {
     vec3 begin;
@@ -48,7 +48,7 @@ FUNC SeenLeaf seen_leaf(LeafVertices vertices, RaySpace space)
     return seen;
 }
 
-// The same bits as of seen_triangle().
+// Gives the same bits as seen_triangle().
 FUNC SeenTriangle triangle_in(SeenLeaf leaf, uint corners, bool is_second)
 {
     // An area goes with the corner across its edge. Turned around, edges change places and signs.
@@ -69,7 +69,7 @@ FUNC SeenTriangle triangle_in(SeenLeaf leaf, uint corners, bool is_second)
     return seen;
 }
 
-// False only if is_around_ray() is.
+// Returns false only if is_around_ray() does.
 FUNC bool may_be_around_ray(float area_a, float area_b, float area_c)
 {
     bool is_met = (area_a < 0.0f) == (area_b < 0.0f) && (area_b < 0.0f) == (area_c < 0.0f);
@@ -85,7 +85,7 @@ FUNC uint triangles_around_ray(SeenLeaf leaf)
 }
 
 #ifdef TWINRAY_REFINED
-// The same of level certified, whose sheared vertices are off by `error`.
+// The same for level certified, whose sheared vertices are off by `error`.
 FUNC bool may_be_certified(SeenLeaf leaf, uint i, float error)
 {
     int shared_side = certain_side(leaf.begin, leaf.end, error);
@@ -99,7 +99,7 @@ FUNC uint triangles_to_certify(SeenLeaf leaf, float error)
 }
 #endif
 
-// The same of level fast, which tests each triangle by itself.
+// The same for level fast, which tests each triangle by itself.
 FUNC bool may_be_hit_fast(LeafVertices vertices, bool is_second, RaySpace space)
 {
     BvhTriangle t = primitive_in(vertices, is_second);
@@ -136,7 +136,7 @@ FUNC LeafVisit visit_in_leaf(LeafVertices vertices, bool comes_second, bool has_
     return visit;
 }
 
-// What is known of t, as crossing() rounds it, without a division; where nothing is, only crossing() tells.
+// Bounds of t, as crossing() rounds it, found without a division; without a bound, only crossing() tells.
 struct HitInterval
 {
     bool is_after; // t > t_min
@@ -180,9 +180,9 @@ FUNC HitInterval hit_interval(SeenTriangle seen, float shear_z, float t_min, flo
     return interval;
 }
 
-// Whether intersect_seen() finds a hit with t_min < t < t_max, the `ends`, 0 <= t_min, and then TriangleHit::along.
-// False with sign_of_t asked: not known yet. That t costs as much as the rest of the test; here it is computed only
-// where rounding hides its sign or on which side of an end it is.
+// Returns whether intersect_seen() finds a hit with t_min < t < t_max, the `ends`, 0 <= t_min, and then
+// TriangleHit::along. Returns false with sign_of_t asked if it is not known yet. That t costs as much as the rest of
+// the test; here it is computed only if rounding hides its sign or its side of an end.
 FUNC bool seen_occludes(INOUT(SeenTriangle) seen, RaySpace space, vec2 ends, INOUT(uint) sign_of_t, INOUT(bool) along)
 {
     float t_min = ends.x;

@@ -14,7 +14,7 @@ FUNC uint spread_bits(uint x)
     return x;
 }
 
-// The cell of a coordinate in [lo, hi] cut into 2^20; 0 where the interval has no length.
+// The cell of a coordinate in [lo, hi] cut into 2^20; 0 if the interval has no length.
 FUNC uint cell_of(float x, float lo, float hi)
 {
     PRECISE float extent = hi - lo;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Half a node, which is one child, as what a tree grows by from the leaves up. In GLSL it comes after BvhChildren, the
-// nodes as seen by all groups.
+// Half a node, which is one child: the unit by which a tree grows from the leaves up. In GLSL it comes after
+// BvhChildren, the nodes as all groups see them.
 #ifndef TWINRAY_SHARED_NODE_CHILD_H
 #define TWINRAY_SHARED_NODE_CHILD_H
 #include "shaders/shared/build.h"
 #include "shaders/shared/surface_area.h"
 
-// One child as its parent, a BvhNode, has it.
+// One child as stored in its parent, a BvhNode.
 struct NodeChild
 {
     LeafBox box;
@@ -46,7 +46,7 @@ FUNC NodeChild joined_child(NodeChild a, NodeChild b, uint node)
     return both;
 }
 
-// Nodes on the longest way down from a node, itself among them.
+// Returns the number of nodes on the longest way down from a node, including itself.
 FUNC uint height_of(BvhChildren nodes, uint node)
 {
     return 1u + max(height_in(AT(nodes, node * 2u).subtree), height_in(AT(nodes, node * 2u + 1u).subtree));
@@ -54,7 +54,7 @@ FUNC uint height_of(BvhChildren nodes, uint node)
 
 FUNC bool is_inner(NodeChild half_node) { return (half_node.child & LEAF_BIT) == 0u; }
 
-// Half the area of a box in a unit of lengths, of which there are `scale` in one.
+// Half the area of a box, with lengths times `scale`.
 FUNC float area_of(LeafBox box, float scale)
 {
     if (!is_active(box)) return 0.0f;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// An instance as traversal reads it, and the world box around it, its leaf in the top level's tree.
+// An instance in the form for traversal, and the world box around it, its leaf in the top level's tree.
 //
-// Under a rotation the box around a geometry's box may be many times as large as the one around the geometry: of a
-// ball, it has 2.2 times the area on average. So it is made of the boxes some levels down the geometry's tree, where
+// Under a rotation the box around a geometry's box may be many times as large as the one around the geometry: for a
+// ball, it has 2.2 times the area on average. So it is made from the boxes some levels down the geometry's tree, if
 // that can gain anything.
 #ifndef TWINRAY_SHARED_PLACE_INSTANCE_H
 #define TWINRAY_SHARED_PLACE_INSTANCE_H
 #include "shaders/shared/node_boxes.h"
 
-// How many levels of boxes below the root are looked at, by how many children a node has.
+// The number of levels of boxes below the root that are used, by how many children a node has.
 const uint BINARY_CUT_LEVELS = 8u;
 const uint CUT_LEVELS = 4u;
 const uint WIDE_CUT_LEVELS = 3u;
@@ -35,8 +35,8 @@ FUNC LeafBox box_under(Rows map, LeafBox box)
     return under;
 }
 
-// What box_under and rays lose to rounding, where these are taken to object space and back, along one axis: both are a
-// few 2^-24 of the magnitudes involved, and this is 2^-20 of them. `low`, `high`: of box_under.
+// Bounds the rounding errors of box_under and of rays, when these are taken to object space and back, along one axis:
+// both are a few 2^-24 of the magnitudes involved, and this is 2^-20 of them. `low`, `high`: from box_under.
 FUNC float rounding_of_instance(vec4 row, LeafBox box, Rows to_object, float low, float high)
 {
     float reach = max(abs(row.w), max(abs(low), abs(high)));
@@ -50,7 +50,7 @@ FUNC bool is_along_an_axis(vec4 row)
 {
     return uint(row.x != 0.0f) + uint(row.y != 0.0f) + uint(row.z != 0.0f) < 2u;
 }
-// Then the box around a geometry's box is that around the geometry.
+// Returns whether the box around a geometry's box is then that around the geometry.
 FUNC bool keeps_axes(Rows map)
 {
     return is_along_an_axis(map.r0) && is_along_an_axis(map.r1) && is_along_an_axis(map.r2);
@@ -98,10 +98,9 @@ FUNC LeafBox box_of_cut(SwGeometry geometry, Rows to_world)
     return around;
 }
 
-// A box around the geometry under the map, widened by rounding; a tight one if `is_tight`. Empty where the geometry's
-// is.
+// A box around the geometry under the map, widened by rounding; a tight one if `is_tight`. Empty if the geometry's is.
 //
-// It and place_instance() return at one place, so that they are inlined and a kernel has no code for what it rules out.
+// It and place_instance() return at one place: they are inlined, and a kernel has no code that its constants rule out.
 FUNC LeafBox box_of_instance(SwGeometry geometry, Rows to_world, Rows to_object, bool is_tight)
 {
     LeafBox box, around = empty_box();
@@ -113,11 +112,11 @@ FUNC LeafBox box_of_instance(SwGeometry geometry, Rows to_world, Rows to_object,
         vec3 rounding = vec3(rounding_of_instance(to_world.r0, box, to_object, world.lo.x, world.hi.x),
                              rounding_of_instance(to_world.r1, box, to_object, world.lo.y, world.hi.y),
                              rounding_of_instance(to_world.r2, box, to_object, world.lo.z, world.hi.z));
-        // Else products may be infinite, and their sums no numbers.
+        // Otherwise products may be infinite, and their sums NaN.
         bool is_in_range = largest_entry(rounding) < uintBitsToFloat(0x7f800000u);
         if (is_tight && is_in_range && !keeps_axes(to_world) && is_inner_child(geometry, geometry.bvh.root))
         {
-            // Planes of records lie farther out than the box.
+            // Planes of records are farther out than the box.
             LeafBox cut = box_of_cut(geometry, to_world);
             world.lo = max(world.lo, cut.lo);
             world.hi = min(world.hi, cut.hi);
@@ -128,8 +127,8 @@ FUNC LeafBox box_of_instance(SwGeometry geometry, Rows to_world, Rows to_object,
     return around;
 }
 
-// `record`: in built units. `absent`: the address of a tree where there is none. `box`: in world space, empty where
-// nothing of the instance is hit, and tight if `is_tight`: a top level of one instance gains nothing by that.
+// `record`: in built units. `absent`: the address of a tree that does not exist. `box`: in world space, empty if
+// nothing of the instance can be hit, and tight if `is_tight`: a top level of one instance gains nothing by that.
 FUNC SwInstance place_instance(InstanceRecord record, Address absent, bool is_tight, INOUT(LeafBox) box)
 {
     Rows to_world = to_world_of(record);

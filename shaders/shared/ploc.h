@@ -26,7 +26,7 @@ struct Cluster
     uint last_leaf; // position of one of its leaves in the tree's order
 };
 
-// What a cluster has seen of those near it.
+// A cluster's best partner so far among those near it.
 struct Nearest
 {
     uint cluster;
@@ -34,9 +34,9 @@ struct Nearest
     uint rank;  // of the pair, among those of equal area
 };
 
-// Of pairs of equal area that comes first whose clusters are closer in order, then the one that begins at an even
-// position: clusters that are all alike are joined two by two. As no two pairs are equal, the first of all pairs is
-// chosen by both, and each round has one.
+// Among pairs of equal area, that pair comes first whose clusters are closer in order, then the one that begins at an
+// even position: clusters that are all alike are joined two by two. Because no two pairs are equal, the first of all
+// pairs is chosen by both, and each round has one.
 FUNC uint pair_rank(uint i, uint j)
 {
     uint first = min(i, j);
@@ -52,7 +52,7 @@ FUNC Nearest nothing_near(uint i)
     return nearest;
 }
 
-// Of cluster i, by what it has seen and cluster j. Areas that are too large for a float are all the same.
+// Updates cluster i's nearest with cluster j. Areas that are too large for a float are all the same.
 FUNC Nearest nearer_of(Nearest nearest, uint i, NodeChild own, uint j, NodeChild other, float scale)
 {
     const float LARGEST = 3.402823466e+38f;
@@ -66,7 +66,7 @@ FUNC Nearest nearer_of(Nearest nearest, uint i, NodeChild own, uint j, NodeChild
     return nearest;
 }
 
-// Two clusters as one, the earlier first, and which node it is.
+// Joins two clusters, the earlier first, and names their node.
 FUNC Cluster joined_cluster(Cluster a, Cluster b)
 {
     Cluster both;
@@ -75,20 +75,20 @@ FUNC Cluster joined_cluster(Cluster a, Cluster b)
     return both;
 }
 
-// How many levels a tree of `count` leaves needs.
+// The number of levels that a tree of `count` leaves needs.
 FUNC uint levels_for(uint count) { return count < 2u ? 0u : uint(findMSB(count - 1u)) + 1u; }
 
-// How high the tree of a range with this split may become. As no two splits on a way down have the same, there are
-// enough levels above it. Positions have 25 bits, of which those that a smaller tree does not need are left for its
-// clusters.
+// The greatest height that the tree of a range with this split may get. Because no two splits on a way down are the
+// same, there are enough levels above it. Positions have 25 bits; the bits that a smaller tree does not need are left
+// for its clusters.
 FUNC uint height_limit(uvec2 split, uint leaf_count)
 {
     bool is_of_positions = split.y == 0u && split.x >> 25u == 0u;
     return highest_below(split) + (is_of_positions ? 25u - levels_for(leaf_count) : 0u);
 }
 
-// Clusters fit under a limit if the sum of 2^height over them is 2^limit at most: then joining the two lowest leaves
-// that so, and in the end there is one within the limit. So does any round that begins with room for a balanced tree
-// over clusters which all are one level higher than the tallest; else a round joins the two lowest alone.
+// Clusters fit under a limit if the sum of 2^height over them is at most 2^limit: joining the two lowest keeps that,
+// and in the end there is one within the limit. So does any round that begins with room for a balanced tree over
+// clusters which all are one level higher than the tallest; else a round only joins the two lowest.
 FUNC bool has_room(uint tallest, uint count, uint limit) { return tallest + 1u + levels_for(count) <= limit; }
 #endif

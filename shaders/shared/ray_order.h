@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The order in which rays that come at random are traced: by where they begin, then by where they go.
+// The order in which rays that come at random are traced: by their origins, then by their directions.
 #ifndef TWINRAY_SHARED_RAY_ORDER_H
 #define TWINRAY_SHARED_RAY_ORDER_H
 #include "shaders/shared/morton.h"
@@ -30,14 +30,14 @@ FUNC GeometryBox box_of(WorldBoundBits bits)
     return box;
 }
 
-// Which components are negative: x in the highest bit.
+// The octant by the negative components: x in the highest bit.
 FUNC uint octant_of(vec3 direction)
 {
     return (direction.x < 0.0f ? 4u : 0u) | (direction.y < 0.0f ? 2u : 0u) | (direction.z < 0.0f ? 1u : 0u);
 }
 
-// Rays that are sorted by it follow the Morton curve through a grid of the box, and within a cell the octants. Those
-// that are not traced come last.
+// Rays sorted by it follow the Morton curve through a grid of the box, and within a cell the octants. Rays that are not
+// traced come last.
 FUNC uint ray_key(Ray ray, GeometryBox box)
 {
     if (!is_traceable(ray)) return LAST_RAY_KEY;

@@ -39,8 +39,8 @@ struct BoxRay
 
 FUNC float reciprocal(float d)
 {
-    // 1/0 is written out: Vulkan leaves the division undefined. Of either zero it is positive, as compilers may turn
-    // one into the other, and the order of children depends on it.
+    // 1/0 is written out: Vulkan leaves the division undefined. It is positive for either zero, because compilers may
+    // turn one into the other, and the order of children depends on it.
     return d == 0.0f ? uintBitsToFloat(0x7f800000u) : 1.0f / d;
 }
 
@@ -74,7 +74,7 @@ FUNC BoxRay box_ray(RaySpace space)
     float pad = space.pad;
     PRECISE vec3 near_inverse = inverse * NEAR_FACTOR;
     PRECISE vec3 far_inverse = inverse * FAR_FACTOR;
-    // Of the near inverse, whose signs tests of boxes ask for.
+    // Its signs are those of the near inverse, which tests of boxes read.
     vec3 shift = vec3(near_inverse.x < 0.0f ? -pad : pad, near_inverse.y < 0.0f ? -pad : pad,
                       near_inverse.z < 0.0f ? -pad : pad);
     PRECISE vec3 near_origin = space.origin + shift;
@@ -143,8 +143,8 @@ FUNC float earliest_of(float leave, float far_x, float far_y, float far_z)
     return min_no_nan(far_z, min_no_nan(far_y, min_no_nan(far_x, leave)));
 }
 
-// Where the ray enters the box and where it leaves it within [t_min, t_max], in t * ray.t_scale: the first is greater
-// where it does not meet it.
+// The interval in which the ray is inside the box within [t_min, t_max], in t * ray.t_scale: the first is greater if it
+// does not meet the box.
 FUNC vec2 cross_box(vec3 lo, vec3 hi, BoxRay ray, float t_min, float t_max)
 {
     bool flip_x = ray.near_inverse.x < 0.0f;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Level refined: what float32 loses about a hit, by float64 spent once a ray instead of once a triangle.
+// Level refined: float64, spent once per ray instead of once per triangle, restores the digits that float32 loses.
 //  - A ray from far away is traced from near the scene: its origin moves along it, computed in float64. Rounding is
 //    then relative to the scene's size, not to the distance.
 //  - The hit that counts is computed again in float64 from what the user gave: the ray, the vertices, the transform.
@@ -9,7 +9,7 @@
 #include "shaders/shared/refine_scene.h"
 #include "shaders/shared/trace.h"
 
-// Where the line o + t d enters the slab between lo and hi; d is not 0.
+// The t at which the line o + t d enters the slab between lo and hi; d is not 0.
 FUNC double slab_entry(float o, float d, float lo, float hi)
 {
     double near = d > 0.0f ? double(lo) : double(hi);
@@ -27,7 +27,7 @@ FUNC Ray advanced(Ray ray, vec3 lo, vec3 hi, uint level, INOUT(double) advance)
     advance = double(0.0f);
     float size = max(largest_entry(lo), largest_entry(hi));
     PRECISE float far = FAR_IN_SIZES * size;
-    // A ray that meets the box after FAR_IN_SIZES + 1 sizes began at least FAR_IN_SIZES sizes from 0.
+    // A ray that hits the box after FAR_IN_SIZES + 1 sizes began at least FAR_IN_SIZES sizes from 0.
     if (!(lo.x <= hi.x) || !(largest_entry(ray.origin) > far) || !is_traceable(ray)) return ray;
     double entry = double(0.0f);
     if (ray.direction.x != 0.0f) entry = max(entry, slab_entry(ray.origin.x, ray.direction.x, lo.x, hi.x));
@@ -47,7 +47,7 @@ FUNC Ray advanced(Ray ray, vec3 lo, vec3 hi, uint level, INOUT(double) advance)
     PRECISE double t_max = double(min(ray.t_max, 3.402823466e+38f)) - way;
     near.t_min = max(float(t_min), 0.0f);
     near.t_max = float(t_max);
-    // Certified asks the given interval itself: what the moved one leaves out must not depend on its rounding.
+    // Certified tests the given interval itself: the moved ray's rounding must not exclude hits.
     if (level == LEVEL_CERTIFIED && near.t_min > 0.0f) near.t_min = uintBitsToFloat(floatBitsToUint(near.t_min) - 1u);
     if (level == LEVEL_CERTIFIED && near.t_max > 0.0f) near.t_max = uintBitsToFloat(floatBitsToUint(near.t_max) + 1u);
     advance = way;
@@ -79,8 +79,8 @@ FUNC float rounded_within(double t, Ray ray)
     return rounded;
 }
 
-// The point nearest to 0. Of a triangle's vertices, the one from which the distance of its plane cancels least: where
-// coordinates of 1e-6 and 1e6 meet, another one cost 20 units in the last place of t.
+// The point nearest to 0. Of a triangle's vertices, it is the one from which the distance of its plane cancels least:
+// in a mesh with coordinates of 1e-6 and 1e6, another one cost 20 units in the last place of t.
 FUNC dvec3 nearest_of(dvec3 a, dvec3 b, dvec3 c)
 {
     dvec3 nearest = a;
@@ -89,7 +89,7 @@ FUNC dvec3 nearest_of(dvec3 a, dvec3 b, dvec3 c)
     return nearest;
 }
 
-// Where a line meets the plane of a triangle.
+// The point at which a line meets the plane of a triangle.
 struct PlaneHit
 {
     double det; // 0: the plane contains the line, and the others are no numbers

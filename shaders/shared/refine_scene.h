@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What levels from refined on know of a scene: meshes and transforms as they were given.
+// The scene data of levels from refined on: meshes and transforms as they were given.
 #ifndef TWINRAY_SHARED_REFINE_SCENE_H
 #define TWINRAY_SHARED_REFINE_SCENE_H
 #include "shaders/shared/transform_double.h"
@@ -42,8 +42,8 @@ struct RefineGatherArgs
     uint reserved;
 };
 
-// What refining needs of an instance, whose record is in built units.
-// `absent`: the address that it gets in place of a mesh which is not there.
+// The data of an instance that refining needs; its record is in built units. `absent` is the address that replaces that
+// of a missing mesh.
 FUNC RefineInstance refine_instance(InstanceRecord record, Address absent)
 {
     const float UP = 1.00000095367431640625f; // 1 + 2^-20: more than rounding to float32 takes

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Tree rotations (Kensler, "Tree Rotations for Improving Bounding Volume Hierarchies", 2008): where a child of a node
-// and a grandchild on its other side, or two grandchildren, change places, boxes may become smaller. A node is rotated
-// as soon as it has both children, so that one pass from the leaves to the root rotates all; and what a rotation
-// changed below the node is rotated again, some levels down; after that the node itself once more.
+// Tree rotations (Kensler, "Tree Rotations for Improving Bounding Volume Hierarchies", 2008): if a child of a node and
+// a grandchild on its other side, or two grandchildren, change places, boxes may become smaller. A node is rotated as
+// soon as it has both children, so that one pass from the leaves to the root rotates all; the nodes that a rotation
+// changed below are rotated again, some levels down, and then the node itself once more.
 #ifndef TWINRAY_SHARED_ROTATE_H
 #define TWINRAY_SHARED_ROTATE_H
 #include "shaders/shared/node_child.h"
@@ -24,7 +24,7 @@ FUNC NodeChild select_child(bool is_first, NodeChild a, NodeChild b)
     return chosen;
 }
 
-// The nodes below that a rotation changed; NOTHING where there is none.
+// The nodes below that a rotation changed; NOTHING if there is none.
 struct Rotated
 {
     uint node0;
@@ -40,8 +40,8 @@ FUNC void keep_better(INOUT(float) best, INOUT(uint) best_move, float gain, uint
     best_move = is_better ? move : best_move;
 }
 
-// Rotates a node with children a and b where that gains most, if it gains and leaves the node within `limit` nodes of
-// height. One function of six like cases, which share what they have loaded: split up it would be no clearer.
+// Rotates a node with children a and b by the best rotation, if it gains and leaves the node within `limit` nodes of
+// height. It is one function of six like cases, which share their loads: split up it would be no clearer.
 FUNC Rotated rotate_node(BvhChildren nodes, uint node, NodeChild a, NodeChild b, uint limit, float scale)
 {
     NodeChild a0 = a, a1 = a, b0 = b, b1 = b;
@@ -102,8 +102,8 @@ FUNC Rotated rotate_node(BvhChildren nodes, uint node, NodeChild a, NodeChild b,
     return done;
 }
 
-// A rotation of `node` and of what it changes below. Done a node at a time, so that where invocations go through a
-// program together none waits for one that has more nodes to rotate.
+// A rotation of `node` and of the nodes that it changes below. It is done one node at a time, so that where invocations
+// go through a program together none waits for one that has more nodes to rotate.
 struct Rotation
 {
     uint node;
@@ -127,8 +127,8 @@ FUNC Rotation no_rotation()
     return rotation;
 }
 
-// Of a node with both its halves, whose subtrees are finished, which then has a height of `limit` at most, if it had.
-// Below the node no subtree becomes higher; heights told of them are theirs at most.
+// Rotates a node with both its halves, whose subtrees are finished; it then has a height of at most `limit`, if it had.
+// Below the node no subtree becomes higher; the given heights are upper bounds.
 FUNC Rotation rotation_of(uint node, uint limit)
 {
     Rotation rotation = no_rotation();
@@ -187,7 +187,7 @@ FUNC void rotate_next(BvhChildren nodes, INOUT(Rotation) rotation, float scale)
     choose_next(rotation);
 }
 
-// All at once. Returns the node's height.
+// Does all steps at once. Returns the node's height.
 FUNC uint rotate(BvhChildren nodes, uint node, uint limit, float scale)
 {
     Rotation rotation = rotation_of(node, limit);

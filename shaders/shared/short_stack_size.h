@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How many entries a traversal's stack keeps: powers of two.
+// The numbers of entries that a traversal's stack keeps: powers of two.
 #ifndef TWINRAY_SHARED_SHORT_STACK_SIZE_H
 #define TWINRAY_SHARED_SHORT_STACK_SIZE_H
 const uint STACK_SIZE = 16u;

@@ -17,7 +17,7 @@ const uint SORT_CPU_BLOCK = 8192u; // items of a group, of two or more at least 
 const uint SORT_LONGEST_RUN = 8192u;
 const uint SCAN_GPU_GROUP = 256u;
 
-// counts[digit * block_count + block]: how often a digit occurs in a block; after the scan, where its items go.
+// counts[digit * block_count + block]: how often a digit occurs in a block; after the scan, its items' destination.
 struct SortArgs
 {
     Uints keys_in;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How the sorted leaves of a tree are split.
+// The splits between the sorted leaves of a tree.
 #ifndef TWINRAY_SHARED_SPLITS_H
 #define TWINRAY_SHARED_SPLITS_H
 #include "shaders/shared/build.h"
@@ -14,8 +14,8 @@ FUNC LeafBox bounds_of(CentroidBounds bits)
     return bounds;
 }
 
-// What separates neighbours in sorted order, larger = higher up: the highest bit in which their codes differ, between
-// equal codes the highest in which low codes do, between equal ones of both the highest in which their positions do.
+// The split between neighbours in sorted order, larger = higher up: the highest bit in which their codes differ, for
+// equal codes the highest in which low codes do, and if these are equal too, the highest in which their positions do.
 // Only the highest bit counts, and that of two neighbours of a range of leaves is never the same.
 FUNC uvec2 make_split(uint of_code, uint of_low_code, uint position)
 {
@@ -23,7 +23,7 @@ FUNC uvec2 make_split(uint of_code, uint of_low_code, uint position)
     uint lower = of_low_code != 0u ? (uint(findMSB(of_low_code)) + 1u) << 25u : of_position;
     return uvec2(lower, of_code);
 }
-// A tree below a split has one node at most on any way down for each lower bit.
+// A tree below a split has at most one node for each lower bit on any way down.
 FUNC uint highest_below(uvec2 split)
 {
     uint of_code = split.y;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The surface-area cost of a tree: the areas of the boxes of all children, leaves too, over the area of the root's box.
-// It is the expected number of boxes that a long random ray through the root enters below it (MacDonald, Booth 1990).
+// The surface-area cost of a tree: the areas of the boxes of all children, also leaves, over the area of the root's
+// box: the expected number of boxes that a long random ray through the root enters below it (MacDonald, Booth 1990).
 #ifndef TWINRAY_SHARED_SURFACE_AREA_H
 #define TWINRAY_SHARED_SURFACE_AREA_H
 #include "shaders/shared/bvh.h"

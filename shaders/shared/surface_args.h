@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Arguments of kernels that find surfaces of hits for hosts.
+// Arguments of kernels that find the surfaces of hits for the host.
 #ifndef TWINRAY_SHARED_SURFACE_ARGS_H
 #define TWINRAY_SHARED_SURFACE_ARGS_H
 #include "twinray/glsl/surface_at.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How to trace, and what a kernel that traces a batch takes: the same for both accelerators.
+// The options of a trace, and the arguments of a kernel that traces a batch: the same for both accelerators.
 #ifndef TWINRAY_SHARED_TRACE_H
 #define TWINRAY_SHARED_TRACE_H
 #include "shaders/shared/features.h"
@@ -24,7 +24,7 @@ struct TraceOptions
     uint features; // FEATURE_*
     Address user_data;
 #ifdef TWINRAY_REFINED
-    // From LEVEL_REFINED on: the ray as it was given, of which the traced one begins `advance` ahead.
+    // From LEVEL_REFINED on: the given ray; the traced one begins `advance` ahead of it.
     Ray given;
     double advance;
     REF(RefineInstance) instances;

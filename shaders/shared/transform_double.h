@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Affine maps in float64: the inverse of an instance's map, and how good it is.
+// Affine maps in float64: the inverse of an instance's map, and its error.
 #ifndef TWINRAY_SHARED_TRANSFORM_DOUBLE_H
 #define TWINRAY_SHARED_TRANSFORM_DOUBLE_H
 #include "shaders/shared/exact_double.h"

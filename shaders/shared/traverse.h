@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Traversal of a SwTlasHeader, of any layout: one loop over nodes, primitives and instances.
 //
-// What a node leaves to visit is one entry of the stack, and the way out of an instance is another. The stack is short:
-// once it is empty and has lost entries, the ray goes from the root of its tree to where it is, and puts what it passes
-// on the stack again. The order of siblings does not depend on what was found meanwhile, but that those behind it are
-// left out.
+// The remaining children of a node are one entry of the stack, and the way out of an instance is another. The stack is
+// short: once it is empty and has lost entries, the ray goes from the root of its tree to where it is, and puts what it
+// passes on the stack again. The order of siblings does not depend on the hits found meanwhile, except that those
+// behind them are left out.
 //
-// Whoever includes this decides where the stack's words lie: load_entry(slot) and store_entry(slot, word), slot <
+// The including file decides where the stack's words are: load_entry(slot) and store_entry(slot, word), slot <
 // stack_size(), a power of two.
 #ifndef TWINRAY_SHARED_TRAVERSE_H
 #define TWINRAY_SHARED_TRAVERSE_H
@@ -16,10 +16,10 @@
 const uint NO_STACK_ENTRY = 0u;
 
 // The stack of a traversal: the last entry in registers, as many below it as shared memory has room for at full
-// occupancy. Where more are pushed the lowest are overwritten, and `bottom` is not 0 (Laine, "Restart Trail for
-// Stackless BVH Traversal", 2010).
+// occupancy. If more are pushed, the lowest are overwritten, and `bottom` is not 0 (Laine, "Restart Trail for Stackless
+// BVH Traversal", 2010).
 //
-// Below `last`, which may be NO_STACK_ENTRY, entries bottom to top - 1, each in the slot of its number modulo the
+// Below `last`, which may be NO_STACK_ENTRY, are entries bottom to top - 1, each in the slot of its number modulo the
 // stack's capacity. Those below `bottom` are lost.
 struct ShortStack
 {
@@ -58,7 +58,7 @@ FUNC void push_entry(INOUT(ShortStack) stack, uint entry, uint second, bool has_
     if (has_two_words) stack.second = second;
 }
 
-// Fetches the entry below where there is no last one.
+// Fetches the entry below if there is no last one.
 FUNC void fetch_last(INOUT(ShortStack) stack, bool has_two_words)
 {
     if (stack.last == NO_STACK_ENTRY && stack.top != stack.bottom)
@@ -73,7 +73,7 @@ FUNC void fetch_last(INOUT(ShortStack) stack, bool has_two_words)
 
 const uint LEAVE_INSTANCE = 1u; // an entry of the stack that no group and no edge is
 
-// Where a ray is, and what it has still to visit.
+// The position of a ray in the trees, and its remaining visits.
 struct Traversal
 {
     SwTree tree;
@@ -109,7 +109,7 @@ FUNC Traversal begin_traversal(SwTlasHeader scene, Ray ray, bool is_binary, Trac
     return here;
 }
 
-// For the tree of the instance, or for that of the top level: in one place, as it is much code.
+// Prepares it for the tree of the instance, or of the top level: in one place, because it is much code.
 FUNC void prepare_ray(INOUT(Traversal) here, SwTlasHeader scene, Ray ray, TraceOptions options)
 {
     LocalRay local;
@@ -125,7 +125,7 @@ FUNC void prepare_ray(INOUT(Traversal) here, SwTlasHeader scene, Ray ray, TraceO
     here.is_elsewhere = false;
 }
 
-// Goes on to a child, unless the ray enters none, or is back where it was.
+// Continues to a child, unless the ray enters none, or is back where it was.
 FUNC bool visit_children(INOUT(Traversal) here, EnteredChildren children, TraceOptions options)
 {
     if (children.others != NO_STACK_ENTRY)
@@ -187,7 +187,7 @@ FUNC void restart(INOUT(Traversal) here, bool is_inside, bool is_binary, TraceOp
     here.at = at_root(here.tree, is_binary);
 }
 
-// Goes on to what waits. False: there is nothing.
+// Continues with the next entry. Returns false if there is none.
 FUNC bool visit_next(INOUT(Traversal) here, SwTlasHeader scene, bool is_binary, TraceOptions options)
 {
     bool has_top = (options.features & FEATURE_INSTANCES) != 0u;

@@ -19,7 +19,7 @@ FUNC float world_pad(vec3 origin, float extent)
     return largest_entry(origin) * 9.5367431640625e-07f + extent * 3.637978807091713e-12f; // 2^-20, 2^-38
 }
 
-// Which side an instance's triangles hide from a ray: CULL_FRONT, CULL_BACK or 0.
+// Returns the side of an instance's triangles that is hidden from a ray: CULL_FRONT, CULL_BACK or 0.
 FUNC uint culled_side(uint ray_flags, uint instance_flags)
 {
     uint side = ray_flags & (CULL_BACK | CULL_FRONT);
@@ -27,8 +27,8 @@ FUNC uint culled_side(uint ray_flags, uint instance_flags)
     return (instance_flags & INSTANCE_FLIP_FACING) != 0u ? side ^ (CULL_BACK | CULL_FRONT) : side;
 }
 
-// What traversal must know of the instance it is in. Features are asked for where these are read, not where they are
-// set: only so compilers see across the loop that what depends on them is never run.
+// The data of the current instance that traversal needs. Features are tested where these are read, not where they are
+// set: only so do compilers see across the loop that dependent code never runs.
 struct InInstance
 {
     uint index;
@@ -66,8 +66,8 @@ FUNC InInstance in_no_instance()
     return inside;
 }
 
-// Adding 0 takes a zero's sign, which the sums of a transform may change: with the identity, too, both ways give the
-// same bits.
+// Adding 0 removes a zero's sign, which the sums of a transform may change: so both ways give the same bits with the
+// identity.
 FUNC vec3 without_negative_zeros(vec3 v)
 {
     PRECISE vec3 sum = v + vec3(0.0f);
@@ -93,7 +93,7 @@ FUNC LocalRay ray_in_world(SwTlasHeader scene, Ray ray)
 
 FUNC RaySpace space_of(LocalRay ray) { return make_ray_space(ray.origin, ray.direction, ray.pad); }
 
-// In the space of the instance's geometry.
+// Returns the ray in the space of the instance's geometry.
 FUNC LocalRay ray_in_instance(SwInstance instance, INOUT(InInstance) inside, Ray ray, TraceOptions options)
 {
     LocalRay local;
@@ -121,8 +121,8 @@ FUNC LocalRay ray_in_instance(SwInstance instance, INOUT(InInstance) inside, Ray
     return local;
 }
 
-// What has been found so far, and where there is more to find. Only what a kernel needs is ever written: the rest stays
-// a constant, which compilers see through the loop.
+// The best hit so far, and the interval in which closer ones may be. Only the fields that a kernel needs are ever
+// written: the rest stay constants, which compilers see through the loop.
 struct Search
 {
     float t_min;
@@ -187,8 +187,8 @@ FUNC bool has_box(InInstance inside, TraceOptions options)
     return (options.features & FEATURE_BOXES) != 0u && inside.has_boxes;
 }
 
-// Whether the ray's line meets the primitive on a side that counts, and where. It and the next two return at one place:
-// so they are inlined, and a kernel is given to a driver without what its constants rule out.
+// Returns whether the ray's line meets the primitive on a side that counts, and where. It and the next two return at
+// one place: so they are inlined, and a kernel is given to a driver without the code that its constants rule out.
 FUNC bool intersect_leaf(LeafVisit leaf, InInstance inside, RaySpace space, TraceOptions options,
                          INOUT(Search) search, INOUT(TriangleHit) hit)
 {
@@ -220,8 +220,8 @@ FUNC bool comes_after(TriangleHit hit, float t_min, TraceOptions options)
 
 const uint NO_ENTRY = 0x7f800000u; // infinity, and what is larger: no hit is reported there
 
-// Where among its siblings a box comes that the ray crosses from `enter` to `leave`, the least first; the last two bits
-// are free. The nearest is first; where any hit will do, that in which the ray is longest, as most may be hit there.
+// The rank among its siblings of a box that the ray crosses from `enter` to `leave`, the least first; the last two bits
+// are free. The nearest is first; if any hit will do, that in which the ray is longest, as most may be hit there.
 // (Larger boxes first, for rays unknown: Nah, Manocha, "SATO: Surface Area Traversal Order for Shadow Ray Tracing",
 // 2014.)
 FUNC uint visit_order(float enter, float leave, bool is_there, uint query)
@@ -260,7 +260,7 @@ FUNC bool comes_before(TriangleHit hit, uint instance_index, uint primitive_inde
     return hit.t < search.t_best || (hit.t == search.t_best && is_lower);
 }
 
-// Whether the primitive is hit before all that were found.
+// Returns whether the primitive is hit before all earlier hits.
 FUNC bool find_in_leaf(LeafVisit leaf, InInstance inside, RaySpace space, TraceOptions options, INOUT(Search) search)
 {
     TriangleHit hit;
@@ -306,11 +306,11 @@ FUNC bool leaf_occludes(LeafVisit leaf, InInstance inside, RaySpace space, Trace
     return occludes;
 }
 
-// The same; of triangles alone, if no more than the answer is wanted, without t, u, v.
+// The same; for triangles, without t, u, v if only the answer is wanted.
 FUNC bool visit_leaf(LeafVisit leaf, InInstance inside, RaySpace space, TraceOptions options, INOUT(Search) search)
 {
     const uint NEEDS_HIT = FEATURE_HITS | FEATURE_FILTERS | FEATURE_BOXES;
-    // Each by itself: so that compilers see constants.
+    // Each is separate, so that compilers see constants.
     bool is_any = options.query == QUERY_ANY;
     bool is_answer_enough = (options.features & NEEDS_HIT) == 0u;
     bool is_exact = options.level == LEVEL_WATERTIGHT || options.level == LEVEL_REFINED;

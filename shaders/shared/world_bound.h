@@ -36,8 +36,8 @@ struct WorldBoundArgs
     uint group_count;
 };
 
-// The float next to x on the way to minus infinity. Zero and denormals go to the least normal float below: devices may
-// flush what lies between.
+// The float next to x towards minus infinity. Zero and denormals go to the least normal float below: devices may flush
+// the numbers in between.
 FUNC float next_below(float x)
 {
     const float LEAST_NORMAL = 1.17549435082e-38f;
@@ -52,14 +52,14 @@ FUNC float dot_below(vec3 a, vec3 b, float c)
     float missing = 0.0f;
     float missing_size = 0.0f;
     PRECISE float sum = doubled_dot(a, b, c, missing, missing_size);
-    // Errors of what overflows are unknown; then plain rounding and a wide step must do.
+    // Errors of overflowed terms are unknown; then plain rounding and a wide step must do.
     if (!(abs(missing) < uintBitsToFloat(0x7f800000u))) return sum - abs(sum) * 2.384185791015625e-07f;
     PRECISE float lowest = missing - missing_size * 4.76837158203125e-07f; // 2^-21: 8 roundings
     PRECISE float result = sum + lowest;
     return sum_error(sum, lowest, result) < 0.0f ? next_below(result) : result;
 }
 
-// The least coordinate that `row` gives to the points of the box (lo, hi), rounded down.
+// The least coordinate of the box (lo, hi) under `row`, rounded down.
 FUNC float reach_below(vec4 row, vec3 lo, vec3 hi)
 {
     vec3 corner = vec3(row.x > 0.0f ? lo.x : hi.x, row.y > 0.0f ? lo.y : hi.y, row.z > 0.0f ? lo.z : hi.z);
@@ -79,8 +79,7 @@ FUNC GeometryBox box_in_world(GeometryBox box, Rows m)
     return world;
 }
 
-// The box of an instance in world space; lo > hi where nothing of it can be hit. `is_unusable`: because of its
-// transform.
+// The box of an instance in world space; lo > hi if nothing of it can be hit. `is_unusable`: because of its transform.
 FUNC GeometryBox instance_box(InstanceRecord given, INOUT(bool) is_unusable)
 {
     const float infinity = uintBitsToFloat(0x7f800000u);
