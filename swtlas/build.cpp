@@ -38,8 +38,8 @@ KernelDesc specialized(KernelDesc desc, uint value) {
     return desc;
 }
 
-// Of which `own_size` invocations make a group, or as many as a vector has lanes (KernelTuning::vector_lanes): a power
-// of two, as those that add up in halves need, and no more than have a share of a group of areas.
+// Makes groups of `own_size` invocations, or as many as a vector has lanes (KernelTuning::vector_lanes): a power of
+// two, for sums by halves, and no more than have a share of a group of areas.
 KernelDesc grouped(const Context& context, KernelDesc desc, uint own_size, uint most = AREA_GROUP) {
     const uint lanes = context.state().tuning().vector_lanes;
     desc.group_size = lanes ? std::clamp(lanes, CPU_GROUP, most) : own_size;
@@ -47,7 +47,7 @@ KernelDesc grouped(const Context& context, KernelDesc desc, uint own_size, uint 
     return desc;
 }
 
-// In layout bvh2 the width is not used.
+// The width is not used in layout bvh2.
 KernelDesc of_width(KernelDesc desc, Layout layout) {
     desc.constants.push_back({NODE_WIDTH_CONSTANT, std::max(width_of(layout), 4u)});
     return desc;
@@ -182,9 +182,8 @@ RadixSort::Pairs Builder::record_order(Commands& commands, const BuildPlan& plan
     return sorted;
 }
 
-// Where duplicate_codes_ finds that it is needed, and else nothing: sorts by low code, by code and by tree. Begins in
-// the half of the ping-pong that leaves were sorted by code in, so that, after two sorts by 30 bits, it ends in
-// `sorted`.
+// Does nothing unless duplicate_codes_ finds it needed: sorts by low code, by code and by tree. Begins in the half of
+// the ping-pong in which leaves were sorted by code, so that, after two sorts by 30 bits, it ends in `sorted`.
 void Builder::record_60_bit_order(Commands& commands, const BuildPlan& plan, const Batch& batch,
                                   const RadixSort::Pairs& by_code, const RadixSort::Pairs& sorted) const {
     const uint count = plan.leaf_count, chunks = (count + BUILD_GROUP - 1) / BUILD_GROUP;
@@ -211,7 +210,7 @@ void Builder::record_60_bit_order(Commands& commands, const BuildPlan& plan, con
     gather(batch.args.codes, sort(by_both, plan.tree_bits));
 }
 
-// From leaves in the order of their codes to a tree as its layout has it.
+// Makes a tree in its layout from leaves in the order of their codes.
 void Builder::record_tree(Commands& commands, const BuildPlan& plan, const Batch& batch) const {
     const BuildArgs args = batch.sorted(record_order(commands, plan, batch));
     const std::uint64_t leaves = std::uint64_t{args.chunk_count} * BUILD_GROUP;

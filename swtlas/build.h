@@ -14,8 +14,8 @@ namespace twinray {
 //
 // A batch of trees of one leaf each takes one stage, and so does a top level of one instance.
 //
-// Each stage is one kernel over all trees of the batch; what the stages of the diagram compute has a CPU reference of
-// the same name in validation/cpu_reference/reference.h.
+// Each stage is one kernel over all trees of the batch; the results of the diagram's stages have a CPU reference of the
+// same name in validation/cpu_reference/reference.h.
 class Builder {
   public:
     // Kernels are compiled by the first build or refit that records them.
@@ -32,13 +32,13 @@ class Builder {
         Ref<SwInstance> instances;
     };
     void record_instances(Commands& commands, const BuildPlan& plan, const InstanceTree& tree) const;
-    // New boxes and vertices for trees that record_triangles left behind, whose vertices moved.
+    // Makes new boxes and vertices for trees of record_triangles whose vertices moved.
     void record_triangle_refit(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,
                                const Buffer& scratch) const;
-    // New boxes, and new `instances`, for the topology that record_instances left behind.
+    // Makes new boxes, and new `instances`, for the topology of record_instances.
     void record_refit(Commands& commands, const BuildPlan& plan, const InstanceTree& tree) const;
 
-    // What sah() tells of finished trees.
+    // The measurements of finished trees for sah().
     struct Measured {
         Ref<Bvh> tree;
         Ref<CompressedRecord> records;  // null in layout bvh2
@@ -52,10 +52,10 @@ class Builder {
     struct Batch;
     Batch begin(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,
                 const Buffer& scratch) const;
-    // With the leaves of one tree over the records.
+    // Begins with the leaves of one tree over the records.
     Batch begin_instances(Commands& commands, const BuildPlan& plan, const InstanceTree& tree,
                           const Buffer& scratch) const;
-    // The leaves in order, with their codes.
+    // Returns the leaves in order, with their codes.
     RadixSort::Pairs record_order(Commands& commands, const BuildPlan& plan, const Batch& batch) const;
     void record_60_bit_order(Commands& commands, const BuildPlan& plan, const Batch& batch,
                              const RadixSort::Pairs& by_code, const RadixSort::Pairs& sorted) const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the stages of one build share: where in the scratch each array lies.
+// The common part of the stages of one build: the place of each array in the scratch.
 #pragma once
 
 #include "swtlas/build.h"
@@ -16,7 +16,7 @@ struct Builder::Batch {
     const RadixSort::Pairs& other(const RadixSort::Pairs& of) const {
         return of.keys.address == pairs.keys.address ? spare : pairs;
     }
-    // With the leaves in order, and the lists of clusters in the half of the ping-pong that the sort has left.
+    // Has the leaves in order, and the lists of clusters in the half of the ping-pong that the sort has left.
     BuildArgs sorted(const RadixSort::Pairs& order) const {
         BuildArgs in_order = args;
         in_order.codes = order.keys;

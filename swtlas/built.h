@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What SwTlas keeps of what it has built.
+// The structures that SwTlas keeps.
 #pragma once
 
 #include "engine/accel/geometry.h"
@@ -37,7 +37,7 @@ struct SwBackend::SwBuiltGeometry : BuiltGeometry {
         if (geometry.leaves.empty() || has_vertices) return 0;
         return geometry.welded.is_empty() ? geometry.vertex_count() : geometry.welded.positions.size();
     }
-    // Null where there are none.
+    // Returns null if there are none.
     Ref<BvhNode> nodes() const { return part<BvhNode>(layout.node_count, layout.nodes); }
     Ref<BvhTriangle> triangles() const { return part<BvhTriangle>(layout.triangle_count, layout.triangles); }
     Ref<CompressedRecord> records() const { return part<CompressedRecord>(layout.record_count, layout.records); }

@@ -16,14 +16,14 @@ double half_area(dvec3 lo, dvec3 hi) {
     return lo.x <= hi.x ? size.x * size.y + size.y * size.z + size.z * size.x : 0;
 }
 
-// What the walks of all layouts have in common: T is what a tree's array consists of.
+// The common part of the walks of all layouts: T is the type of a tree's array.
 template <class T>
 class TreeWalk {
   public:
     TreeWalk(std::span<const T> items, std::span<const LeafBox> leaf_boxes)
         : items_(items), leaf_boxes_(leaf_boxes), seen_(items.size()), seen_leaves_(leaf_boxes.size()) {}
 
-    // False, and `bvh` is checked, where there is nothing to walk.
+    // Returns false, and `bvh` is checked, if there is nothing to walk.
     bool begin(const Bvh& bvh) {
         if (leaf_boxes_.empty() && (bvh.root != NOTHING || bvh.leaf_count != 0))
             violated("an empty tree has a root or leaves");
@@ -59,7 +59,7 @@ class TreeWalk {
         return leaf_boxes_[primitive];
     }
 
-    // Whether the item is there, and is reached for the first time.
+    // Returns whether the item exists and is reached for the first time.
     bool enter(uint index, const char* what) {
         if (index >= items_.size()) return violated(text(what, ' ', index, " of ", items_.size())), false;
         if (seen_[index]) return violated(text(what, ' ', index, " is reached twice")), false;
@@ -122,7 +122,7 @@ bool are_axes(uint axes) {
     return axes < 64 && (1u << axis_at(axes, 0) | 1u << axis_at(axes, 1) | 1u << axis_at(axes, 2)) == 7;
 }
 
-// Of records, first to last; none where the first is larger.
+// A range of records, first to last; empty if the first is larger.
 struct Span {
     uint first, last;
 };
@@ -175,7 +175,7 @@ class CompressedWalk : public TreeWalk<CompressedRecord> {
         return all;
     }
 
-    // Records below different children do not mix: a ray finds its way back to one by where children's own begin.
+    // Records below different children do not mix: a ray finds its way back to one by the starts of their own children.
     void check_apart(uint index, const ChildSlots& slots, std::vector<Span> spans) {
         std::ranges::sort(spans, {}, &Span::first);
         below_ = {slots.first, children_end(slots) - 1};
@@ -186,7 +186,7 @@ class CompressedWalk : public TreeWalk<CompressedRecord> {
         }
     }
 
-    // Of a node of eight: its slots hold as many children as it says.
+    // Checks a node of eight: its slots hold as many children as it says.
     bool has_second_half(uint index) {
         if (index + 1 >= items_.size() || seen_[index + 1]) return false;
         seen_[index + 1] = true;

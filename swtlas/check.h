@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What traversal and refits rely on in a built tree, checked on the host.
+// Checks on the host what traversal and refits rely on in a built tree.
 #pragma once
 
 #include <span>
@@ -17,16 +17,15 @@ struct TreeCheck {
     double sah = 0;                       // the surface-area cost, see surface_area.h, of the boxes as rays meet them
 };
 
-// A tree of layout bvh2: every leaf and every inner node is reached exactly once, every child's box is the union of
-// what lies below it (so it contains that, exactly), nodes know their edges, the depth is within what a traversal's
-// stack is made for. leaf_boxes[i] is the box of the leaf that reference LEAF_BIT | i names.
+// Checks a tree of layout bvh2: every leaf and every inner node is reached exactly once, every child's box is the union
+// of what is below it (so it contains that, exactly), nodes know their edges, and the depth is within what a
+// traversal's stack is made for. leaf_boxes[i] is the box of the leaf that reference LEAF_BIT | i names.
 TreeCheck check_tree(const Bvh& bvh, std::span<const BvhNode> nodes, std::span<const LeafBox> leaf_boxes);
 
-// A tree of any other layout, from records[0]: `bvh` has the box of all leaves, every leaf is reached exactly once, no
-// record twice, those that are not reached are none, nodes have two children at least and are all of the width of the
-// root, the planes of a child lie outside of what is below it by more than traversal's rounding, and the depth is
-// within what its stack is made for. leaf_boxes[i] is the box of primitive or instance i; one that is empty may lie
-// anywhere.
+// Checks a tree of any other layout, from records[0]: `bvh` has the box of all leaves, every leaf is reached exactly
+// once, no record twice, unreached records are none, nodes have two children at least and are all of the width of the
+// root, the planes of a child are outside of what is below it by more than traversal's rounding, and the depth is
+// within what its stack is made for. leaf_boxes[i] is the box of primitive or instance i; an empty one may be anywhere.
 TreeCheck check_tree(const Bvh& bvh, std::span<const CompressedRecord> records, std::span<const LeafBox> leaf_boxes);
 
 }  // namespace twinray

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// From binary trees to those of layouts with records.
+// Turns binary trees into those of layouts with records.
 #include "swtlas/build_batch.h"
 
 namespace twinray {
 
-// Codes are done, and indices of leaves lie in their place. So are the boxes, and lists of items lie there.
+// The codes and boxes are no longer needed: indices of leaves replace the codes, lists of items the boxes.
 void Builder::record_collapse(Commands& commands, const BuildPlan& plan, const Batch& batch,
                               const BuildArgs& args) const {
     const Uints leaf_indices = batch.args.codes;

@@ -12,8 +12,8 @@
 namespace twinray {
 namespace {
 
-// Hands out regions that begin at lines of caches, if the buffer does, one after the other: a node in two lines would
-// cost two misses.
+// Hands out regions one after the other that begin at cache lines, if the buffer does: a node in two lines would cost
+// two misses.
 struct Arena {
     std::uint64_t bytes = 0;
 
@@ -59,8 +59,8 @@ BuildScratch layout_scratch(const BuildPlan& plan, const KernelTuning& tuning) {
     return scratch;
 }
 
-// A tree of records is half as deep as a balanced binary one, or less; Morton codes make it deeper. What a group
-// can do is not worth a dispatch a level.
+// A tree of records is half as deep as a balanced binary one, or less; Morton codes make it deeper. Work that one group
+// can do is not worth a dispatch per level.
 uint levels_to_collapse(uint leaf_count, uint subtree_leaves) {
     return leaf_count <= subtree_leaves ? 0 : std::min(static_cast<uint>(std::bit_width(leaf_count)), DEEPEST_TREE);
 }
@@ -70,11 +70,11 @@ uint levels_to_collapse(uint leaf_count, uint subtree_leaves) {
 float software_unit(std::span<const vec3> positions) {
     const int exponent = Geometry::size_exponent(positions);
     if (exponent >= -20 && exponent < 60) return 1;
-    // A direction that is short for a mesh so large is no denormal in it, which devices may flush.
+    // A short direction in so large a mesh must not become a denormal, which devices may flush.
     return exponent < 0 ? Geometry::near_unit(positions) : std::ldexp(1.0f, exponent - 30);
 }
 
-// Alone it needs no tree_of; all other parts are as long or, rounded up one by one, longer.
+// A single tree needs no tree_of; all other parts are as long or, rounded up one by one, longer.
 std::uint64_t scratch_share(uint leaf_count, Layout layout, const KernelTuning& tuning) {
     Arena tree_of;
     tree_of.take<uint>(leaf_count);

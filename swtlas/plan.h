@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Everything that a batch of builds decides before it records: pure, tested without a device.
+// All decisions that a batch of builds makes before it records: pure, tested without a device.
 #pragma once
 
 #include <span>
@@ -43,13 +43,13 @@ struct BuildPlan {
 // Throws Error if the batch has 2^32 leaves or more.
 BuildPlan plan_build(std::span<const uint> leaf_counts, Layout layout, const KernelTuning& tuning);
 
-// What a tree of so many leaves adds to the scratch of its batch, at most.
+// The most that a tree of so many leaves adds to the scratch of its batch.
 std::uint64_t scratch_share(uint leaf_count, Layout layout, const KernelTuning& tuning);
 
 // The fewest leaves of an item that may be in a list of a level: 1 / so many of all leaves have room there.
 constexpr uint fewest_large_leaves = 12;
 
-// Where lists of items of collapsing begin, and the last one ends, in items, for which n boxes have room for 3 n / 2.
+// The starts of the lists of items of collapsing, and the end of the last one, in items; n boxes have room for 3 n / 2.
 struct CollapseLists {
     std::uint64_t level[2] = {}, subtrees = 0, queues = 0, end = 0;
 };
@@ -57,16 +57,16 @@ CollapseLists collapse_lists(uint leaf_count);
 
 uint inner_count(uint leaf_count);
 
-// Where the parts of a built geometry lie in its buffer, and how many there are; its SwGeometry is the geometry block.
+// The offsets of the parts of a built geometry in its buffer, and their counts; its SwGeometry is the geometry block.
 struct GeometryLayout {
     uint leaf_count = 0, node_count = 0, triangle_count = 0, record_count = 0;
     std::size_t vertex_count = 0;
     std::uint64_t nodes = 0, triangles = 0, records = 0, vertices = 0, bytes = 0;
 };
-// `vertex_count`: what leaves of two triangles need that nothing else has on the device; 0 of other leaves.
+// `vertex_count`: vertices that only leaves of two triangles need on the device; 0 for other leaves.
 GeometryLayout layout_geometry(uint leaf_count, std::size_t vertex_count, Layout layout);
 
-// Where the parts of a scene lie in its buffer; its SwTlasHeader is at 0.
+// The offsets of the parts of a scene in its buffer; its SwTlasHeader is at 0.
 struct SceneLayout {
     uint node_count = 0, record_count = 0;
     std::uint64_t nodes = 0, instances = 0, records = 0, bytes = 0;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Refits of built trees, and what their boxes cost.
+// Refits built trees, and measures their cost.
 #include "swtlas/build_batch.h"
 
 namespace twinray {
 
-// The boxes of all inner nodes, and the records, from the boxes of the leaves. Nothing is sorted in a refit: in layout
-// bvh2 edges lie where keys would.
+// Computes the boxes of all inner nodes, and the records, from the boxes of the leaves. A refit sorts nothing: in
+// layout bvh2, edges take the place of keys.
 void Builder::record_boxes(Commands& commands, const BuildPlan& plan, const Batch& batch) const {
     if (plan.has_lone_leaves) return lone_leaves_.dispatch(commands, batch.args, plan.leaf_count);
     const std::uint64_t base = batch.scratch.address();

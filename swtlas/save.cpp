@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Saving what SwTlas has built, and taking it up again.
+// Saves the structures of SwTlas, and loads them.
 #include "engine/core/error.h"
 #include "engine/scene/bytes.h"
 #include "swtlas/built.h"

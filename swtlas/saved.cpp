@@ -15,7 +15,7 @@
 namespace twinray {
 namespace {
 
-// As PNG's: tells a file apart from text, and one that went through a conversion of line ends.
+// Like PNG's magic: it differs from text, and shows a conversion of line ends.
 constexpr char magic[8] = {'\x89', 'T', 'W', 'R', '\r', '\n', '\x1a', '\n'};
 constexpr uint byte_order = 0x01020304u;
 
@@ -58,7 +58,7 @@ void check_header(const SavedHeader& found, std::size_t file_bytes) {
         fail("truncated or joined: it has ", file_bytes, " bytes, and its header says ", found.file_bytes);
 }
 
-// Takes arrays off the front of the file, each within what is left.
+// Takes arrays off the front of the file and checks that each fits into the rest.
 class Reader {
   public:
     explicit Reader(std::span<const std::uint8_t> file) : rest_(std::as_bytes(file)) {}
@@ -94,7 +94,7 @@ SavedHeader read_header(Reader& reader, std::size_t file_bytes) {
     return header;
 }
 
-// What traversal relies on: it follows indices without looking.
+// Checks what traversal relies on: it follows indices without checking them.
 void check_bvh2(const SavedGeometry& geometry) {
     const std::size_t primitives = geometry.mesh.primitive_count();
     if (geometry.leaves.size() != primitives)

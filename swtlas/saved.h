@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The file of a saved SwTlas: what it holds and what is checked. Pure, tested without a device.
+// The file of a saved SwTlas: its contents and checks. Pure, tested without a device.
 //
 //   header | one entry per geometry | per geometry: name, positions, triangles, boxes,
 //   nodes and leaves (layout bvh2) or records (the others), instances
 //
-// Arrays are as in memory, one after the other without padding; trees refer by index, so none of it knows an address.
-// Header, entries and the arrays of each geometry have a CRC-32 each, so every byte of the file is under one.
+// Arrays are as in memory, one after the other without padding; trees refer by index: nothing depends on an address.
+// Header, entries and the arrays of each geometry have a CRC-32 each, so that every byte of the file is under one.
 #pragma once
 
 #include <filesystem>
@@ -55,7 +55,7 @@ struct SavedGeometry {
     std::vector<InstanceRecord> instances;  // geometry: 0
 };
 
-// The file in pieces; those of the body lie in what was given.
+// The file in pieces; those of the body are the given arrays.
 struct EncodedSave {
     std::vector<std::byte> head;
     std::vector<std::span<const std::byte>> body;
@@ -63,8 +63,7 @@ struct EncodedSave {
 EncodedSave encode_save(Layout layout, std::span<const SavedGeometry> geometries);
 
 // Throws Error, naming `object`, on anything that encode_save would not have made, and on trees that traversal could
-// not walk safely: a checksum keeps accidents out, not malice. Allocates no more than the file is long, and half as
-// much again.
+// not walk safely: a checksum finds accidents, not malice. Allocates at most one and a half times the file's length.
 struct DecodedSave {
     Layout layout;
     std::vector<SavedGeometry> geometries;

@@ -29,8 +29,8 @@ inline uint stack_size() { return STACK_SIZE; }
 inline uint load_entry(uint slot) { return stack_slots()[slot]; }
 inline void store_entry(uint slot, uint entry) { stack_slots()[slot] = entry; }
 
-// Counts of what the traversals of a thread have done so far: nodes fetched, boxes tested, leaves fetched, and
-// primitives of them tested in full. Kernels do not count.
+// Counts of a thread's traversals so far: nodes fetched, boxes tested, leaves fetched, and primitives of them tested in
+// full. Kernels do not count.
 struct TraversalSteps {
     std::uint64_t nodes = 0, boxes = 0, leaves = 0, primitives = 0;
 };

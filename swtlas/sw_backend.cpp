@@ -19,7 +19,7 @@
 namespace twinray {
 namespace {
 
-// Builds mark a record that no node leads to by one word; with 0 in the others, equal trees are equal bytes.
+// Builds mark a record that no node leads to by one word; with 0 in its other words, equal trees are equal bytes.
 std::vector<CompressedRecord> with_clear_gaps(std::vector<CompressedRecord> records) {
     for (CompressedRecord& record : records)
         if (is_none(record)) record = no_record();
@@ -89,7 +89,7 @@ void SwBackend::prepare(Geometry& geometry) const {
     if (has_records(options().layout)) choose_leaves(geometry, keeps_meshes());
 }
 
-// Null where the mesh is in host memory alone.
+// Returns null if the mesh is only in host memory.
 const PackedMesh& SwBackend::device_mesh(const GeometryInput& input) {
     return input.mesh.indices.address ? input.mesh : input.kept;
 }
@@ -99,7 +99,7 @@ uint SwBackend::leaf_count_of(const GeometryInput& input) {
     return SwBuiltGeometry::leaf_count_of(*input.geometry);
 }
 
-// Bytes of what must be uploaded to build from it.
+// Returns the bytes that must be uploaded to build from it.
 std::uint64_t SwBackend::source_bytes(const GeometryInput& input) {
     const Geometry& geometry = *input.geometry;
     const std::uint64_t leaves = std::span(geometry.leaves).size_bytes();
@@ -164,14 +164,14 @@ std::vector<SwBackend::Source> SwBackend::record_sources(Commands& commands, con
     return sources;
 }
 
-// The block of a tree that is still empty; `vertices`: null where its leaves name none.
+// Makes the block of a tree that is still empty; `vertices`: null if its leaves name none.
 SwGeometry SwBackend::block_of(const SwBuiltGeometry& built, Floats vertices, uint kind) const {
     SwGeometry block{empty_bvh(built.nodes().address), built.triangles(), built.records(), vertices, kind, 0};
     context().fill_absent(block.bvh.nodes, block.triangles, block.records, block.vertices);
     return block;
 }
 
-// Gives trees the vertices that their leaves name, where nothing else has them on the device.
+// Gives trees the vertices that their leaves name, if nothing else has them on the device.
 void SwBackend::record_vertices(Commands& commands, const Batch& batch, std::span<const Source> sources,
                                 const Buffer& scratch, std::span<const SwBuiltGeometry* const> targets) {
     const auto needs_them = [&](std::size_t i) {
@@ -221,7 +221,7 @@ SwBackend::Built SwBackend::build_geometries(Commands& commands, std::span<const
     return built;
 }
 
-// The meshes are on the device. Leaves of two triangles name its vertices from now on.
+// The meshes are on the device. From now on leaves of two triangles name its vertices.
 std::vector<SwBackend::Source> SwBackend::record_refit_sources(Commands& commands, const Batch& batch,
                                                                const Buffer& scratch) {
     const auto has_pairs = [](const GeometryInput& input) { return !input.geometry->leaves.empty(); };
@@ -279,7 +279,7 @@ std::unique_ptr<AccelBackend::BuiltTlas> SwBackend::build_tlas(Commands& command
     return made;
 }
 
-// `sources`: bytes that are uploaded.
+// `sources`: the bytes that are uploaded.
 void SwBackend::Needs::add(uint leaf_count, std::size_t vertex_count, std::uint64_t sources) {
     structures += layout_geometry(leaf_count, vertex_count, layout).bytes;
     shares.push_back(scratch_share(leaf_count, layout, tuning) + sources);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is behind SwTlas: trees that compute shaders build and traverse.
+// The implementation of SwTlas: trees that compute shaders build and traverse.
 #pragma once
 
 #include <functional>
@@ -24,7 +24,7 @@ class SwBackend final : public AccelBackend {
     }
     bool is_software() const override { return true; }
 
-    // SwTlas and swtlas/tree.h say what these do.
+    // See SwTlas and swtlas/tree.h.
     void save(const std::filesystem::path& file) const;
     AccelHandle push_saved(Commands& commands, SavedGeometry&& saved);
     BuiltTree download_geometry(AccelHandle handle) const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Copies of what SwTlas has built, for checks and tools.
+// Copies of the structures of SwTlas, for checks and tools.
 #pragma once
 
 #include <vector>
@@ -17,7 +17,7 @@ struct BuiltTree {
     std::vector<CompressedRecord> records;  // of all other layouts
     std::vector<vec3> vertices;             // of leaves of two triangles
 };
-// Downloaded. Throws Error on a dead or unsynced handle.
+// Downloads it. Throws Error on a dead or unsynced handle.
 BuiltTree download_geometry(const SwTlas& accel, AccelHandle handle);
 BuiltTree download_scene(const SwTlas& accel);
 

@@ -47,8 +47,8 @@ class Window {
         }
     }
 
-    // The other triangle of each one's leaf, or nobody. The one with the fewest neighbours left is next to choose: so
-    // few are left alone.
+    // Returns the other triangle of each one's leaf, or nobody. The triangle with the fewest neighbours left chooses
+    // next, so that few are left alone.
     const std::array<std::uint8_t, window_size>& partners() {
         for (uint next = next_to_choose(); next != nobody; next = next_to_choose()) join(next, best_of(next));
         return partners_;
@@ -198,7 +198,7 @@ class Partners {
     std::vector<uint> partner_of_;
 };
 
-// In the order of a Morton curve.
+// Returns them in the order of a Morton curve.
 std::vector<uint> along_curve(std::vector<uint> which, std::span<const vec3> positions,
                               std::span<const uvec3> triangles) {
     std::vector<uvec3> chosen;

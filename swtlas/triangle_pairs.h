@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Leaves of two triangles, which records of a tree hold as easily as one: half as many leaves, and nodes above them.
+// Leaves of two triangles, for which a record has room as for one: half as many leaves, and nodes above them.
 #pragma once
 
 #include <algorithm>
@@ -11,20 +11,20 @@
 
 namespace twinray {
 
-// A partition of the triangles into leaves: two that share an edge, whose ends lie apart, and whose common box is no
-// larger than their own boxes together, or one. The first of a leaf is the one that comes first, and leaves are in the
-// order of their first. Triangles that are near each other in `triangles` find each other, then those in space that
-// are left. Empty where no two share a leaf.
+// Divides the triangles into leaves: two that share an edge, whose ends are apart, and whose common box is no larger
+// than their own boxes together, or one. The first of a leaf is the one that comes first, and leaves are in the order
+// of their first. Triangles that are near each other in `triangles` find each other, then those in space that are left.
+// Empty if no two share a leaf.
 std::vector<Leaf> pair_triangles(std::span<const vec3> positions, std::span<const uvec3> triangles);
 
 // Gives a mesh in host memory the leaves, and the vertices, of the tree that takes the least memory. `has_vertices`:
 // its own are in device memory anyway, for trees to name.
 void choose_leaves(Geometry& geometry, bool has_vertices);
 
-// Has leaves of two triangles name vertices as `triangles` do.
+// Makes leaves of two triangles name vertices as `triangles` do.
 void name_vertices(std::span<CompressedRecord> records, std::span<const uvec3> triangles);
 
-// Whether leaves among the records of a tree have two triangles.
+// Returns whether leaves among the records of a tree have two triangles.
 inline bool has_pairs(std::span<const CompressedRecord> records) {
     return std::ranges::any_of(records,
                                [](const CompressedRecord& record) { return is_leaf(record) && is_pair(record); });

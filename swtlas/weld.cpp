@@ -29,7 +29,7 @@ class Numbers {
     }
 
   private:
-    // The low bits of coordinates of a grid are 0: those of the products above them are mixed in.
+    // The low bits of coordinates of a grid are 0: the high bits of the products are mixed in.
     static std::size_t hash(const Bits& bits) {
         const std::uint64_t mixed =
             bits[0] * 0x9e3779b97f4a7c15u ^ bits[1] * 0xc2b2ae3d27d4eb4fu ^ bits[2] * 0x165667b19e3779f9u;

@@ -7,7 +7,7 @@
 layout(constant_id = IOTA_CONSTANT) const bool VALUES_ARE_IOTA = false;
 layout(push_constant, scalar) uniform Push { SortArgs args; };
 
-// Where the items of each digit and thread go.
+// Computes the destinations of the items of each digit and thread.
 void begin_digits()
 {
     Uints kept = kept_columns(args);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Binary trees become trees of NODE_WIDTH children a node, level by level: the items of one level leave those of the
-// next, and those of subtrees that a group can do whole. Begun once per tree.
+// Turns binary trees into trees of NODE_WIDTH children per node, level by level: the items of one level make those of
+// the next, and those of subtrees that a group can do whole. Begun once per tree.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"
@@ -10,7 +10,7 @@ layout(constant_id = 0) const uint STEP = COLLAPSE_LEVEL;
 layout(constant_id = NODE_WIDTH_CONSTANT) const uint NODE_WIDTH = 4u;
 layout(push_constant, scalar) uniform Push { CollapseArgs args; };
 
-// Of the next level and of subtrees: how many items, or where in their lists.
+// For the next level and for subtrees: numbers of items, or positions in their lists.
 struct ItemLists
 {
     uint next;
@@ -26,8 +26,8 @@ void count_item(inout ItemLists counts, uint leaves)
     counts.subtrees += is_subtree(leaves) ? 1u : 0u;
 }
 
-// Where a list has room for `count` more items, of which a group does `share`. Whoever begins its last group so far
-// says how many groups it has.
+// Finds room in a list for `count` more items, of which a group does `share`. The invocation that begins its last group
+// so far sets its number of groups.
 uint reserve(REF(CollapseLevel) list, uint count, uint share)
 {
     if (count == 0u) return 0u;

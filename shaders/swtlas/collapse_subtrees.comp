@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Collapses subtrees, a group each: items wait in a queue, from which the group takes as many as it has invocations.
+// Collapses subtrees, one per group: items wait in a queue, from which the group takes as many as it has invocations.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"
@@ -8,7 +8,7 @@ layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
 layout(constant_id = NODE_WIDTH_CONSTANT) const uint NODE_WIDTH = 4u;
 layout(push_constant, scalar) uniform Push { CollapseArgs args; };
 
-// As all invocations of a group see it.
+// All invocations of a group see the same contents.
 REFERENCE(Queue, coherent, CollapseItem items[], 8)
 
 shared uint queued; // how many items ever were

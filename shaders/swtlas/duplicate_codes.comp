@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Counts each tree's leaves that many others of the same code follow, and has the second sort dispatched where they are
-// many.
+// Counts each tree's leaves that are followed by many others of the same code, and dispatches the second sort if there
+// are many.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The records of the leaves.
+// Writes the records of the leaves.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

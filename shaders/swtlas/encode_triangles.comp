@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The triangles in sorted order, vertices inlined.
+// Writes the triangles in sorted order, with their vertices.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Keys for sorting leaves once more, in the order that they have.
+// Gathers keys for sorting leaves once more, in their present order.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

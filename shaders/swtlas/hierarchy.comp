@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Topology and boxes in one bottom-up pass: after Apetrei, "Fast and Simple Agglomerative LBVH Construction", 2014.
+// Topology and boxes in one bottom-up pass, after Apetrei, "Fast and Simple Agglomerative LBVH Construction", 2014.
 //
 // Sorted leaves i and i + 1 are separated by their split: the highest bit in which their codes differ, or, where the
 // codes are equal, their low codes, if they are sorted by those, or their positions. A finished range [first, last] is
@@ -21,7 +21,7 @@ layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
 layout(constant_id = 0) const uint QUALITY = HIERARCHY_FAST;
 layout(push_constant, scalar) uniform Push { BuildArgs args; };
 
-// The nodes as seen by all groups, not through caches of one.
+// All groups see the same nodes, not through caches of one.
 REFERENCE(BvhChildren, coherent, BvhChild items[], 16)
 #include "shaders/shared/rotate.h"
 #include "shaders/swtlas/sorted_leaves.glsl"
@@ -35,8 +35,7 @@ struct Range
     NodeChild top; // of its tree
 };
 
-// The node at a split has both its halves, `top` and `other`, and becomes the top. Returns the rotation that this asks
-// for.
+// The node at a split has both its halves, `top` and `other`, and becomes the top. Returns the rotation that follows.
 Rotation join(inout NodeChild top, NodeChild other, uint node, uvec2 split)
 {
     top = joined_child(top, other, node);
@@ -44,7 +43,7 @@ Rotation join(inout NodeChild top, NodeChild other, uint node, uvec2 split)
     return no_rotation();
 }
 
-// The next one of the rotation of `top`.
+// Does the next step of the rotation of `top`.
 void rotate_one(BvhChildren nodes, inout Rotation rotation, inout NodeChild top, float scale)
 {
     rotate_next(nodes, rotation, scale);
@@ -120,7 +119,7 @@ void take_leaf(BuildTree tree, inout Run run)
     }
 }
 
-// Joins the range with the one before it, if that is next, or else leaves it and takes another leaf.
+// Joins the range with the one before it, if that is next; otherwise leaves it and takes another leaf.
 Rotation advance(BuildTree tree, BvhChildren nodes, inout Run run)
 {
     if (run.takes_leaf) take_leaf(tree, run);
@@ -167,8 +166,8 @@ void join_ranges(BuildTree tree, BvhChildren nodes, float scale, Run run)
     }
 }
 
-// The leaves begin .. end - 1. In each turn of the loop an invocation takes some leaves or joins, but stops where there
-// is a node to rotate, and rotates one: where invocations go through a program together, each waits little for the
+// Builds from the leaves begin .. end - 1. In each turn of the loop an invocation takes some leaves or joins, but stops
+// at a node to rotate, and rotates one: where invocations go through a program together, each waits little for the
 // others.
 void build_run(BuildTree tree, float scale, uint begin, uint end)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The edge that leads to each leaf of built trees, one invocation per inner node.
+// Stores the edge that leads to each leaf of built trees, one invocation per inner node.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

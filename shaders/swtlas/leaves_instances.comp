@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The world box of each instance, what traversal needs of it, and the bounds of the centroids. All later stages see
-// boxes.
+// Computes the world box of each instance, its record for traversal, and the bounds of the centroids. All later stages
+// only read boxes.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The box of each triangle (or the box itself), and the bounds of each tree's centroids.
+// Computes the box of each triangle (or copies the box), and the bounds of each tree's centroids.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

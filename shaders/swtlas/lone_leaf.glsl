@@ -5,7 +5,7 @@
 #include "shaders/shared/collapse.h"
 layout(constant_id = NODE_WIDTH_CONSTANT) const uint NODE_WIDTH = 4u;
 
-// All of it but the leaf, which is record 0 where there are records.
+// Stores all of it except the leaf, which is record 0 if there are records.
 void store_lone_tree(REF(Bvh) bvh, REF(CompressedRecord) records, LeafBox box)
 {
     AT(bvh, 0).root = is_absent(records) ? LEAF_BIT : 0u;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The low code of each leaf's centre within its tree's centroids; 0 in trees that need none, so that they keep their
-// order.
+// Computes the low code of each leaf's centre within its tree's centroids; 0 in trees that need none, so that they keep
+// their order.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The Morton code of each leaf's centre within its tree's centroids.
+// Computes the Morton code of each leaf's centre within its tree's centroids.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

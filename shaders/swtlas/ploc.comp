@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Topology and boxes in one pass, as in hierarchy.comp, but by clusters (shaders/shared/ploc.h). An invocation begins
-// with a leaf and goes up the radix tree; of the two that meet at a split the first leaves its own far end in
-// other_bounds[] and stops. Where the range that the second has then is to be merged, the whole group merges it.
+// Computes topology and boxes in one pass, like hierarchy.comp, but by clusters (shaders/shared/ploc.h). An invocation
+// begins with a leaf and goes up the radix tree; of the two that meet at a split the first leaves its own far end in
+// other_bounds[] and stops. If the range of the second then has to be merged, the whole group merges it.
 //
-// Between merges the clusters of a range stand in lists by position in the order, where the range begins: their tops,
+// Between merges the clusters of a range are in lists by position in the order, where the range begins: their tops,
 // NOTHING after the last one if they are fewer than KEPT_CLUSTERS, and their last leaves. Their boxes are those of
 // their nodes.
 #version 460
@@ -13,7 +13,7 @@
 layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
 layout(push_constant, scalar) uniform Push { BuildArgs args; };
 
-// As seen by all groups, not through caches of one.
+// All groups see the same contents, not through caches of one.
 REFERENCE(BvhChildren, coherent, BvhChild items[], 16)
 REFERENCE(SharedUints, coherent, uint items[], 4)
 #include "shaders/shared/ploc.h"
@@ -30,7 +30,7 @@ struct Range
 
 // A merge has its clusters in one half, and those of the next round in the other.
 shared Cluster clusters[2u * MOST_CLUSTERS];
-shared uint partners[MOST_CLUSTERS]; // the one that each chooses, itself where there is none
+shared uint partners[MOST_CLUSTERS]; // the one that each chooses, itself if there is none
 shared uint gone;                    // bits of those that have no place in the next round
 shared uint tallest;                 // of the clusters
 shared uint waiting;                 // bits of invocations whose range is to be merged
@@ -40,7 +40,7 @@ shared Range chosen;                 // the one that is
 
 bool is_whole(BuildTree tree, Range range) { return range.last - range.first + 1u == tree.count; }
 
-// Until the range is to be merged. False: another invocation goes on with it.
+// Goes up until the range is to be merged. Returns false if another invocation continues with it.
 bool traverse_bottom_up(BuildTree tree, inout Range range)
 {
     while (!is_whole(tree, range))
@@ -61,7 +61,7 @@ bool traverse_bottom_up(BuildTree tree, inout Range range)
     return true;
 }
 
-// Bits of the invocations that say so.
+// Returns the bits of the invocations that vote for it.
 uint votes(bool is_for)
 {
     memoryBarrierBuffer();
@@ -84,7 +84,7 @@ NodeChild load_top(BuildTree tree, BvhChildren nodes, uint child)
     return top;
 }
 
-// Where the i-th of those before a round goes.
+// The destination of the i-th of those before a round.
 uint index_after(uint i) { return i - bitCount(gone & ((1u << i) - 1u)); }
 bool is_gone(uint i) { return (gone & 1u << i) != 0u; }
 void begin_round()
@@ -105,7 +105,7 @@ uint list_index(Range range, uint i)
     return i < KEPT_CLUSTERS ? range.first + i : range.split + 1u + i - KEPT_CLUSTERS;
 }
 
-// How many they are.
+// Loads both parts' clusters and returns their number.
 uint load_clusters(BuildTree tree, BvhChildren nodes, Range range)
 {
     SharedUints tops = SharedUints(args.tops.address);
@@ -154,7 +154,7 @@ uint lowest_but(uint other, uint begin, uint count)
     return lowest;
 }
 
-// Where none but the two lowest choose each other.
+// The partner if only the two lowest choose each other.
 uint partner_by_height(uint i, uint begin, uint count)
 {
     uint lowest = lowest_but(NOTHING, begin, count);
@@ -170,7 +170,7 @@ Cluster joined(BvhChildren nodes, Cluster a, Cluster b)
     return both;
 }
 
-// Of the clusters from `begin` on. How many are left, in the other half.
+// Merges the clusters from `begin` on. Returns how many are left, in the other half.
 uint merge_round(BvhChildren nodes, uint begin, uint count, uint limit, float scale)
 {
     bool is_free = has_room(tallest, count, limit);

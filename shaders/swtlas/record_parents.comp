@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The node above each record of finished trees.
+// Stores the node above each record of finished trees.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

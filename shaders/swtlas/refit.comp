@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// New boxes for an old topology: each leaf goes up with its box, and of the two children that arrive at a node the
-// second goes on with both.
+// Makes new boxes for an old topology: each leaf goes up with its box, and of the two children that arrive at a node
+// the second continues with both.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"
@@ -8,7 +8,7 @@
 layout(local_size_x = BUILD_GROUP) in;
 layout(push_constant, scalar) uniform Push { RefitArgs args; };
 
-// The nodes as seen by all groups, not through caches of one.
+// All groups see the same nodes, not through caches of one.
 REFERENCE(SharedNodes, coherent, BvhNode items[], 16)
 
 void traverse_bottom_up(BuildTree tree, uint leaf)

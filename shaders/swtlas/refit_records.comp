@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// New records for an old topology. Each invocation has a run of slots, whose leaves it refits one after the other; of
-// the children of a node the last one goes on with it. One loop over leaves and nodes: while
-// one goes up, its neighbours in a vector have leaves to do.
+// Makes new records for an old topology. Each invocation has a run of slots, whose leaves it refits one after the
+// other; of the children of a node the last one continues with it. One loop handles leaves and nodes: while one goes
+// up, its neighbours in a vector process leaves.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"
@@ -10,7 +10,7 @@
 layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
 layout(push_constant, scalar) uniform Push { RefitArgs args; };
 
-// The boxes as seen by all groups, not through caches of one.
+// All groups see the same boxes, not through caches of one.
 REFERENCE(SharedBoxes, coherent, LeafBox items[], 8)
 
 LeafBox refit_leaf(BuildTree tree, uint slot, CompressedRecord record)
@@ -38,8 +38,7 @@ LeafBox refit_node(BuildTree tree, uint slot, CompressedRecord node, SharedBoxes
     return box_around(children, NODE_WIDTH);
 }
 
-// Leaves the box where the record's parent finds it. Gives the parent if this was the last of its children, else
-// NOTHING.
+// Stores the box for the record's parent. Returns the parent if this was the last of its children, else NOTHING.
 uint leave(BuildTree tree, uint slot, LeafBox box)
 {
     uint base = 2u * tree.first;

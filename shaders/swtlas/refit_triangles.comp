@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Triangles whose vertices moved: vertices and boxes, in the order that they have in their tree.
+// Refits triangles whose vertices moved: vertices and boxes, in the order of their tree.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

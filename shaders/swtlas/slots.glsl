@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The slots of a tree, shared out among the blocks of its leaves.
+// The slots of a tree, distributed among the blocks of its leaves.
 #ifndef TWINRAY_SWTLAS_SLOTS_GLSL
 #define TWINRAY_SWTLAS_SLOTS_GLSL
 #include "shaders/shared/compressed.h"
