@@ -11,7 +11,7 @@
 namespace twinray {
 namespace {
 
-// VkAccelerationStructureCreateInfoKHR: offset must be a multiple of 256; ours is 0 in a buffer aligned likewise.
+// VkAccelerationStructureCreateInfoKHR: offset must be a multiple of 256; here it is 0 in a buffer aligned likewise.
 constexpr std::uint64_t storage_alignment = 256;
 
 constexpr std::uint64_t primitives_of_group = 64;

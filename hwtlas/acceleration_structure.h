@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The driver's acceleration structures: objects, sizes, builds, and copies into the memory that they turn out to need.
+// The driver's acceleration structures: objects, sizes, builds, and copies into the memory that they finally need.
 #pragma once
 
 #include <optional>
@@ -41,42 +41,42 @@ struct StructureBuild {
     VkBuildAccelerationStructureFlagsKHR flags = VK_BUILD_ACCELERATION_STRUCTURE_PREFER_FAST_TRACE_BIT_KHR;
 };
 
-// Memory that a build of up to primitive_count primitives takes.
+// Returns the memory that a build of up to primitive_count primitives takes.
 VkAccelerationStructureBuildSizesInfoKHR sizes_of(const Context& context, const StructureBuild& build);
 Buffer make_build_scratch(Context& context, const std::string& name, std::uint64_t bytes);
 
 enum class BuildMode : std::uint8_t { build, update };
 
-// A build into memory that exists. update: the last build allowed that, and had as many primitives.
+// A build into existing memory. update: the last build allowed that, and had as many primitives.
 struct StructureWork {
     StructureBuild build;
     BuildMode mode;
     const AccelerationStructure* target;
 };
 
-// Scratch memory that it takes, a multiple of the alignment that the device wants.
+// Returns the scratch memory that it takes, a multiple of the alignment that the device wants.
 std::uint64_t scratch_bytes_of(const Context& context, const StructureWork& work);
 // Builds all of them with one command in one pass called `pass_name`, their scratch one after the other from the
-// address `scratch` on, as make_build_scratch() aligns it. What the geometries point to must have been written by
-// earlier passes.
+// address `scratch` on, which make_build_scratch() aligns. The geometries' data must have been written by earlier
+// passes.
 void record_builds(Commands& commands, const std::string& pass_name, std::span<const StructureWork> work,
                    std::uint64_t scratch);
 // Creates the structures and builds them, in batches whose scratch fits into `budget`.
 std::vector<AccelerationStructure> build_structures(Commands& commands, const std::string& pass_name,
                                                     std::span<const StructureBuild> builds, std::uint64_t budget);
 
-// How many bytes structures of one build need at least, asked of the GPU when they were built.
+// The bytes that structures of one build need at least, queried from the GPU when they were built.
 class CompactedSizes {
   public:
-    // Records the question in a pass of its own. The builds allowed compaction and are in earlier passes.
+    // Records the query in a pass of its own. The builds allowed compaction and are in earlier passes.
     CompactedSizes(Commands& commands, std::span<const AccelerationStructure* const> structures);
     ~CompactedSizes();
     CompactedSizes(const CompactedSizes&) = delete;
     CompactedSizes& operator=(const CompactedSizes&) = delete;
 
-    // Bytes for the structure at `index`; nothing while the GPU has not reached `built`, where the commands are done.
+    // Returns the bytes for the structure at `index`; nullopt until the GPU reaches `built`, the commands' end.
     std::optional<std::uint64_t> of(std::size_t index, SyncPoint built);
-    // The same once it has been told.
+    // The same once the query is done.
     std::uint64_t bytes_of(std::size_t index) const;
 
   private:

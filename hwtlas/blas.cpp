@@ -51,7 +51,7 @@ StructureBuild build_of_boxes(const std::string& name, const Buffer& boxes) {
     return build;
 }
 
-// Uploads the input and says how to build from it.
+// Uploads the input and describes how to build from it.
 StructureBuild record_input(Commands& commands, const std::string& name, const BlasInput& input) {
     Buffer positions = upload(commands, "blas positions " + name, input.positions);
     Buffer triangles = upload(commands, "blas triangles " + name, input.triangles);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bottom levels of HwTlas over meshes that the host has.
+// Bottom levels of HwTlas over meshes in host memory.
 #pragma once
 
 #include <memory>
@@ -12,10 +12,9 @@
 
 namespace twinray {
 
-// The driver's input for a mesh: finite positions alone, and one triangle for each triangle of the mesh. One that
-// is not active (a non-finite vertex, no area) keeps its index but is collapsed to a point. Vulkan has no word for an
-// infinite vertex, and a driver may let a NaN leak into the boxes of the triangles beside it, or hit triangles without
-// area.
+// The driver's input for a mesh: only finite positions, and one triangle for each triangle of the mesh. An inactive one
+// (a non-finite vertex, no area) keeps its index but is collapsed to a point. Vulkan defines nothing for an infinite
+// vertex, and a driver may let a NaN leak into the boxes of the triangles beside it, or hit triangles without area.
 struct BlasInput {
     std::vector<vec3> positions;
     std::vector<uvec3> triangles;
@@ -26,11 +25,11 @@ struct BlasInput {
     bool is_empty() const { return bounds.is_empty(); }  // there is nothing that could be hit
 };
 
-// A pure function. reorder: along a Morton curve.
+// This is a pure function. reorder: along a Morton curve.
 BlasInput blas_input(const Geometry& geometry, bool reorder);
 
-// The built form of one geometry. Without a structure when it has nothing that could be hit: Vulkan takes an instance
-// of address 0 as inactive.
+// The built form of one geometry. It has no structure if nothing can be hit: Vulkan takes an instance of address 0 as
+// inactive.
 struct Blas {
     uint kind = GEOMETRY_TRIANGLES;
     Bounds bounds;  // of the active primitives; empty where the device alone knows them
@@ -49,7 +48,7 @@ struct Blas {
     std::uint64_t bytes() const { return structure.bytes() + (original ? original->bytes() : 0); }
 };
 
-// A build of triangles from a device address; with uint indices unless the caller changes that.
+// Describes a build of triangles from a device address; with uint indices unless the caller changes that.
 StructureBuild triangle_build(const std::string& name, std::uint64_t positions, std::size_t vertex_count,
                               std::size_t triangle_count);
 
@@ -57,11 +56,11 @@ struct BlasOptions {
     bool reorder;                  // presort for drivers that build in input order
     std::uint64_t scratch_budget;  // bytes
 };
-// Records upload and build of all of them, in order.
+// Records the upload and build of all of them, in order.
 std::vector<Blas> build_blases(Commands& commands, std::span<const Geometry* const> geometries,
                                const BlasOptions& options);
 
-// What that takes for meshes of triangles that the host has.
+// The memory that this takes for meshes of triangles on the host.
 BuildBytes blas_bytes(const Context& context, std::span<const GeometrySize> meshes, const BlasOptions& options);
 
 }  // namespace twinray

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The hardware accelerator: what it builds and traces by the driver.
+// The hardware accelerator: builds and traces by the driver.
 #include <twinray/tlas.h>
 
 #include <cstddef>
@@ -28,7 +28,7 @@ Context& checked(Context& context) {
     return context;
 }
 
-// One pipeline for each query, and one each that refines.
+// Has one pipeline for each query, and another one each that refines.
 class PipelineProgram final : public TraceProgram {
   public:
     // code: null for scenes that need no program.
@@ -148,7 +148,7 @@ std::unique_ptr<TraceProgram> HwBackend::create_program(const TraceProgramCode* 
         code ? code->ray_query_refined : std::span<const std::uint32_t>(hwtlas_trace_query_refined_spirv), false);
 }
 
-// Those whose vertices the host alone has.
+// Builds the geometries whose vertices are only on the host.
 void HwBackend::build_still(Commands& commands, std::span<const GeometryInput> inputs, Built& built) {
     std::vector<const Geometry*> geometries;
     std::vector<std::size_t> indices;
@@ -166,7 +166,7 @@ void HwBackend::build_still(Commands& commands, std::span<const GeometryInput> i
     }
 }
 
-// Into the memory of `current` where it was made for meshes that move.
+// Uses the memory of `current` if that was made for meshes that move.
 MovingMesh HwBackend::prepare_moving(const GeometryInput& input, std::unique_ptr<BuiltGeometry>& built) const {
     const auto count = static_cast<uint>(input.geometry->triangle_count());
     const Blas* blas = HwBuiltGeometry::of(input.current);
@@ -187,7 +187,7 @@ HwBackend::Built HwBackend::build_geometries(Commands& commands, std::span<const
     return built;
 }
 
-// The first time, a structure that can be updated must be built: nothing is paid for that before.
+// The first refit must build a structure that can be updated: meshes that never move do not pay for that.
 HwBackend::Built HwBackend::refit_geometries(Commands& commands, std::span<const GeometryInput> inputs) {
     Built built(inputs.size());
     std::vector<MovingMesh> builds, updates;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What kernels of the hardware accelerator share with C++.
+// The structs that kernels of the hardware accelerator share with C++.
 #pragma once
 
 #include "engine/accel/surface_area.h"

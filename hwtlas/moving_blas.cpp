@@ -16,7 +16,7 @@ KernelDesc kernel(const char* name, std::span<const std::uint32_t> spirv) {
     return {.name = name, .spirv = spirv, .group_size = WORLD_BOUND_GROUP, .compiles_when_used = true};
 }
 
-// Three vertices of its own for each triangle.
+// Each triangle has three vertices of its own.
 StructureBuild build_of(const std::string& name, std::uint64_t vertices, uint triangle_count) {
     StructureBuild build = triangle_build(name, vertices, 3 * triangle_count, triangle_count);
     build.geometry.geometry.triangles.indexType = VK_INDEX_TYPE_NONE_KHR;
@@ -96,7 +96,7 @@ BuildBytes MovingBlasBuilder::bytes(std::span<const GeometrySize> meshes, std::u
     return bytes;
 }
 
-// In front of it all, with the alignment that the driver wants: its own.
+// The driver's scratch comes first, with the alignment that it wants.
 std::uint64_t MovingBlasBuilder::scratch_bytes(uint n, BuildMode mode) const {
     return scratch_bytes_of(context_, {build_of("", 0, n), mode, nullptr}) + vertex_bytes(n) + sizeof(WorldBoundBits) +
            aligned(AreaWork{n, {}, {}, mode == BuildMode::build}.bytes()) +

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bottom levels of HwTlas over meshes whose vertices the device has.
+// Bottom levels of HwTlas over meshes whose vertices are on the device.
 #pragma once
 
 #include "engine/accel/vertices.h"
@@ -8,7 +8,7 @@
 
 namespace twinray {
 
-// A mesh whose vertices move, all on the device, with triangles.
+// A mesh with moving vertices, all on the device, and at least one triangle.
 struct MovingMesh {
     PackedMesh mesh;
     uint triangle_count;
@@ -17,17 +17,17 @@ struct MovingMesh {
     CostTarget cost;
 };
 
-// Builds bottom levels from vertices in device memory, and updates them. Kernels prepare what blas_input() prepares on
-// the host: the box, the order for drivers that build in input order, and triangles without non-finite vertices.
+// Builds bottom levels from vertices in device memory, and updates them. Kernels do what blas_input() does on the host:
+// the box, the order for drivers that build in input order, and triangles without non-finite vertices.
 class MovingBlasBuilder {
   public:
     MovingBlasBuilder(Context& context, bool reorder);
 
-    // With room for a mesh of so many triangles, not built yet.
+    // Makes room for a mesh of so many triangles, not built yet.
     Blas make(const std::string& name, uint triangle_count) const;
-    // What building takes of meshes that the device has.
+    // The memory that building meshes on the device takes.
     BuildBytes bytes(std::span<const GeometrySize> meshes, std::uint64_t scratch_budget) const;
-    // In batches whose scratch fits into `scratch_budget`. update: every mesh was built before.
+    // Works in batches whose scratch fits into `scratch_budget`. update: every mesh was built before.
     void record(Commands& commands, std::span<const MovingMesh> meshes, BuildMode mode,
                 std::uint64_t scratch_budget) const;
 

@@ -19,8 +19,8 @@ constexpr VkShaderStageFlags stages = VK_SHADER_STAGE_RAYGEN_BIT_KHR | VK_SHADER
                                       VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR | VK_SHADER_STAGE_ANY_HIT_BIT_KHR |
                                       VK_SHADER_STAGE_INTERSECTION_BIT_KHR;
 
-// Positions of the groups in the pipeline and of their records in the table. The last two are hit records: what
-// shaders/hwtlas/gather_instances.comp writes into an instance, GEOMETRY_TRIANGLES or GEOMETRY_BOXES, chooses.
+// Positions of the groups in the pipeline and of their records in the table. The last two are hit records: the
+// instance's GEOMETRY_TRIANGLES or GEOMETRY_BOXES, which shaders/hwtlas/gather_instances.comp writes, chooses one.
 enum Group : std::uint32_t { ray_generation, miss_group, triangle_group, box_group, group_count };
 
 VkPhysicalDeviceRayTracingPipelinePropertiesKHR limits_of(const Context& context) {
@@ -46,7 +46,7 @@ class Stages {
     Stages(const Stages&) = delete;
     Stages& operator=(const Stages&) = delete;
 
-    // Its index, as groups name it; VK_SHADER_UNUSED_KHR for no code.
+    // Returns its index, for use in groups; VK_SHADER_UNUSED_KHR for no code.
     std::uint32_t add(VkShaderStageFlagBits stage, std::span<const std::uint32_t> spirv, const std::string& name) {
         if (spirv.empty()) return VK_SHADER_UNUSED_KHR;
         stages_.reserve(stages_.size() + 1);
@@ -77,7 +77,7 @@ VkRayTracingShaderGroupCreateInfoKHR general_group(std::uint32_t stage) {
             nullptr};
 }
 
-// Of triangles where there is no intersection.
+// The group is for triangles unless there is an intersection shader.
 VkRayTracingShaderGroupCreateInfoKHR hit_group(std::uint32_t closest_hit, std::uint32_t any_hit,
                                                std::uint32_t intersection) {
     return {VK_STRUCTURE_TYPE_RAY_TRACING_SHADER_GROUP_CREATE_INFO_KHR,
@@ -143,8 +143,8 @@ void RayTracingPipeline::create_pipeline(const RayTracingPipelineDesc& desc) {
     context_.state().set_name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(pipeline_), name_);
 }
 
-// One record per group, each at a multiple of the base alignment, where regions may start; the hit records are one
-// region.
+// There is one record per group, each at a multiple of the base alignment, where regions may start; the hit records are
+// one region.
 void RayTracingPipeline::create_shader_binding_table() {
     const std::uint32_t handle_bytes = limits_.shaderGroupHandleSize;
     const std::uint64_t alignment = std::max(limits_.shaderGroupBaseAlignment, limits_.shaderGroupHandleAlignment);
@@ -172,7 +172,7 @@ void RayTracingPipeline::trace(Commands& commands, const TraceArgs& args) const 
     hit.size = 2 * record_bytes_;
     const auto pass = commands.pass(name_);
     vk.vkCmdBindPipeline(commands.handle(), VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR, pipeline_);
-    // Whole rows; a device's limit is at least 2^30.
+    // Launches consist of whole rows; a device's limit is at least 2^30.
     const std::uint32_t per_launch = std::max(launch_limit_ / launch_width, 1u) * launch_width;
     for (std::uint64_t first = 0; first < args.count; first += per_launch) {
         TraceArgs part = args;

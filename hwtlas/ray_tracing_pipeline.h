@@ -31,7 +31,7 @@ class RayTracingPipeline {
     RayTracingPipeline(const RayTracingPipeline&) = delete;
     RayTracingPipeline& operator=(const RayTracingPipeline&) = delete;
 
-    // Launches args.count invocations, in several launches where the device's limit asks for it. Opens a pass.
+    // Launches args.count invocations, in several launches if the device's limit requires it. Opens a pass.
     void trace(Commands& commands, const TraceArgs& args) const;
 
   private:

@@ -12,7 +12,7 @@
 namespace twinray {
 namespace {
 
-// The driver reads records with the layout of those that the accelerator keeps.
+// The driver reads the accelerator's records in the same layout.
 static_assert(sizeof(InstanceRecord) == sizeof(VkAccelerationStructureInstanceKHR));
 static_assert(offsetof(VkAccelerationStructureInstanceKHR, transform) == offsetof(InstanceRecord, object_to_world));
 static_assert(offsetof(VkAccelerationStructureInstanceKHR, accelerationStructureReference) ==
@@ -35,7 +35,7 @@ StructureBuild build_of(std::uint64_t driver_records, std::size_t count, bool ca
     return build;
 }
 
-// Writes the same as the kernel that gathers many.
+// Writes the same as the kernel that gathers many instances.
 void write_sole(Commands& commands, const Tlas& tlas, const SoleInstance& sole) {
     const auto pass = commands.pass("hwtlas instance");
     InstanceRecord record = sole.record;
@@ -60,7 +60,7 @@ TlasBuilder::TlasBuilder(Context& context, bool reorder)
       gather_(context, stage("hwtlas_gather_instances", hwtlas_gather_instances_spirv)),
       boxes_(context, stage("hwtlas_instance_areas", hwtlas_instance_areas_spirv)) {}
 
-// Room for either kind of build, so that the first move does not change the structure's address.
+// Room for either kind of build keeps the structure's address at the first move.
 TlasBuilder::Sizes TlasBuilder::sizes(std::size_t capacity) const {
     const VkAccelerationStructureBuildSizesInfoKHR fixed = sizes_of(context_, build_of(0, capacity, false)),
                                                    moving = sizes_of(context_, build_of(0, capacity, true));
@@ -110,7 +110,7 @@ Uints TlasBuilder::record_order(Commands& commands, const TlasInput& input) cons
     return sorted.values;
 }
 
-// After the instances are gathered.
+// Runs after the instances are gathered.
 void TlasBuilder::record_areas(Commands& commands, const Tlas& tlas, const TlasInput& input, bool is_build) const {
     if (!input.cost.result.address) return;
     std::vector<AreaWork> areas{{input.count, {input.bound->on_device().address}, input.cost, is_build}};

@@ -13,7 +13,7 @@
 
 namespace twinray {
 
-// The top level on the device, with room for `capacity` instances. No instances at all is allowed: every ray misses.
+// The top level on the device, with room for `capacity` instances. It may have none: every ray then misses.
 struct Tlas {
     std::size_t capacity = 0;
     AccelerationStructure structure;
@@ -50,9 +50,9 @@ class TlasBuilder {
     Tlas make(Commands& commands, std::size_t capacity, const AccelHeader& header) const;
     // can_update: record_update() may follow.
     void record_build(Commands& commands, const Tlas& tlas, const TlasInput& input, bool can_update) const;
-    // Measures the areas that sah() tells, and changes nothing else.
+    // Measures the areas for sah(), and changes nothing else.
     void record_measure(Commands& commands, const Tlas& tlas, const TlasInput& input) const;
-    // The instances only moved since the last build.
+    // Updates after the instances only moved since the last build.
     void record_update(Commands& commands, const Tlas& tlas, const TlasInput& input) const;
 
   private:

@@ -39,7 +39,7 @@ Hit hit_of(Candidate candidate, float t, vec2 uv)
     return hit;
 }
 
-// What the driver is asked for.
+// The ray flags for the driver.
 uint ray_flags(TraceOptions options, uint opaque, uint terminate_on_first_hit)
 {
     uint flags = options.flags;
