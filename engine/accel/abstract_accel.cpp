@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The contract, handed on to what is behind it.
+// Forwards the calls of the contract to AccelBackend.
 #include "engine/accel/accel_backend.h"
 #include "engine/core/error.h"
 

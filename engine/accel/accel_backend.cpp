@@ -315,7 +315,7 @@ InstanceRecord AccelBackend::checked_record(const PushedGeometry& pushed, std::s
     if (options.custom_index > max_custom_index)
         fault = text("custom index ", options.custom_index, " exceeds 24 bits (at most ", max_custom_index, ")");
     InstanceRecord record = make_instance_record(transform, options);
-    // Kernels place what was built, in the units in which it was.
+    // Kernels place the built geometry, in the units in which it was built.
     const float unit = pushed.held->geometry.scale;
     const Rows built = scaled_map(record.object_to_world, unit);
     if (fault.empty() && !is_usable(built, inverse_of(built)))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is behind AbstractAccel: what both accelerators share, and the steps that each does in its own way.
+// Implements AbstractAccel: the common part of both accelerators, and the steps that each does in its own way.
 #pragma once
 
 #include <map>
@@ -32,7 +32,7 @@ class SurfaceTables;
 class VertexArrays;
 class WorldBoundKernel;
 
-// Its public functions are those of AbstractAccel, which says what they do.
+// Its public functions are those of AbstractAccel, where they are documented.
 class AccelBackend {
   public:
     virtual ~AccelBackend();
@@ -109,16 +109,16 @@ class AccelBackend {
     virtual Capability capability(Feature feature) const = 0;
     std::vector<Capability> capabilities() const;
     virtual bool is_software() const = 0;
-    // Whether the driver's ids are mapped back to the user's.
+    // Returns whether the driver's ids are mapped back to the user's.
     virtual bool reorders() const { return false; }
     void wait_for_gpu() { context_.wait_for_gpu(); }
     std::vector<PassTiming> build_timings() const;
     MemoryUsage memory_usage() const;
     BuildBytes memory_requirements() const;
     BuildBytes memory_requirements(std::span<const GeometrySize> geometries, std::size_t instance_count) const;
-    // As it is now, on the device too, for which it waits.
+    // Returns the current mesh; if it is on the device, waits for that.
     Mesh held_mesh(AccelHandle handle) const;
-    std::vector<uint> face_metadata(AccelHandle handle) const;  // of each triangle; 0 where none was kept. Waits
+    std::vector<uint> face_metadata(AccelHandle handle) const;  // of each triangle; 0 if none was kept. Waits
     // Counts the syncs that moved or changed something.
     std::uint64_t edit_count() const { return edit_count_; }
     const AccelOptions& options() const { return options_; }
@@ -126,7 +126,7 @@ class AccelBackend {
     const std::string& name() const { return name_; }
 
   protected:
-    // Throws Error naming the level that the device cannot do.
+    // Throws Error naming the level that the device does not support.
     AccelBackend(Context& context, std::string name, const AccelOptions& options = {});
 
     // A geometry as the implementation built it.
@@ -134,45 +134,45 @@ class AccelBackend {
         virtual ~BuiltGeometry() = default;
         std::uint64_t bytes = 0;
     };
-    // What to build a geometry from. `block` is what InstanceRecord::geometry points at, geometry_block_bytes long; the
-    // implementation fills it, beginning with a GeometryBox. It stays when the geometry is replaced.
+    // The input for building a geometry. `block` is the target of InstanceRecord::geometry, geometry_block_bytes long;
+    // the implementation fills it, beginning with a GeometryBox. It stays when the geometry is replaced.
     struct GeometryInput {
         const Geometry* geometry;
         const Buffer* block;
-        PackedMesh mesh;               // where it is not null, this is built from, not the host's copy
-        PackedMesh kept;               // what the device has of it as long as it has the geometry, or null
-        const BuiltGeometry* current;  // of an earlier sync and the same triangles, or null
-        CostTarget cost;               // wants the cost measured that sah() tells, unless null
+        PackedMesh mesh;               // where it is not null, the source of the build instead of the host's copy
+        PackedMesh kept;               // the device's copy as long as it has the geometry, or null
+        const BuiltGeometry* current;  // from an earlier sync and the same triangles, or null
+        CostTarget cost;               // measures the cost for sah(), unless null
     };
-    // Whether a build asked the GPU how small it can be.
+    // Returns whether a build asked the GPU how small it can be.
     virtual bool has_compaction(const BuiltGeometry&) const { return false; }
-    // Whether what was built by `done` can be smaller, or the GPU has not told yet; nothing may wait.
+    // Tells whether geometries built by `done` can be smaller, or the GPU has not told yet; it must not wait.
     enum class Compaction : std::uint8_t { none, untold, possible };
     virtual Compaction compaction_of(const BuiltGeometry&, SyncPoint) const { return Compaction::none; }
-    // Moves each `current`, which can be smaller, into less memory.
+    // Moves each `current` that can be smaller into less memory.
     virtual std::vector<std::unique_ptr<BuiltGeometry>> compact_geometries(Commands& commands,
                                                                            std::span<const GeometryInput> inputs);
     // The top level as the implementation built it.
     struct BuiltTlas {
         virtual ~BuiltTlas() = default;
-        std::uint64_t address = 0;  // what AccelView::scene holds
+        std::uint64_t address = 0;  // AccelView::scene
         std::uint64_t bytes = 0;
         std::uint64_t scratch_bytes = 0;  // kept with it
         std::size_t capacity = 0;         // instances that it has room for
     };
-    // The one instance of a scene whose record no kernel may have written, and which can be hit.
+    // The one instance of a scene, if no kernel may have written its record and it can be hit.
     struct SoleInstance {
         InstanceRecord record;  // in built units
         const BuiltGeometry& geometry;
     };
-    // What to build the top level from, all on the device by the time it runs.
+    // The input for building the top level, all on the device by the time it runs.
     struct TlasInput {
         Ref<InstanceRecord> records;
         uint count = 0;
         BoundOfSync* bound = nullptr;  // never null
         bool will_move = false;        // refits may follow
         CostTarget cost = {};          // as in GeometryInput
-        AccelHeader header = {};       // what the top level begins with
+        AccelHeader header = {};       // the start of the top level
         std::optional<SoleInstance> sole = {};
     };
     static constexpr std::uint64_t geometry_block_bytes = GEOMETRY_SOURCE_OFFSET + sizeof(GeometrySource);
@@ -184,50 +184,50 @@ class AccelBackend {
     // Adapts `current` to vertices that moved. One entry per input; null where its memory suffices.
     virtual std::vector<std::unique_ptr<BuiltGeometry>> refit_geometries(Commands& commands,
                                                                          std::span<const GeometryInput> inputs) = 0;
-    // Builds into the memory of `current` where that suffices, and then returns null.
+    // Builds into the memory of `current` if that suffices, and then returns null.
     virtual std::unique_ptr<BuiltTlas> build_tlas(Commands& commands, const TlasInput& input,
                                                   const BuiltTlas* current) = 0;
-    // What building them from the host's memory takes.
+    // The memory for building them from the host's memory.
     virtual BuildBytes geometry_bytes(std::span<const GeometrySize> geometries) const = 0;
     virtual BuildBytes bytes_of(std::span<const Geometry* const> geometries) const;
-    // What building a top level for `count` instances takes, with room for `capacity`.
+    // The memory for building a top level for `count` instances, with room for `capacity`.
     virtual BuildBytes scene_bytes(std::size_t count, std::size_t capacity) const = 0;
     // Measures `current` as it was built last.
     virtual void measure_tlas(Commands& commands, const TlasInput& input, const BuiltTlas& current) const = 0;
-    // Adapts `current`, built with will_move, to instances that only moved.
+    // Adapts `current`, built with will_move, to instances of which only transforms changed.
     virtual void refit_tlas(Commands& commands, const TlasInput& input, const BuiltTlas& current) = 0;
-    // What an implementation built; throws Error on a dead handle or pending edits.
+    // Returns the implementation's geometry; throws Error on a dead handle or pending edits.
     const BuiltGeometry& built_geometry(AccelHandle handle) const;
     const Buffer& geometry_block(AccelHandle handle) const;
-    // With the vertices that the device has, for which it waits; throws Error on a dead handle.
+    // Returns it with the vertices on the device, for which it waits; throws Error on a dead handle.
     Geometry geometry(AccelHandle handle) const;
     // Throws Error if edits are pending.
     void check_synced(const char* action) const;
-    // Places what is built already; `block` is filled by commands submitted before the next sync. The records, which
-    // need not name the block, may hold what push() would refuse: transforms that kernels have made unusable.
+    // Places a built geometry; `block` is filled by commands submitted before the next sync. The records need not name
+    // the block and may hold what push() would refuse: transforms that kernels have made unusable.
     AccelHandle push_built(Geometry&& geometry, Buffer&& block, std::unique_ptr<BuiltGeometry> built,
                            std::span<const InstanceRecord> records);
     const BuiltTlas& built_tlas() const;
 
-    // What meshes with these positions are built in units of: a power of two.
+    // Returns the unit in which meshes with these positions are built: a power of two.
     virtual float unit_of(std::span<const vec3> positions) const;
     // Chooses Geometry::leaves and welded of a mesh in host memory.
     virtual void prepare(Geometry&) const {}
-    // With `code`, or with the accelerator's own code where the scene needs no program.
+    // Uses `code`, or the accelerator's own code if the scene needs no program.
     virtual std::unique_ptr<TraceProgram> create_program(const TraceProgramCode* code, uint features) const = 0;
     std::uint64_t id() const { return id_; }
-    // Whether the GPU is through with the last sync.
+    // Returns whether the GPU has finished the last sync.
     bool is_sync_done() const { return context_.is_reached(synced_); }
-    // False: the host answers, and neither reads vertices in device memory nor measures costs.
+    // Returns false if the host traces, and neither reads vertices in device memory nor measures costs.
     virtual bool works_on_device() const { return true; }
-    // On the device, whether their vertices move or not.
+    // Returns whether they are on the device even if their vertices do not move.
     bool keeps_meshes() const { return refinement_ || options_.keeps_surfaces; }
-    // What closest_hits() and any_hits() do.
+    // Traces for closest_hits() and any_hits().
     virtual std::vector<Hit> trace_host(std::span<const Ray> rays, TraceDesc desc);
 
   private:
     struct HeldGeometry;
-    // What one push placed.
+    // The geometry and the instances of one push.
     struct PushedGeometry {
         std::shared_ptr<HeldGeometry> held;
         InstanceSlice instances = {};
@@ -238,7 +238,7 @@ class AccelBackend {
     };
     struct Work;
     struct Staged;
-    // Whose instances the last sync placed, made by the first question after it.
+    // The handles of the instances that the last sync placed, made by the first query after it.
     struct InstanceOwners {
         struct Owner {
             AccelHandle handle;
@@ -251,7 +251,7 @@ class AccelBackend {
     enum class Dirty : std::uint8_t { no, compaction, moves, structure };  // moves: of instances and of vertices
 
     void mark(Dirty what) { dirty_ = std::max(dirty_, what); }
-    // The next sync looks at the geometry, and at the handle's instances.
+    // The next sync examines the geometry and the handle's instances.
     void edit(const std::shared_ptr<HeldGeometry>& held, Dirty what);
     void edit(AccelHandle handle, Dirty what);
     AccelHandle place(std::shared_ptr<HeldGeometry> held, std::span<const Transform> transforms,
@@ -317,35 +317,35 @@ class AccelBackend {
     std::unique_ptr<VertexArrays> vertices_;
     InstanceArray instances_;
     std::unique_ptr<Refinement> refinement_;                   // null below Level::refined
-    std::unique_ptr<SurfaceTables> surfaces_;                  // null where nothing of it is kept
-    mutable std::unique_ptr<SurfaceKernels> surface_kernels_;  // made by the first host that asks for surfaces
+    std::unique_ptr<SurfaceTables> surfaces_;                  // null if it keeps nothing
+    mutable std::unique_ptr<SurfaceKernels> surface_kernels_;  // made by the first query of surfaces by the host
     mutable InstanceOwners owners_;
     std::unique_ptr<WorldBoundKernel> bound_;
-    mutable SyncPoint bound_at_;           // when that of the last sync is there; null: nobody has asked for it
-    mutable bool computes_bound_ = false;  // in each sync: somebody has asked, or transforms may be unusable
+    mutable SyncPoint bound_at_;           // when the last sync's bound is there; null: it was not requested
+    mutable bool computes_bound_ = false;  // in each sync: it was requested, or transforms may be unusable
     mutable CostLog scene_costs_;          // the first question measures a top level of which nothing has moved
     double rebuild_ratio_ = default_rebuild_ratio;
     std::uint64_t scratch_budget_ = 64 << 20;
     std::map<std::uint64_t, PushedGeometry> pushed_;  // in push order: ids only grow
     std::size_t instance_count_ = 0;                  // of all of them
     Dirty dirty_ = Dirty::structure;
-    // The next sync looks at these alone, or, where the structure changes, at all instances.
+    // The next sync examines only these, or all instances if the structure changes.
     std::vector<std::weak_ptr<HeldGeometry>> edited_;
     std::set<std::uint64_t> edited_instances_;  // handles
-    // Built, and perhaps smaller once the GPU tells.
+    // Built geometries that may become smaller once the GPU tells.
     std::vector<std::weak_ptr<HeldGeometry>> uncompacted_;
     bool has_moved_ = false;  // something has moved after a build, so that builds allow refits
     std::uint64_t revision_ = 0;
     std::uint64_t edit_count_ = 0;
-    std::unique_ptr<SceneTraits> traits_;                          // of the scene that was built
+    std::unique_ptr<SceneTraits> traits_;                          // of the built scene
     mutable std::unique_ptr<PipelineVariants> pipeline_variants_;  // made by the first trace
     mutable std::unique_ptr<RaySort> ray_sort_;                    // made by the first that sorts
     SyncPoint synced_;
     uint warned_unusable_ = 0;
     std::unique_ptr<BuiltTlas> scene_;
-    // Its instances.
+    // The instances of that scene.
     std::size_t scene_count_ = 0;
-    // Erased or replaced since the last sync: views of it still read them.
+    // Geometries erased or replaced since the last sync: its views still read them.
     std::vector<PushedGeometry> outdated_;
     std::vector<HeldGeometry> replaced_;
     std::unique_ptr<Commands> last_build_;

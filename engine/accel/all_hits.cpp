@@ -43,7 +43,7 @@ bool is_same(const RayHit& a, const RayHit& b) {
            a.hit.primitive_index == b.hit.primitive_index;
 }
 
-// Sorted, and without what was listed twice.
+// Sorts, and removes duplicates.
 void tidy(std::vector<RayHit>& found) {
     const auto key = [](const RayHit& of) {
         return std::tuple(of.ray, of.hit.t, of.hit.instance_index, of.hit.primitive_index);
@@ -74,7 +74,7 @@ AllHits::~AllHits() = default;
 std::uint64_t AllHits::max_hits() const { return state_->found.limit(); }
 void AllHits::set_max_hits(std::uint64_t count) { state_->found.set_limit(count); }
 
-// In order.
+// Returns them in order.
 std::vector<RayHit> AllHits::State::find(const AccelView& view, std::span<const Ray> some, const TraceDesc& desc) {
     grow(accel.context(), rays, "rays", some.size_bytes());
     const auto record = [&](Commands& commands, const DeviceList::View& list, std::uint64_t first,

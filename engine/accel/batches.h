@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which geometries a sync builds at a time, so that their scratch memory stays within a budget.
+// Decides which geometries a sync builds at a time, so that their scratch memory stays within a budget.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ struct Batches {
         std::size_t first = 0, count = 0;
     };
     std::vector<Run> runs;
-    std::uint64_t scratch_bytes = 0;  // that the largest run needs
+    std::uint64_t scratch_bytes = 0;  // the need of the largest run
 };
 
 // Cuts builds, in order, into runs as long as their scratch together fits into `budget`. One that exceeds it alone is a

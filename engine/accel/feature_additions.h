@@ -12,7 +12,7 @@ struct FeatureAddition {
     const char* name;
     uint features;
 };
-// From what scenes most often need to what they rarely do.
+// From the most often needed to the rarest.
 inline constexpr std::array feature_additions = {
     FeatureAddition{"+ hits", FEATURE_HITS},
     FeatureAddition{"+ transforms", FEATURE_TRANSFORMS},

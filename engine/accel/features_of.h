@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which features of shaders/shared/features.h a trace needs: a pure function of what is known when it is recorded.
+// The features of shaders/shared/features.h that a trace needs: a pure function of what is known when it is recorded.
 #pragma once
 
 #include <cstddef>

@@ -86,7 +86,7 @@ int Geometry::size_exponent(std::span<const vec3> positions) {
 }
 
 float Geometry::near_unit(std::span<const vec3> positions) {
-    // So that neither it nor its reciprocal leaves the range of normal floats.
+    // Neither it nor its reciprocal may leave the range of normal floats.
     return std::ldexp(1.0f, std::clamp(size_exponent(positions), -100, 100));
 }
 

@@ -18,7 +18,7 @@ namespace twinray {
 #include "shaders/shared/leaf.h"
 #include "twinray/glsl/cpp_end.h"
 
-// A mesh with other vertices, where triangles are the same.
+// A mesh with other vertices and the same triangles.
 struct Welded {
     std::vector<vec3> positions;
     std::vector<uvec3> triangles;
@@ -35,13 +35,13 @@ struct Geometry {
     std::vector<uvec3> triangles;
     std::size_t non_finite_triangles = 0;  // inactive: never hit, still counted
     std::vector<Bounds> boxes;             // of GEOMETRY_BOXES
-    // Leaves as the accelerator's builder wants them; empty: each primitive is one. A build needs it.
+    // The leaves for the accelerator's builder; empty: each primitive is one. A build needs it.
     std::vector<Leaf> leaves;
-    Welded welded;  // until a build: what it takes for the mesh, unless that is empty
-    // Instead of `triangles`, and of `positions` until the host gives some: what the caller has in device memory,
-    // without its name and attributes.
+    Welded welded;  // until a build: the mesh that it uses, unless this is empty
+    // Replaces `triangles`, and `positions` until the host gives some: the caller's data in device memory, without its
+    // name and attributes.
     std::optional<DeviceMesh> device;
-    // Instead of both, once forget_mesh() was called: how many there were.
+    // The former counts of both, once forget_mesh() was called.
     struct Counts {
         std::size_t vertices, triangles;
     };
@@ -55,16 +55,16 @@ struct Geometry {
     // Throws Error naming the box: one that is empty or not finite, or more than max_primitives.
     explicit Geometry(const BoxesView& boxes);
 
-    // Other positions, as many, in the user's units.
+    // Sets as many other positions, in the user's units.
     void move_to(std::span<const vec3> others);
-    // Frees the host's copy of a mesh that is built; `leaves`, too, unless the device has a copy to build from again.
+    // Frees the host's copy of a built mesh; also `leaves`, unless the device has a copy to build from again.
     void forget_mesh(bool is_on_device);
     std::uint64_t host_bytes() const;
-    // As the user gave them.
+    // Returns the positions that the user gave.
     std::vector<vec3> given_positions() const;
-    // The exponent of the largest finite coordinate, which is below 2^(1 + exponent); 0 where all are 0.
+    // Returns the exponent of the largest finite coordinate, which is below 2^(1 + exponent); 0 if all are 0.
     static int size_exponent(std::span<const vec3> positions);
-    // The power of two just below the largest finite coordinate, so that coordinates in units of it are near 1.
+    // Returns the power of two just below the largest finite coordinate, so that coordinates in this unit are near 1.
     static float near_unit(std::span<const vec3> positions);
 
     std::size_t vertex_count() const { return counts().vertices; }
@@ -74,7 +74,7 @@ struct Geometry {
         return forgotten.value_or(Counts{positions.size(), triangles.size()});
     }
     std::size_t primitive_count() const { return kind == GEOMETRY_BOXES ? boxes.size() : triangle_count(); }
-    // Whether what was built of that one has room for this.
+    // Returns whether the memory of the other's structures has room for this one's.
     bool fits_in_place_of(const Geometry& other) const {
         return device && other.device && vertex_count() == other.vertex_count() &&
                triangle_count() == other.triangle_count() && scale == other.scale &&
@@ -86,8 +86,8 @@ struct Geometry {
     static constexpr std::size_t max_primitives = (1u << 25) - 1;
 };
 
-// The record of one instance, geometry address left 0, for a transform without fault_of() and a custom index up to
-// max_custom_index.
+// Makes the record of one instance, geometry address left 0, for a transform without fault_of() and a custom index up
+// to max_custom_index.
 InstanceRecord make_instance_record(const Transform& transform, const InstanceOptions& options = {});
 InstanceOptions options_of(const InstanceRecord& record);
 Transform transform_of(const InstanceRecord& record);

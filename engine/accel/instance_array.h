@@ -15,11 +15,11 @@ namespace twinray {
 #include "shaders/shared/copy_transforms.h"
 #include "twinray/glsl/cpp_end.h"
 
-// How many instances to make room for: what there is room for already where `count` fits well, else `count` with spare
-// room when it grows.
+// The number of instances to make room for: the present capacity if `count` fits it well, else `count` with spare room
+// if it grows.
 std::size_t capacity_for(std::size_t count, std::size_t capacity);
 
-// The instances of one handle, and what the device's copy of them has and lacks.
+// The instances of one handle, and the state of the device's copy.
 struct InstanceSlice {
     std::vector<InstanceRecord> records;  // as the host last wrote them
     std::optional<std::size_t> first;     // where they start in the device's array; none: not there yet
@@ -27,11 +27,11 @@ struct InstanceSlice {
     bool device_wrote = false;            // transforms on the device may be newer than `records`
     Ref<Transform> incoming;              // device memory that the next sync copies the transforms from; 0 = none
     std::size_t incoming_count = 0;
-    // Records that the host changed since the last sync and after `incoming` was set. Not a range: what lies between
-    // two of them may be newer on the device.
+    // Records that the host changed since the last sync and after `incoming` was set. It is not a range: records
+    // between two of them may be newer on the device.
     std::set<std::size_t> edited;
     bool all_edited = false;
-    // Records of which the host changed all but the transform, which may be newer on the device.
+    // Records of which the host changed everything but the transform, which may be newer on the device.
     std::set<std::size_t> options_edited;
 
     void edit(std::size_t index, const InstanceRecord& record);
@@ -46,16 +46,16 @@ class InstanceArray {
   public:
     explicit InstanceArray(Context& context);
 
-    // What stage() recorded, to be committed once it is certain to run.
+    // The result of stage(), to be committed once its commands are certain to run.
     struct Staged {
         std::vector<std::size_t> firsts;
         std::size_t count = 0;
         Ref<InstanceRecord> records;
         std::optional<Buffer> replacement;  // when the array grew, shrank, or device-written records moved
     };
-    // Records what brings these slices, in this order, to the device.
+    // Records the commands that bring these slices, in this order, to the device.
     Staged stage(Commands& commands, std::span<InstanceSlice* const> slices) const;
-    // The same for some of the slices that the last commit placed, of which none has changed its length.
+    // The same for some of the slices that the last commit placed, whose lengths have not changed.
     Staged stage_edits(Commands& commands, std::span<InstanceSlice* const> slices) const;
     void commit(Staged&& staged, std::span<InstanceSlice* const> slices);
 

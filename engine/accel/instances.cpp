@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Transforms and states of instances: what AbstractAccel lets a host change and read of them.
+// The transforms and states of instances that AbstractAccel lets a host change and read.
 #include <algorithm>
 
 #include "engine/accel/held_geometry.h"
@@ -102,7 +102,7 @@ void AccelBackend::erase_instance(AccelHandle handle, std::size_t index) {
     --instance_count_;
     pushed.instances.edit_all(std::move(records));
     pushed.instances.options_edited.clear();
-    pushed.instances.first.reset();  // what the device has is of other instances
+    pushed.instances.first.reset();  // the device has data of other instances
     edit(handle, Dirty::structure);
 }
 
@@ -138,7 +138,7 @@ std::vector<InstanceState> AccelBackend::get_instances(AccelHandle handle) const
     return states;
 }
 
-// With what the device knows better, for which it waits.
+// Includes the device's newer data, for which it waits.
 std::vector<InstanceRecord> AccelBackend::newest_records(const InstanceSlice& slice) const {
     std::vector<InstanceRecord> records = slice.records;
     context_.state().check_submitted(synced_);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Reads meshes that callers have in device memory into the form that accelerators build from.
+// Converts callers' meshes in device memory into the form that accelerators build from.
 #pragma once
 
 #include <map>
@@ -17,9 +17,9 @@ namespace twinray {
 #include "shaders/shared/gather_mesh.h"
 #include "twinray/glsl/cpp_end.h"
 
-// Throws Error naming the mesh and what of it cannot be: an address, a stride, a count.
+// Throws Error naming the mesh and its invalid part: an address, a stride, a count.
 void check_device_mesh(const DeviceMesh& mesh);
-// Whether it is packed already.
+// Returns whether it is packed already.
 bool is_packed(const DeviceMesh& mesh);
 
 class MeshGather {
@@ -29,17 +29,17 @@ class MeshGather {
     struct Item {
         const DeviceMesh* mesh;
         std::string name;
-        float scale;  // what positions become units of
+        float scale;  // the unit of the resulting positions
         PackedMesh target;
     };
-    // What was counted of the meshes of one sync.
+    // The faults that were counted in the meshes of one sync.
     struct Faults {
         std::vector<std::string> names;
         Buffer counts;
     };
     Faults record(Commands& commands, std::span<const Item> items) const;
     void commit(Faults&& faults, SyncPoint done);
-    // Of triangles with an index out of range, of syncs that the GPU is done with.
+    // Warns of triangles with an index out of range, from syncs that the GPU is done with.
     void warn_of_faults(const std::string& accel);
 
   private:

@@ -38,8 +38,8 @@ std::vector<uint> morton_order(std::span<const vec3> centers) {
     Bounds bounds;
     for (const vec3& center : centers)
         if (!is_last(center)) bounds.include(center);
-    // One scale for all axes keeps the cells cubes: a long scene is halved along its length first. In float64, since
-    // the extent of finite floats may exceed the largest float.
+    // One scale for all axes keeps the cells cubes: a long scene is halved along its length first. It uses float64,
+    // since the extent of finite floats may exceed the largest float.
     const dvec3 lo(bounds.lo), size = dvec3(bounds.hi) - lo;
     const double extent = std::max({size.x, size.y, size.z});
     const double scale = extent > 0 ? cells_per_axis / extent : 0;

@@ -6,7 +6,7 @@
 
 namespace twinray {
 
-// A mesh in device memory: 3 floats a vertex, 3 indices a triangle. Null: it is on the host alone.
+// A mesh in device memory: 3 floats per vertex, 3 indices per triangle. Null: it is only on the host.
 struct PackedMesh {
     Floats positions;
     Uints indices;

@@ -50,7 +50,7 @@ PipelineVariants::State PipelineVariants::state(const Job& job) const {
     return found == states_.end() ? State::missing : found->second;
 }
 
-// What has failed in the background is not tried there again.
+// A variant that has failed in the background is not tried there again.
 void PipelineVariants::queue(const Job& job) {
     {
         const std::lock_guard lock(mutex_);

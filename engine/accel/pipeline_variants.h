@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The programs that an accelerator traces with where the scene needs none of the user's: one for each set of features.
+// The programs that an accelerator traces with if the scene needs none of the user's: one for each set of features.
 #pragma once
 
 #include <condition_variable>
@@ -15,25 +15,24 @@
 namespace twinray {
 
 // The first trace compiles the leanest program that fits, and waits for it. The next one has the program that fits all
-// scenes compiled in the background, which serves from then on while leaner ones are compiled there, too: who traces
-// once pays for one program. There are at most 32 sets of features of an accelerator (see features_of.h), so that none
-// has to go.
+// scenes compiled in the background. That one serves from then on while leaner ones are also compiled there: a user who
+// traces once pays for one program. There are at most 32 sets of features of an accelerator (see features_of.h), so
+// that none has to be dropped.
 //
-// Used by one thread at a time; one of its own compiles. The context must outlive it.
+// It is used by one thread at a time and compiles on a thread of its own. The context must outlive it.
 class PipelineVariants {
   public:
     using Create = std::function<std::unique_ptr<TraceProgram>(uint features)>;
-    // `in_background`: false lets every first trace wait for the program that fits. `all` holds the features of every
-    // get().
+    // If `in_background` is false, every first trace waits for its program. `all` holds the features of every get().
     PipelineVariants(Create create, uint all, bool in_background);
     // Waits for the program that is being compiled, if there is one; those not begun are dropped.
     ~PipelineVariants();
     PipelineVariants(const PipelineVariants&) = delete;
     PipelineVariants& operator=(const PipelineVariants&) = delete;
 
-    // A program, ready to record, for these features or more. Throws Error where none can be compiled.
+    // Returns a program, ready to record, for these features or more. Throws Error if none can be compiled.
     const TraceProgram& get(uint features, Query query, Level level);
-    // Until nothing is left to compile.
+    // Waits until nothing is left to compile.
     void wait() const;
 
   private:
@@ -56,7 +55,7 @@ class PipelineVariants {
     uint all_;
     bool in_background_;
     std::map<uint, std::unique_ptr<TraceProgram>> programs_;  // by features
-    mutable std::mutex mutex_;                                // of what follows
+    mutable std::mutex mutex_;                                // guards the members below
     mutable std::condition_variable changed_;
     std::map<Job, State> states_;
     std::deque<Job> queue_;  // the first one is being compiled

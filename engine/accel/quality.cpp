@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How good and how small the structures are, and when that makes a sync rebuild or compact them.
+// Measures the structures' quality and size, and decides when a sync rebuilds or compacts them.
 #include <algorithm>
 
 #include "engine/accel/held_geometry.h"

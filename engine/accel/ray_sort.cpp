@@ -9,7 +9,7 @@
 namespace twinray {
 namespace {
 
-// What scratch memory holds: the box, then keys and values twice, then what the sort counts in.
+// The layout of scratch memory: the box, then keys and values twice, then the sort's counters.
 struct Columns {
     Columns(const Buffer& scratch, std::uint64_t count)
         : box(scratch.ref<WorldBoundBits>()),

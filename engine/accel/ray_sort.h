@@ -17,7 +17,7 @@ class RaySort {
     explicit RaySort(Context& context);
 
     static std::uint64_t scratch_bytes(std::uint64_t count, const KernelTuning& tuning);
-    // The sorted keys, and as values the numbers of the rays, both of them in `scratch`, which must have
+    // Returns the sorted keys, and the numbers of the rays as values, both in `scratch`, which must have
     // scratch_bytes() and live until the GPU is done. Those of min(count, indirect_count) rays come first. `count` must
     // not be 0.
     RadixSort::Pairs record(Commands& commands, const Buffer& scratch, Ref<Ray> rays, uint count,

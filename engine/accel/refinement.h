@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What Level::refined needs on the device: all meshes and transforms as they were given.
+// The device data of Level::refined: all meshes and transforms as they were given.
 #pragma once
 
 #include <optional>
@@ -21,13 +21,13 @@ class Refinement {
   public:
     explicit Refinement(Context& context);
 
-    // Records what takes over these instances, whose blocks have their GeometrySource. Returns memory to be committed
-    // once it is certain to run, if it needed more or far less.
+    // Records the commands that take over these instances, whose blocks have their GeometrySource. Returns memory to be
+    // committed once they are certain to run, if it needed more or far less.
     std::optional<Buffer> stage(Commands& commands, Ref<InstanceRecord> records, std::size_t count,
                                 Ref<WorldBound> bound) const;
     void commit(std::optional<Buffer>&& instances);
 
-    // Waits. What float64 says of hits of the last sync; of misses nothing is written.
+    // Waits. Returns the float64 results for hits of the last sync; entries of misses are not written.
     std::vector<HitDouble> exact(std::span<const Ray64> rays, std::span<const Hit> hits) const;
 
     Ref<RefineScene> scene() const { return scene_.ref<RefineScene>(); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Measures what boxes have become of a tree since its build.
+// Measures how the boxes of a tree have changed since its build.
 #pragma once
 
 #include <array>
@@ -17,24 +17,24 @@ namespace twinray {
 
 static_assert(sizeof(AreaItem) == 28 && sizeof(TreeCost) == 8);
 
-// Where a measure goes.
+// The destination of a measurement.
 struct CostTarget {
     Ref<TreeCost> kept;
     Ref<TreeCost> result;   // null: nothing is measured
-    bool is_first = false;  // the tree was never measured: before a refit, what it was as built comes first
+    bool is_first = false;  // the tree was never measured: before a refit, its cost as built comes first
 };
 
-// The last measures of one tree, for a host that does not wait.
+// The last measurements of one tree, for a host that does not wait.
 class CostLog {
   public:
     CostLog() = default;
     explicit CostLog(Context& context);
 
-    // Where the next measure goes.
+    // Returns the destination of the next measurement.
     CostTarget target() const;
     void commit(bool is_build, SyncPoint done);
     void forget() { points_ = {}; }  // the tree was built and not measured
-    // The latest measure since the last build that the GPU has finished; none: there is none.
+    // Returns the latest measurement since the last build that the GPU has finished; nullopt if there is none.
     std::optional<TreeCost> newest(const Context& context) const;
     SyncPoint last_point() const { return last_; }
     std::uint64_t bytes() const { return costs_.bytes(); }
@@ -62,9 +62,9 @@ class SurfaceArea {
   public:
     explicit SurfaceArea(Context& context);
 
-    // Puts the items of all trees into memory from `address` on, AreaWork::bytes() each.
+    // Places the items of all trees in memory from `address` on, AreaWork::bytes() each.
     static void place(std::uint64_t address, std::span<AreaWork> work);
-    // The same in memory of their own.
+    // The same in memory of its own.
     static void place(Commands& commands, std::span<AreaWork> work);
     void record(Commands& commands, std::vector<AreaWork> work) const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Kernels that find surfaces of hits for hosts.
+// Kernels that find the surfaces of hits for the host.
 #pragma once
 
 #include "engine/accel/surface_tables.h"

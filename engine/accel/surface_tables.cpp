@@ -52,7 +52,7 @@ void check_attribute(const DeviceMesh& mesh, const DeviceAttribute& attribute) {
              " components a vertex, not ", attribute.components, attribute.is_per_face ? " a triangle" : "");
 }
 
-// Whether there is an array of so many numbers at the address.
+// Checks that there is an array of so many numbers at the address.
 void check_array(const DeviceMesh& mesh, std::string_view name, std::uint64_t address, std::uint64_t words) {
     if (address == 0 || address % 4 != 0)
         fail("mesh '", mesh.name, "': device address ", address, " of its '", name,
@@ -79,7 +79,7 @@ void add(SurfaceSlice& slice, const AttributeView& attribute, uint number) {
                             {append_aligned(slice.packed, std::as_bytes(attribute.values))}});
 }
 
-// Returns where so many words of the caller's are from the next sync on.
+// Returns where so many of the caller's words are from the next sync on.
 SurfaceSlice::Place place(SurfaceSlice& slice, const DeviceMesh& mesh, std::uint64_t address, std::uint64_t words) {
     if (mesh.in_place) return {.in_place = address};
     slice.copies.push_back({{address}, aligned(slice.pending_bytes()), words});

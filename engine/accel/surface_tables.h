@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What AccelOptions::keeps_surfaces keeps on the device: arrays of meshes, and the table that leads from a hit to them.
+// The device data of AccelOptions::keeps_surfaces: arrays of meshes, and the table that leads from a hit to them.
 #pragma once
 
 #include <cstdint>
@@ -29,16 +29,16 @@ static_assert(sizeof(SurfaceAttribute) == 16 && sizeof(SurfaceGeometry) == 32 &&
 // The attributes that an accelerator's meshes have, in the order of their numbers: the ATTRIBUTE_* first.
 class AttributeNames {
   public:
-    // None: no mesh had it.
+    // Returns nullopt if no mesh had it.
     std::optional<uint> number_of(std::string_view name) const;
-    // Throws Error naming the mesh and a name that is one too many.
+    // Throws Error naming the mesh and the first name beyond the limit.
     uint number_for(std::string_view mesh, std::string_view name);
 
   private:
     std::vector<std::string> names_{"normals", "tangents", "uv0", "uv1", "colors"};
 };
 
-// The arrays of one geometry, in one buffer, or in memory of the caller's.
+// The arrays of one geometry, in one buffer, or in the caller's memory.
 struct SurfaceSlice {
     struct Place {
         std::uint64_t offset = 0;
@@ -51,7 +51,7 @@ struct SurfaceSlice {
         bool is_per_face = false;
         Place place;
     };
-    // Words that are copied from memory of the caller's.
+    // Words that are copied from the caller's memory.
     struct Copy {
         Uints from;
         std::uint64_t offset = 0, words = 0;
@@ -60,7 +60,7 @@ struct SurfaceSlice {
     };
     std::vector<Array> arrays;
     std::optional<Place> face_metadata, metadata;
-    // Until they are on the device.
+    // Holds the data until it is on the device.
     std::vector<std::byte> packed;  // from 0 on
     std::vector<Copy> copies;       // behind it, in order
     Buffer data;
@@ -69,20 +69,20 @@ struct SurfaceSlice {
     std::uint64_t pending_bytes() const { return copies.empty() ? packed.size() : copies.back().end(); }
 };
 
-// Appends at a multiple of 16 bytes, which it returns.
+// Appends at a multiple of 16 bytes and returns that position.
 std::uint64_t append_aligned(std::vector<std::byte>& packed, std::span<const std::byte> bytes);
 
 // Throws Error naming the mesh and the array whose length, components or address do not fit, or whose name is empty or
-// taken. Does so for arrays that the accelerator does not keep, too.
+// taken; also for arrays that the accelerator does not keep.
 void check_arrays(const MeshView& mesh);
 void check_arrays(const DeviceMesh& mesh);
 
-// The mesh without the arrays that AccelOptions::keeps_metadata does not keep.
+// Returns the mesh without the arrays that AccelOptions::keeps_metadata does not keep.
 MeshView metadata_of(const MeshView& mesh);
 DeviceMesh metadata_of(const DeviceMesh& mesh);
 
-// Copies what the checked mesh has, or notes where the device has it. Throws Error naming the mesh and an attribute
-// whose name is one too many; `names` is then as it was.
+// Copies the checked mesh's arrays, or notes where the device has them. Throws Error naming the mesh and the first
+// attribute name beyond the limit; `names` is then unchanged.
 SurfaceSlice surface_slice(const MeshView& mesh, AttributeNames& names);
 SurfaceSlice surface_slice(const DeviceMesh& mesh, AttributeNames& names);
 
@@ -97,7 +97,7 @@ class SurfaceTables {
         std::size_t faces = 0, instances = 0;
         SurfaceSlice* slice = nullptr;
     };
-    // What stage() recorded, to be committed once it is certain to run.
+    // The result of stage(), to be committed once its commands are certain to run.
     struct Staged {
         std::unordered_map<SurfaceSlice*, Buffer> data;
         std::optional<Buffer> rows;
@@ -107,7 +107,7 @@ class SurfaceTables {
     Staged stage(Commands& commands, std::span<const Item> items, Ref<InstanceRecord> instances) const;
     void commit(Staged&& staged);
 
-    // Waits. Words of a slice that is on the device.
+    // Waits. Returns words of a slice that is on the device.
     std::vector<uint> read(const SurfaceSlice& slice, const SurfaceSlice::Place& place, std::size_t count) const;
 
     Ref<SurfaceTable> table() const { return table_.ref<SurfaceTable>(); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// From hits to surfaces and handles, for hosts.
+// Finds surfaces and handles of hits for the host.
 #include "engine/accel/surface_kernels.h"
 
 #include <algorithm>
@@ -64,8 +64,8 @@ std::vector<HitExact> AccelBackend::exact_hits(std::span<const Ray64> rays, cons
     TraceDesc at_level = desc;
     at_level.level = options_.level;
     std::vector<HitExact> found(rays.size());
-    // A ray goes on behind a hit that float64 finds outside its interval, in steps that double from what
-    // rounding moves the origin by: float32 may find the same triangle again until it is past it.
+    // If float64 finds a hit outside the ray's interval, the ray continues behind it, in steps that start at the
+    // distance by which rounding moves the origin and double: until then float32 may find the same triangle again.
     std::vector<float> steps;
     for (const Ray& ray : rounded)
         steps.push_back(std::max(largest_entry(ray.origin) / largest_entry(ray.direction) * 0x1p-24f, 0x1p-100f));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The one place that builds: stage records everything, commit takes it over once it is certain to run.
+// The only code that builds: stage records everything, commit takes it over once it is certain to run.
 #include <algorithm>
 #include <utility>
 
@@ -12,7 +12,7 @@
 
 namespace twinray {
 
-// Geometries of which the same is wanted.
+// Geometries with the same kind of work.
 struct AccelBackend::Work {
     std::vector<HeldGeometry*> held;
     std::vector<GeometryInput> inputs;
@@ -25,7 +25,7 @@ struct AccelBackend::Work {
 
 void AccelBackend::Staged::add(const Work& work, std::vector<std::unique_ptr<BuiltGeometry>>&& done) {
     for (std::size_t i = 0; i < done.size(); ++i) {
-        if (!done[i]) continue;  // what it had was adapted
+        if (!done[i]) continue;  // its present structure was adapted
         building.push_back(work.held[i]);
         built.push_back(std::move(done[i]));
     }
@@ -101,7 +101,7 @@ void AccelBackend::stage_vertices(Commands& commands, Staged& staged) {
     stage_sources(commands, staged);
 }
 
-// Whether refining or surfaces lack its mesh on the device, which no edit brings there.
+// Returns whether refining or surfaces lack its mesh on the device, which no edit brings there.
 bool AccelBackend::lacks_mesh(const HeldGeometry& held) const {
     return keeps_meshes() && !held.vertices.edited && !held.vertices.on_device() &&
            held.geometry.kind == GEOMETRY_TRIANGLES && !held.geometry.is_in_place();
@@ -120,7 +120,7 @@ void AccelBackend::stage_sources(Commands& commands, Staged& staged) {
     }
 }
 
-// Where it lies on the device after this sync.
+// Returns the place of its mesh on the device after this sync.
 PackedMesh AccelBackend::kept_mesh(const HeldGeometry& held, const Staged& staged) {
     const Geometry& geometry = held.geometry;
     if (geometry.is_in_place()) return {{geometry.device->positions}, {geometry.device->indices}};
@@ -248,7 +248,7 @@ void AccelBackend::warn_of_unusable_instances() {
     warned_unusable_ = count;
 }
 
-// For the last sync, unless it has done so, and in all to come.
+// Measures the last sync's bound, unless it did so, and that of all later syncs.
 void AccelBackend::measure_bound() const {
     computes_bound_ = true;
     if (bound_at_.value || !synced_.value) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Tracing through AccelBackend: what every accelerator checks, and the host's convenience.
+// Tracing through AccelBackend: the checks of every accelerator, and the host's convenience.
 #include <algorithm>
 #include <cstring>
 
@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t rays_of_block = 1 << 20;  // that lie on the device at a time, of those that the host has
 
-// The first of the features, for messages.
+// Returns the words for the first of the features, for messages.
 const char* words_for(uint features) {
     if (features & FEATURE_BOXES) return "boxes";
     if (features & FEATURE_FILTERS) return "non-opaque instances";
@@ -89,7 +89,7 @@ void AccelBackend::record_rays(Commands& commands, const AccelView& view, const 
     program.record(commands, args, desc.query, desc.level);
 }
 
-// As TraceArgs::order.
+// The result is for TraceArgs::order.
 Uints AccelBackend::record_order(Commands& commands, const TraceDesc& desc) const {
     if (desc.order == RayOrder::given || !works_on_device()) return {};
     if (!ray_sort_) ray_sort_ = std::make_unique<RaySort>(context_);
@@ -134,7 +134,7 @@ void AccelBackend::wait_for_programs() const {
     if (pipeline_variants_) pipeline_variants_->wait();
 }
 
-// Boxes that nothing can meet, and hits that nobody decides about, are no answer.
+// A trace must not ignore boxes or leave hits undecided: it then needs a program.
 const TraceProgram& AccelBackend::program_for(const TraceDesc& desc) const {
     const uint needed = features_of(accel_traits(), *traits_, TraceTraits::of(desc));
     if (const uint of_user = needed & (FEATURE_BOXES | FEATURE_FILTERS); !desc.program && of_user)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What kernels are told of a TraceDesc.
+// The arguments that kernels get from a TraceDesc.
 #pragma once
 
 #include <twinray/trace.h>
@@ -8,9 +8,9 @@
 
 namespace twinray {
 
-// Whether trees are of records (shaders/shared/compressed.h).
+// Returns whether trees consist of records (shaders/shared/compressed.h).
 constexpr bool has_records(Layout layout) { return layout != Layout::bvh2; }
-// How many children a node has at most.
+// Returns the most children that a node has.
 constexpr uint width_of(Layout layout) { return layout == Layout::bvh2 ? 2 : layout == Layout::compressed8 ? 8 : 4; }
 
 constexpr uint flags_of(Cull cull) { return cull == Cull::none ? 0 : cull == Cull::back ? CULL_BACK : CULL_FRONT; }

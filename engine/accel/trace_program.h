@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How batches of rays are launched: by compute kernels.
+// Launches batches of rays by compute kernels.
 #pragma once
 
 #include <array>
@@ -12,9 +12,9 @@
 
 namespace twinray {
 
-// How trace.comp is launched for so many rays. An invocation has one, but by software it has a run of them where
-// KernelTuning::rays_per_group says so: powers of two, as are rows of groups, so that no run of the last row is longer
-// than 32 bits can count.
+// The groups in which trace.comp is launched for so many rays. An invocation has one ray; in software it has a run of
+// them if KernelTuning::rays_per_group says so. Runs and rows of groups are powers of two, so that no run of the last
+// row is longer than 32 bits can count.
 struct RayGroups {
     uint size;  // invocations
     std::uint64_t count;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Meshes in device memory: whose vertices move, or that callers have there.
+// Meshes in device memory: those with moving vertices, and those of callers.
 #pragma once
 
 #include <optional>
@@ -16,9 +16,9 @@ namespace twinray {
 #include "shaders/shared/copies.h"
 #include "twinray/glsl/cpp_end.h"
 
-// What the device has of one geometry's mesh and lacks. Nothing until a vertex is first moved, so that meshes that keep
-// their shape do not pay; from then on the device's copy is what everything is built from. Of a DeviceMesh in place
-// nothing but costs: its copy is made anew by each sync that builds or refits it.
+// The parts of one geometry's mesh that the device has and lacks. It is empty until a vertex is first moved, so that
+// meshes that keep their shape cost nothing; from then on everything is built from the device's copy. For a DeviceMesh
+// in place it only holds costs: each sync that builds or refits it makes its copy anew.
 struct VertexSlice {
     Buffer positions, indices;
     CostLog costs;              // of the geometry's tree
@@ -44,7 +44,7 @@ class VertexArrays {
         const Geometry* geometry;  // has triangles
         VertexSlice* slice;        // edited, or not on the device yet
     };
-    // What stage() recorded, to be committed once it is certain to run.
+    // The result of stage(), to be committed once its commands are certain to run.
     struct Staged {
         std::vector<Item> items;
         std::vector<VertexSlice> made;  // by item: what its slice lacks
@@ -54,17 +54,17 @@ class VertexArrays {
         PackedMesh mesh(std::size_t item) const {
             return made[item].on_device() ? made[item].mesh() : items[item].slice->mesh();
         }
-        // Null for a slice that is neither staged nor on the device.
+        // Returns null for a slice that is neither staged nor on the device.
         PackedMesh mesh_of(const VertexSlice& slice) const;
         CostTarget cost_target(std::size_t item) const;
-        // Copies of meshes in place, once all that reads them is recorded.
+        // Keeps copies of meshes in place, once all commands that read them are recorded.
         void retain_temporaries(Commands& commands);
     };
     Staged stage(Commands& commands, std::vector<Item> items) const;
     // Returns the slices, by item.
     std::vector<VertexSlice*> commit(Staged&& staged, SyncPoint done);
 
-    // Waits. What the device has of the mesh and the host lacks, in units of the geometry's scale.
+    // Waits. Downloads the part of the mesh that the host lacks, in units of the geometry's scale.
     void download(Geometry& geometry, const VertexSlice& slice) const;
     void warn_of_faults(const std::string& accel) { gather_.warn_of_faults(accel); }
 

@@ -121,7 +121,7 @@ void WorldAccel::update_transforms(AccelHandle handle, std::span<const Transform
     found->second = std::move(moved);
 }
 
-// All is checked before anything moves.
+// Everything is checked before anything moves.
 void WorldAccel::set_origin(dvec3 origin) {
     check_finite(accel_.name(), "origin", origin);
     if (!accel_.options().can_move) fail(accel_.name(), ": set_origin: made with AccelOptions::can_move = false");

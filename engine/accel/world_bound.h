@@ -18,12 +18,12 @@ class WorldBoundKernel {
   public:
     explicit WorldBoundKernel(Context& context);
 
-    // Over `count` records, whose geometry blocks hold their boxes already.
+    // Covers `count` records, whose geometry blocks hold their boxes already.
     void record(Commands& commands, Ref<InstanceRecord> records, uint count) const;
 
-    // On the device, since the last record().
+    // Returns it on the device, as of the last record().
     Ref<WorldBound> result() const { return result_.ref<WorldBound>(); }
-    // The same on the host, once the commands given to the last record() are done.
+    // Returns it on the host, once the commands given to the last record() are done.
     WorldBound read() const;
 
   private:
@@ -31,7 +31,7 @@ class WorldBoundKernel {
     Buffer result_, bits_, readback_;
 };
 
-// The box around the instances of one sync, which is computed when somebody first asks for it.
+// The box around the instances of one sync, which is computed when it is first requested.
 class BoundOfSync {
   public:
     // The geometry blocks of the `count` records hold their boxes by the time the commands run. is_there: earlier
