@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where the memory of buffers comes from: an allocator of twinray's own, or the host's through two functions.
+// The source of buffers' memory: an allocator of twinray's own, or the application's through two functions.
 #pragma once
 
 #include <twinray/context.h>
@@ -10,24 +10,24 @@ namespace twinray {
 
 struct VulkanTable;
 
-// The one door through which buffers and images are made and freed.
+// Makes and frees all buffers and images.
 class Allocator {
   public:
-    // The host's. Throws Error if one hook is missing.
+    // Uses the application's allocator. Throws Error if one hook is missing.
     explicit Allocator(const AllocatorHooks& hooks);
-    // twinray's own.
+    // Uses twinray's own.
     Allocator(const VulkanTable& vk, VkInstance instance, VkPhysicalDevice physical_device, VkDevice device,
               std::uint32_t api_version, std::uint64_t block_bytes);
     ~Allocator();  // every buffer must have been freed
     Allocator(const Allocator&) = delete;
     Allocator& operator=(const Allocator&) = delete;
 
-    // Throws Error naming the buffer and its size when there is no memory or the host's hook breaks its promise.
+    // Throws Error naming the buffer and its size if there is no memory or the application's hook breaks its promise.
     AllocatedBuffer allocate(const BufferRequest& request);
     void free(const AllocatedBuffer& buffer, std::uint64_t bytes) noexcept;
 
     bool has_images() const { return hooks_.allocate_image && hooks_.free_image; }
-    // Likewise; has_images() must be true.
+    // The same for images; has_images() must be true.
     AllocatedImage allocate(const ImageRequest& request);
     void free(const AllocatedImage& image) noexcept;
 

@@ -33,7 +33,7 @@ VkBuffer new_buffer(const VulkanTable& vk, VkDevice device, std::uint64_t bytes,
     return buffer;
 }
 
-// The first type of those allowed that is the device's own.
+// Returns the first allowed type in the device's own memory.
 std::uint32_t memory_type(const Context::State& state, std::uint32_t allowed) {
     VkPhysicalDeviceMemoryProperties properties{};
     state.vk().vkGetPhysicalDeviceMemoryProperties(state.physical_device(), &properties);
@@ -67,7 +67,7 @@ VkDeviceMemory new_memory(const Context::State& state, std::uint32_t type, std::
     return memory;
 }
 
-// The driver owns a file descriptor that is imported, whatever fails then.
+// Returns a copy because the driver owns an imported file descriptor, whatever fails then.
 int copy_of(int fd) {
     if (fd < 0) return fd;
     const int copy = dup(fd);
@@ -80,8 +80,8 @@ void free_external(const Context::State& state, const ExternalBuffer& buffer) {
     state.vk().vkFreeMemory(state.device(), buffer.memory.memory, nullptr);
 }
 
-// The memory is to be exported, or, with fd >= 0, another has exported it and a copy of its file descriptor is
-// imported. Throws Error naming the buffer.
+// Makes memory to be exported or, with fd >= 0, imports a copy of the file descriptor of memory that another has
+// exported. Throws Error naming the buffer.
 ExternalBuffer make_external(Context& context, const BufferDesc& desc, VkBufferUsageFlags usage,
                              const ExportedMemory& imported) try {
     const Context::State& state = context.state();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How the library itself aligns buffers.
+// The alignment that the library itself uses for buffers.
 #pragma once
 
 #include <twinray/commands.h>
@@ -9,7 +9,7 @@
 
 namespace twinray {
 
-// Of the alignment of what is read a whole line at a time, on all CPUs that matter and most GPUs.
+// The alignment of data that is read a whole line at a time, on all CPUs that matter and most GPUs.
 inline constexpr std::uint64_t cache_line_bytes = 64;
 
 }  // namespace twinray

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The command buffers of Commands: how they begin, are submitted and timed.
+// The command buffers of Commands: their start, submission and timing.
 #include <algorithm>
 #include <utility>
 
@@ -23,7 +23,7 @@ VkCommandPool new_pool(Context& context) {
     return pool;
 }
 
-// Null where the queue has none.
+// Returns null if the queue has none.
 VkQueryPool new_timestamps(Context& context, VkCommandBuffer commands, std::uint32_t count) {
     if (context.state().timestamp_period_ns() == 0) return VK_NULL_HANDLE;
     VkQueryPoolCreateInfo info{};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The command buffers of which Commands are made.
+// The command buffers that Commands consists of.
 #pragma once
 
 #include "engine/core/buffer.h"
@@ -28,12 +28,12 @@ struct Commands::State {
     Context& context;
     std::string name;
     bool is_of_caller = false;
-    // What follows the commands besides twinray itself.
+    // The work that follows the commands besides twinray itself.
     VkPipelineStageFlags consumer_stages = VK_PIPELINE_STAGE_HOST_BIT;
     VkAccessFlags consumer_access = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
     SyncPoint done = {};
-    SyncPoint promised = {};               // what own commands will reach besides, where something counts on them
-    std::vector<Part> parts = {};          // of which the last is recorded into; none where beginning another failed
+    SyncPoint promised = {};               // another point that own commands will reach, if other work relies on it
+    std::vector<Part> parts = {};          // the last is recorded into; none if beginning another failed
     std::vector<PassTiming> earlier = {};  // of parts that were submitted before these
     std::uint64_t groups = 0;              // of the last part
     std::vector<Buffer> retained = {};

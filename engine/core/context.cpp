@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Forwards hosts' calls to Context::State, and checks a device that a host created.
+// Forwards applications' calls to Context::State, and checks a device that an application created.
 #include "engine/core/context.h"
 
 #include <algorithm>
@@ -33,7 +33,7 @@ void check_needs(const DeviceProperties& enabled) {
              "': not enabled (see DeviceRequirements::add_to and enabled_properties):", lacking);
 }
 
-// A host that tells what the driver supports, and not what it enabled, is found out where it can be.
+// Detects, where possible, an application that states what the driver supports instead of what it enabled.
 void check_claims(const DeviceProperties& told, const DeviceProperties& supported, const VulkanTable& vk) {
     if (const char* feature = feature_beyond(told, supported))
         fail("adopted device '", told.name, "': ", feature, " is told to be enabled but the device has none");

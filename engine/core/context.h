@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the library itself needs of a Context: Vulkan's functions, memory, pipelines, submissions.
+// The parts of a Context that the library itself needs: Vulkan's functions, memory, pipelines, submissions.
 #pragma once
 
 #include <deque>
@@ -16,13 +16,13 @@
 
 namespace twinray {
 
-// Returns what twinray may use of a device that somebody else created: the features of `adopted.enabled`, all other
-// properties from the driver. Throws Error, naming what the host has to change, unless twinray can run on the device:
-// something needed is not enabled, the queue family has no compute, or `enabled` claims what the device does not
-// support or the VkDevice was not created with. The handles must be set and the functions of all levels loaded.
+// Returns what twinray may use of a device that an application created: the features of `adopted.enabled`, all other
+// properties from the driver. Throws Error, naming what the application has to change, unless twinray can run on the
+// device: a needed feature is not enabled, the queue family has no compute, or `enabled` claims what the device does
+// not support or the VkDevice was not created with. The handles must be set and the functions of all levels loaded.
 DeviceProperties check_adoption(const AdoptedDevice& adopted, const VulkanTable& vk);
 
-// A primary command buffer, and what it records.
+// A primary command buffer, and its passes.
 struct Submission {
     VkCommandBuffer commands = VK_NULL_HANDLE;
     std::vector<PassWork> passes = {};  // for the error of a lost device, as the name with which it is submitted
@@ -33,7 +33,7 @@ struct Context::State {
     static constexpr std::uint64_t absent_bytes = 4096;  // of the memory at Context::absent
 
     explicit State(const ContextDesc& desc);
-    // Throws Error where check_adoption does.
+    // Throws Error if check_adoption does.
     explicit State(const AdoptedDevice& adopted);
     ~State();
     State(const State&) = delete;
@@ -45,8 +45,8 @@ struct Context::State {
     Allocator& allocator() const { return *allocator_; }
     VkPipelineCache pipeline_cache() const { return pipeline_cache_; }
     PipelineTable& pipelines() { return pipelines_; }
-    // Of all descriptor sets of images (engine/core/image_array.h); made by the first call. Any thread. Throws Error
-    // where the device has no image arrays.
+    // The layout of all descriptor sets of images (engine/core/image_array.h); the first call makes it. Any thread.
+    // Throws Error if the device has no image arrays.
     VkDescriptorSetLayout image_array_layout();
     std::uint32_t queue_family() const { return queue_family_; }
     const KernelWatch& watch() const { return watch_; }                 // ContextDesc::watch_kernels
@@ -59,19 +59,19 @@ struct Context::State {
     // Stages and accesses of everything that twinray records; used by its barriers.
     VkPipelineStageFlags stages() const;
 
-    // Submits them one after the other, all or none; returns the point at which the last is done. Frees what has been
-    // passed.
-    // `promised`: of promise(), or 0.
+    // Submits them one after the other, all or none; returns the point at which the last is done. Frees resources that
+    // the GPU has passed.
+    // `promised`: the point from promise(), or 0.
     SyncPoint submit(const std::string& name, std::vector<Submission> submissions, std::uint64_t promised = 0);
-    // A point that commands will reach which are not submitted yet. They must be submitted with it, in the order in
-    // which points were promised, or given up.
+    // Returns a point that commands will reach which are not submitted yet. They must be submitted with it, in the
+    // order of the promises, or given up.
     SyncPoint promise();
     void give_up(std::uint64_t promised) noexcept;
-    // Whether no other commands are to be submitted before.
+    // Returns whether no other commands are to be submitted before.
     bool is_due(std::uint64_t promised) const { return promised_.is_due(promised); }
-    // Throws Error for such a point whose commands are not submitted yet, or never will be.
+    // Throws Error for a promised point whose commands are not submitted yet, or never will be.
     void check_submitted(SyncPoint point) const;
-    // Context says what these do.
+    // See Context.
     void wait_before_next_submission(SyncPoint point, VkPipelineStageFlags stages = VK_PIPELINE_STAGE_ALL_COMMANDS_BIT);
     SyncPoint last_submission() const { return {timeline_, submitted_}; }
     bool is_reached(SyncPoint point) const;
@@ -83,9 +83,9 @@ struct Context::State {
     // Runs `destroy` when everything submitted or announced so far is done.
     void retire(std::function<void()> destroy);
 
-    // Throws DeviceLost, which says what was in flight and what the driver says of it, once the device has been lost.
+    // Throws DeviceLost, with the work in flight and the driver's report, once the device has been lost.
     void check_alive() const;
-    // vk_check for what may report the loss of the device, which is remembered.
+    // Like vk_check for calls that may report the loss of the device, which is remembered.
     void check(VkResult result, const char* action) const;
 
     void warn(std::string_view message) const;
@@ -155,7 +155,7 @@ struct Context::State {
     mutable SubmissionLog submission_log_;
     VkSemaphore promised_timeline_ = VK_NULL_HANDLE;  // made by the first promise
     PromisedPoints promised_;
-    // What the driver says of a lost device, once it was asked.
+    // The driver's report on a lost device, once it was asked.
     mutable std::optional<std::string> fault_;
     std::vector<Wait> awaited_;  // by the next submission
     float timestamp_period_ns_ = 0;

@@ -25,10 +25,10 @@ bool is_that(const VkExtensionProperties& extension) {
     return std::strcmp(extension.extensionName, extension_name) == 0;
 }
 
-// Lets the driver tell what it made of pipelines (VK_KHR_pipeline_executable_properties).
+// Makes the driver report on pipelines (VK_KHR_pipeline_executable_properties).
 class StatisticsFeature {
   public:
-    // Does nothing where the device has no such thing. `info` refers to this object until vkCreateDevice. Once.
+    // Does nothing if the device lacks the extension. `info` refers to this object until vkCreateDevice. Call it once.
     void add_to(VkDeviceCreateInfo& info, const VulkanTable& vk, VkPhysicalDevice device) {
         if (std::ranges::none_of(device_extensions(vk, device), is_that)) return;
         feature_.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR;
@@ -171,7 +171,7 @@ Context::State::~State() {
         destroy_everything();
         return;
     }
-    // Destroying what a hung device still runs would wait for it, or take its memory away: it is left as it is.
+    // Destroying resources that a hung device still uses would wait for it, or take its memory away: they are left.
     static_cast<void>(allocator_.release());
     static_cast<void>(new std::deque<Retired>(std::move(retired_)));
 }
@@ -247,7 +247,7 @@ void Context::State::create_own_objects(const AllocatorHooks& allocator, const s
     if (!pipeline_cache_) create_pipeline_cache(PipelineStore(pipeline_folder, properties.properties));
 }
 
-// Each pair of words is the address again, so that what is absent has only absent parts.
+// Each pair of words is the address again, so that absent data has only absent parts.
 void Context::State::create_absent() {
     absent_memory_ = allocator_->allocate(
         {"absent", absent_bytes, VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
@@ -273,7 +273,7 @@ void Context::State::create_pipeline_cache(const PipelineStore& store) {
     kept_pipeline_bytes_ = kept.size();
 }
 
-// Caches only grow: as many bytes are the same.
+// Caches only grow: an equal size means equal contents.
 void Context::State::keep_pipelines() noexcept {
     std::size_t size = 0;
     if (pipeline_store_.file().empty() || !owns_pipeline_cache_ || is_lost_) return;

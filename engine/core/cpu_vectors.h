@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: MIT
-// Facts about Mesa's driver for CPUs, and about the CPU that it runs on.
+// Facts about Mesa's CPU driver, and about the CPU that it runs on.
 #pragma once
 
 #include <twinray/context.h>
 
 namespace twinray {
 
-// Whether this is a CPU with AVX-512 (F, BW, DQ, VL) that the system lets programs use.
+// Returns whether this is a CPU with AVX-512 (F, BW, DQ, VL) that the system lets programs use.
 bool has_512_bit_vectors();
 
-// The release of Mesa that a device's driver is of, where it is lavapipe: 25, 26; else 0.
+// Returns the release of Mesa if the device's driver is lavapipe: 25, 26; else 0.
 int lavapipe_release(const DeviceProperties& device);
 
-// Whether the driver of a CPU computes with vectors of any width (LP_NATIVE_VECTOR_WIDTH): Mesa's did below 26. From 26
-// on its own builds of acceleration structures crash at widths other than the one that it chooses.
+// Returns whether the driver of a CPU computes with vectors of any width (LP_NATIVE_VECTOR_WIDTH): Mesa's did below 26.
+// From 26 on its own builds of acceleration structures crash at widths other than the one that it chooses.
 bool takes_any_vector_width(const DeviceProperties& device);
 
 }  // namespace twinray

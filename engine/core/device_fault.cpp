@@ -59,7 +59,7 @@ DeviceFault query_device_fault(const VulkanTable& vk, VkDevice device) {
     info.sType = VK_STRUCTURE_TYPE_DEVICE_FAULT_INFO_EXT;
     info.pAddressInfos = fault.addresses.data();
     info.pVendorInfos = fault.vendor.data();
-    // Incomplete where it has become more since.
+    // The result is incomplete if there are more by now.
     const VkResult result = vk.vkGetDeviceFaultInfoEXT(device, &counts, &info);
     if (result != VK_SUCCESS && result != VK_INCOMPLETE) return {};
     fault.description = info.description;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a driver says of a device that it lost (VK_EXT_device_fault).
+// The driver's report on a device that it lost (VK_EXT_device_fault).
 #pragma once
 
 #include <string>
@@ -17,11 +17,11 @@ struct DeviceFault {
     std::vector<VkDeviceFaultVendorInfoEXT> vendor = {};
 };
 
-// Of a lost device; empty where the driver does not tell.
+// Queries a lost device; returns an empty fault if the driver does not tell.
 DeviceFault query_device_fault(const VulkanTable& vk, VkDevice device);
 
-// "; the driver says: 'ring hang', invalid read at 0x1200 to 0x12ff, 'engine' (code 0x7, data 0x1)"; empty where that
-// is nothing.
+// Formats it: "; the driver says: 'ring hang', invalid read at 0x1200 to 0x12ff, 'engine' (code 0x7, data 0x1)"; empty
+// if there is nothing.
 std::string sentence(const DeviceFault& fault);
 
 }  // namespace twinray

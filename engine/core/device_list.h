@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A list that kernels append to, made longer and filled again where it was too short.
+// A list that kernels append to; if it is too short, it is made longer and filled again.
 #pragma once
 
 #include <functional>
@@ -12,10 +12,10 @@ namespace twinray {
 #include "shaders/shared/list.h"
 #include "twinray/glsl/cpp_end.h"
 
-// A buffer of at least so many bytes; what it held is lost where it grows.
+// Makes a buffer of at least so many bytes; its contents are lost if it grows.
 void grow(Context& context, Buffer& buffer, const char* name, std::uint64_t bytes);
 
-// A list in device memory to which kernels append (shaders/shared/list.h), with room for the most so far.
+// A list in device memory to which kernels append (shaders/shared/list.h), with room for the largest number so far.
 class DeviceList {
   public:
     static constexpr std::uint64_t default_limit = 1u << 27;
@@ -29,9 +29,9 @@ class DeviceList {
     };
     // Appends what `record(commands, list, first, count)` finds for some of `items` items.
     using Record = std::function<void(Commands&, const View&, std::uint64_t, std::uint64_t)>;
-    // Has `record` append for all items, submits and waits: again with room for all where there was too little. Returns
-    // how many elements there are. Throws Error, beginning with `action`, that says so where they are more than the
-    // limit.
+    // Calls `record` to append for all items, submits and waits; if there was too little room, does so again with
+    // enough. Returns the number of elements. If it exceeds the limit, throws Error, beginning with `action`, that
+    // names it.
     std::uint64_t fill(const Record& record, std::uint64_t items, std::uint64_t expected, const std::string& action);
     const Buffer& buffer() const { return elements_; }
 

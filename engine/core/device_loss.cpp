@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Context's device when it is lost.
+// The loss of Context's device.
 #include "engine/core/context.h"
 #include "engine/core/device_fault.h"
 #include "engine/core/error.h"

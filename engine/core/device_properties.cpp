@@ -65,8 +65,8 @@ constexpr FeatureBit bits[] = {
           offsetof(VkPhysicalDeviceFaultFeaturesEXT, deviceFault)),
 };
 
-// One struct for each feature. Unlike those of a whole Vulkan version they may stand in any chain that does not hold
-// the feature already.
+// One struct for each feature. Unlike those of a whole Vulkan version they may be in any chain that does not hold the
+// feature already.
 struct FeatureStructs {
     VkPhysicalDeviceFeatures2 core{};
     VkPhysicalDeviceTimelineSemaphoreFeatures timeline{};
@@ -90,7 +90,7 @@ struct FeatureStructs {
         fault.sType = type_of_fault;
     }
 
-    // The struct of a type; null if none of these.
+    // Returns the struct of a type; null if it is not one of these.
     VkBaseOutStructure* find(VkStructureType type) {
         void* all[] = {&core, &timeline, &address, &layout, &indexing, &structure, &query, &pipeline, &fault};
         for (void* node : all)
@@ -109,14 +109,14 @@ bool has_extension(const VkDeviceCreateInfo& info, const char* name) {
     return false;
 }
 
-// The bit of a feature in a device's info. Where its chain does not hold the feature, a struct of `ours` is put before
-// the chain.
+// Returns the bit of a feature in a device's info. If its chain does not hold the feature, a struct of `ours` is put
+// before the chain.
 VkBool32& provide_bit(VkDeviceCreateInfo& info, FeatureStructs& ours, const FeatureBit& bit) {
     auto* chain = static_cast<VkBaseOutStructure*>(const_cast<void*>(info.pNext));
     if (VkBool32* found = find_bit(chain, bit)) return *found;
     VkBaseOutStructure* added = ours.find(bit.own);
     if (bit.own == type_of_core && info.pEnabledFeatures) {
-        // Vulkan forbids the one beside the other.
+        // Vulkan does not allow both.
         ours.core.features = *info.pEnabledFeatures;
         info.pEnabledFeatures = nullptr;
     }

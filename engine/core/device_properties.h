@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a Vulkan device can do, asked of its driver, and what to switch on when one is created.
+// Queries a Vulkan device's properties from its driver, and lists the features to enable when one is created.
 #pragma once
 
 #include <cstddef>
@@ -18,21 +18,21 @@ struct FeatureBit {
     const char* name;
     VkStructureType own;  // the struct of the feature alone, and where in it
     std::size_t own_offset;
-    VkStructureType gathered;  // the struct of the Vulkan version that took the feature in; `own` where none has
+    VkStructureType gathered;  // the struct of the Vulkan version that includes the feature; `own` if none does
     std::size_t gathered_offset;
 };
 std::span<const FeatureBit> feature_bits();
 
-// The bit of a feature in whichever struct of a chain holds it; null if none does.
+// Returns the bit of a feature in the struct of a chain that holds it; null if none does.
 VkBool32* find_bit(VkBaseOutStructure* chain, const FeatureBit& bit);
 
-// Which features and extensions a device has that was created with `info`; the other properties stay.
+// Sets the features and extensions of a device that was created with `info`; the other properties stay.
 void state_features(const VkDeviceCreateInfo& info, DeviceProperties& properties);
 
-// The first feature that `told` has and `supported` lacks; null if there is none.
+// Returns the first feature that `told` has and `supported` lacks; null if there is none.
 const char* feature_beyond(const DeviceProperties& told, const DeviceProperties& supported);
 
-// Asks the driver. Functions of the instance level must be loaded.
+// Queries the driver. Functions of the instance level must be loaded.
 DeviceProperties query_device_properties(const VulkanTable& vk, VkPhysicalDevice device);
 std::vector<VkPhysicalDevice> physical_devices(const VulkanTable& vk, VkInstance instance);
 std::vector<VkExtensionProperties> device_extensions(const VulkanTable& vk, VkPhysicalDevice device);

@@ -10,7 +10,7 @@
 namespace twinray {
 namespace {
 
-// Blocks of the heap are their handles; so many bits apart, addresses do not run into each other soon.
+// Blocks of the heap are their handles; with so many bits between them, addresses are unlikely to overlap.
 constexpr unsigned address_shift = 8;
 
 template <class Handle>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What kernels compiled with TWINRAY_DEBUG were refused, told to the host.
+// Reports to the host the invalid accesses of kernels compiled with TWINRAY_DEBUG.
 #pragma once
 
 #include <cstring>
@@ -19,13 +19,13 @@ class FaultLog {
     }
 
     Ref<Faults> on_device() const { return buffer_.ref<Faults>(); }
-    // What kernels noted that the GPU is done with.
+    // Returns the faults noted by kernels that the GPU is done with.
     Faults read() const {
         Faults faults;
         std::memcpy(&faults, buffer_.mapped(), sizeof faults);
         return faults;
     }
-    // While no kernel runs that may write.
+    // No kernel may run meanwhile that may write.
     void clear() { std::memset(buffer_.mapped(), 0, sizeof(Faults)); }
 
   private:

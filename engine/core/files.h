@@ -14,11 +14,11 @@ namespace twinray {
 
 using Bytes = std::vector<std::uint8_t>;
 
-// The whole file. Throws Error naming it when it is missing, not a regular file or cannot be read.
+// Reads the whole file. Throws Error naming it if it is missing, not a regular file or unreadable.
 Bytes read_file(const std::filesystem::path& file);
 
 // Makes the file whole or not at all: `write` makes it under another name in the same folder, and it is renamed at the
-// end. Throws Error naming the file; what was there before is then still there.
+// end. Throws Error naming the file; an existing file is then unchanged.
 void write_whole(const std::filesystem::path& file, const std::function<void(const std::filesystem::path&)>& write);
 
 // Writes the pieces, one after the other, by write_whole().

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What needs float64 says so before it makes a kernel.
+// Checks for float64 before code that needs it makes a kernel.
 #pragma once
 
 #include <string_view>
@@ -9,7 +9,7 @@
 
 namespace twinray {
 
-// The context. Throws Error, beginning with `what` needs it, where the device has no float64.
+// Returns the context. Throws Error, beginning with `what` needs it, if the device has no float64.
 inline Context& with_float64(Context& context, std::string_view what) {
     if (!context.properties().shader_float64)
         fail(what, " need float64 (shaderFloat64), which device '", context.properties().name, "' has not enabled");

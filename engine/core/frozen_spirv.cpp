@@ -60,7 +60,7 @@ class Freezer {
         return given == given_.end() ? standard : given->second;
     }
 
-    // A constant of the type and id of an instruction.
+    // Defines a constant with the type and id of an instruction.
     void define(Words instruction, std::uint32_t value) {
         const std::uint32_t type = instruction[1], id = instruction[2];
         if (booleans_.contains(type) || numbers_.contains(type)) known_[id] = value;

@@ -10,8 +10,8 @@
 
 namespace twinray {
 
-// The module with these values, and its own defaults, in place of its specialisation constants and of what is computed
-// of them.
+// Returns the module with these values, and its own defaults, in place of its specialisation constants and of
+// expressions that depend only on them.
 std::vector<std::uint32_t> freeze_constants(std::span<const std::uint32_t> spirv,
                                             std::span<const SpecializationConstant> constants);
 

@@ -45,8 +45,8 @@ VkSampler Samplers::get(const Kind& kind) {
     return samplers_[kind] = sampler;
 }
 
-// A variable count takes no more than it has; the limit is for update-after-bind descriptors, of which devices have at
-// least 500 000, though none is updated after it was bound.
+// A variable count uses only as many as there are; the limit is for update-after-bind descriptors, of which devices
+// have at least 500 000, though none is updated after it was bound.
 VkDescriptorSetLayout Context::State::image_array_layout() {
     const std::lock_guard lock(image_array_mutex_);
     if (image_array_layout_) return image_array_layout_;
@@ -139,7 +139,7 @@ void SampledImage::upload(Commands& commands, std::span<const std::vector<std::b
     Buffer staging(*context_, {.name = "staging for " + desc_.name, .bytes = bytes, .memory = Memory::upload});
     for (std::size_t level = 0; level < levels.size(); ++level)
         std::memcpy(staging.mapped() + regions[level].bufferOffset, levels[level].data(), levels[level].size());
-    // What it held is overwritten: its old layout does not matter.
+    // Its contents are overwritten: the old layout does not matter.
     change_layout(commands, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
     context_->state().vk().vkCmdCopyBufferToImage(commands.handle(), staging.handle(), made_.image,
                                                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,

@@ -11,7 +11,7 @@
 
 namespace twinray {
 
-// Samplers, one for each kind that is asked for: devices have few (4000 at least).
+// Samplers, one for each kind in use: devices have few (4000 at least).
 class Samplers {
   public:
     explicit Samplers(Context& context) : context_(context) {}
@@ -39,17 +39,17 @@ struct SampledImageDesc {
     VkSampler sampler = VK_NULL_HANDLE;
 };
 
-// One image with its mipmaps and the sampler that it is read by. Move-only; destroyed after all work submitted so far.
+// One image with its mipmaps and its sampler. Move-only; destroyed after all work submitted so far.
 class SampledImage {
   public:
     SampledImage() = default;
-    // Throws Error naming the image when memory is out.
+    // Throws Error naming the image if there is not enough memory.
     SampledImage(Context& context, const SampledImageDesc& desc);
     ~SampledImage();
     SampledImage(SampledImage&& other) noexcept;
     SampledImage& operator=(SampledImage&& other) noexcept;
 
-    // Within a pass: replaces the texels of all levels, tightly packed each. What follows the pass sees them.
+    // Within a pass: replaces the texels of all levels, tightly packed each. Later passes see them.
     void upload(Commands& commands, std::span<const std::vector<std::byte>> levels);
 
     VkDescriptorImageInfo descriptor() const {
@@ -67,14 +67,14 @@ class SampledImage {
     VkImageView view_ = VK_NULL_HANDLE;
 };
 
-// Set 0, binding 0 of kernels made with KernelDesc::has_images. Written once, when it is made: where an image is
+// Set 0, binding 0 of kernels made with KernelDesc::has_images. It is written once, when it is made: if an image is
 // replaced, another array is made, so that work in flight keeps its own.
 class ImageArray {
   public:
     static constexpr std::uint32_t max_images = 65536;
 
     ImageArray() = default;
-    // Throws Error when there are none or too many. The images must outlive all work that uses the array.
+    // Throws Error if there are none or too many. The images must outlive all work that uses the array.
     ImageArray(Context& context, std::span<const VkDescriptorImageInfo> images);
     ~ImageArray();
     ImageArray(ImageArray&& other) noexcept;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// JSON of files that anybody may have written.
+// Parses JSON of untrusted files.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,10 @@
 
 namespace twinray {
 
-// nlohmann's writer, copies and comparisons, and tinygltf, recurse; files of ours and of others stay under 15 levels.
+// nlohmann's writer, copies and comparisons, and tinygltf, recurse; usual files have fewer than 15 levels.
 inline constexpr int most_json_levels = 100;
 
-// Parses as Json::parse does, whose exceptions go through. Throws Error where it is nested deeper.
+// Parses like Json::parse, whose exceptions go through. Throws Error if it is nested deeper.
 template <class Json, class Source>
 Json parse_json(Source&& source) {
     return Json::parse(std::forward<Source>(source), [](int depth, auto, auto&) {
@@ -22,7 +22,7 @@ Json parse_json(Source&& source) {
     });
 }
 
-// Json::get() wraps what is negative and casts fractions, also those beyond the range. Throws Error naming the value.
+// Json::get() wraps negative numbers and casts fractions, also beyond the range. Throws Error naming the value.
 template <class T, class Json>
 T unsigned_of(const Json& json) {
     constexpr T most = std::numeric_limits<T>::max();

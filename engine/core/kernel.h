@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What kernels share with the ray tracing pipeline.
+// The common part of kernels and the ray tracing pipeline.
 #pragma once
 
 #include "engine/core/commands.h"
@@ -9,8 +9,8 @@ namespace twinray {
 
 static_assert(KernelLimits::push_constant_bytes == 128);
 
-// The driver gets what these values of its specialisation constants leave of the module. It takes a fraction of the
-// time for that; some drivers compile even what a constant switches off.
+// Gives the driver only the part of the module that these specialisation constants leave. It takes a fraction of the
+// time for that; some drivers compile even code that a constant switches off.
 VkShaderModule create_shader_module(Context& context, std::span<const std::uint32_t> spirv,
                                     std::span<const SpecializationConstant> constants, const std::string& name);
 VkPipelineLayout create_push_constant_layout(Context& context, VkShaderStageFlags stages, std::uint32_t bytes,

@@ -22,7 +22,7 @@ struct Member {
     std::uint32_t type = 0, offset = 0;
 };
 
-// The declarations of a module, which stand before its functions.
+// The declarations of a module, which precede its functions.
 class Declarations {
   public:
     explicit Declarations(Words module) {
@@ -77,7 +77,7 @@ class Declarations {
     std::uint32_t pushed_ = 0;
 };
 
-// True where the host has memory.
+// Returns whether the host has memory there.
 bool is_mapped(std::uint64_t address) {
     const auto page = static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
     return msync(reinterpret_cast<void*>(address / page * page), 1, MS_ASYNC) == 0;

@@ -13,7 +13,7 @@
 namespace twinray {
 namespace {
 
-// Drivers of GPUs that have such an instruction and no other for fma(); Vulkan allows two roundings.
+// Returns whether the GPU driver has such an instruction and no other for fma(); Vulkan allows two roundings.
 bool has_fused_fma(std::uint32_t driver) {
     switch (driver) {
         case VK_DRIVER_ID_MESA_RADV:
@@ -30,8 +30,8 @@ TuningRow row_of(const DeviceProperties& device) {
     return device.driver_id == VK_DRIVER_ID_MESA_LLVMPIPE ? TuningRow::cpu_driver : TuningRow::gpu;
 }
 
-// A core goes through its groups one by one, so that a group is one vector, and a run of rays of one lane finds in the
-// caches what the rays before it met. Shared memory is memory as any other.
+// A core goes through its groups one by one, so that a group is one vector, and a run of rays of one lane finds the
+// data of earlier rays in the caches. Shared memory is ordinary memory.
 void shape_for_cpu_driver(KernelTuning& tuning, const DeviceProperties& device) {
     constexpr std::uint32_t counters = CPU_GROUP << SORT_CPU_DIGIT_BITS;
     tuning.threads = std::max(device.cpu_threads, 1u);
@@ -42,11 +42,11 @@ void shape_for_cpu_driver(KernelTuning& tuning, const DeviceProperties& device) 
     tuning.has_wide_loads = device.shader_int64;
     tuning.compares_numbers = true;
     tuning.leaves_per_invocation = 256;
-    // As many as fit a core's second cache with their records, half a MiB.
+    // As many leaves and records as fit into a core's second-level cache, half a MiB.
     tuning.subtree_leaves = 4096;
     tuning.sort_threads = device.shared_bytes < counters * sizeof(std::uint32_t) ? 0 : tuning.threads;
-    // Memory comes from the operating system page by page, at 2.6 us each (measured on a virtual machine), when it is
-    // touched first: a block costs only what was used of it, but keeps that while anything lies in it.
+    // The operating system provides memory page by page, at 2.6 us each (measured on a virtual machine), at the first
+    // access: a block costs only its used part, but keeps that while any buffer is in it.
     tuning.memory_block_bytes = std::uint64_t{2} << 30;
     tuning.most_submission_seconds = 0;
 }

@@ -12,9 +12,9 @@
 
 namespace twinray {
 
-// Calls body(begin, end) for disjoint ranges that cover [0, count), on `threads` threads (0: one per core).
-// Ranges are handed out in any order, so a body must write only what belongs to its range: results then do not
-// depend on the thread count. The first exception of a body is thrown here, after all threads have ended.
+// Calls body(begin, end) for disjoint ranges that cover [0, count), on `threads` threads (0: one per core). Ranges are
+// handed out in any order, so a body must write only within its range: results then do not depend on the thread count.
+// The first exception of a body is thrown here, after all threads have ended.
 template <class Body>
 void parallel_for(std::size_t count, const Body& body, unsigned threads = 0) {
     if (count == 0) return;

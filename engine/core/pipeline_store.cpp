@@ -30,7 +30,7 @@ bool is_ours(const fs::path& file) {
     return name.starts_with(prefix) && name.ends_with(suffix);
 }
 
-// Whether data of a pipeline cache begins with the header of this driver (VkPipelineCacheHeaderVersionOne).
+// Returns whether data of a pipeline cache begins with the header of this driver (VkPipelineCacheHeaderVersionOne).
 bool is_of_driver(std::span<const std::byte> pipelines, const VkPhysicalDeviceProperties& driver) {
     VkPipelineCacheHeaderVersionOne header;
     if (pipelines.size() < sizeof header) return false;

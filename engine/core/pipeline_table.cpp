@@ -9,7 +9,7 @@
 namespace twinray {
 namespace {
 
-// Of twinray/glsl/common.glsl.
+// The constants of twinray/glsl/common.glsl.
 constexpr std::uint32_t fused_fma_constant = 105, compares_numbers_constant = 106;
 
 std::string key_of(const KernelDesc& desc, std::uint32_t args_bytes) {
@@ -69,7 +69,7 @@ std::shared_ptr<CompiledKernel> compile(Context& context, const KernelDesc& desc
     return kernel;
 }
 
-// Compiles unlocked: if two threads compile the same, the first one's is taken.
+// Compiles unlocked: if two threads compile the same, the first result is used.
 std::shared_ptr<CompiledKernel> PipelineTable::get(Context& context, const KernelDesc& desc, std::uint32_t args_bytes) {
     std::string key = key_of(desc, args_bytes);
     if (std::shared_ptr<CompiledKernel> kernel = find(key)) return kernel;
@@ -96,7 +96,7 @@ void PipelineTable::give_back(Context& context, std::shared_ptr<CompiledKernel> 
     if (gone) context.state().retire([gone] {});
 }
 
-// Null while there are not too many.
+// Returns null while there are not too many.
 std::shared_ptr<CompiledKernel> PipelineTable::take_oldest_unused() {
     std::size_t unused = 0;
     auto oldest = entries_.end();

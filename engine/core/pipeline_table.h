@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The compute pipelines of a device: whoever runs the same kernel shares one.
+// The compute pipelines of a device; equal kernels share one.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ struct KernelAddress {
     std::uint32_t offset = 0;
 };
 
-// Destroys what it holds when the last who shares it lets go: not before the GPU is done with it.
+// Destroys its pipeline when its last owner releases it: not before the GPU is done with it.
 struct CompiledKernel {
     CompiledKernel(const VulkanTable& functions, VkDevice owner) : vk(functions), device(owner) {}
     ~CompiledKernel();
@@ -41,22 +41,22 @@ enum class Telling : std::uint8_t {
     nothing,
     statistics,  // for vkGetPipelineExecutableStatisticsKHR, and beside the context's pipeline cache
 };
-// Throws Error naming the kernel where it cannot be compiled. Any thread.
+// Throws Error naming the kernel if it cannot be compiled. Any thread.
 std::shared_ptr<CompiledKernel> compile(Context& context, const KernelDesc& desc, std::uint32_t args_bytes,
                                         Telling telling);
 
-// Keeps pipelines beyond the kernels that were made with them, so that the next accelerator, say, compiles nothing. A
-// driver may also compile a part at the first dispatch (Mesa's for CPUs does, about 1 ms a kernel), which no pipeline
-// cache spares.
+// Keeps pipelines beyond the kernels that were made with them, so that, for example, the next accelerator compiles
+// nothing. A driver may also compile a part at the first dispatch (Mesa's for CPUs does, about 1 ms per kernel), which
+// no pipeline cache avoids.
 class PipelineTable {
   public:
     static constexpr std::size_t most_unused = 256;
 
-    // The pipeline for this SPIR-V, these constants and this size of push constants; compiled if it is the first.
-    // Throws Error naming the kernel where it cannot be. Any thread.
+    // Returns the pipeline for this SPIR-V, these constants and this size of push constants; compiles the first. Throws
+    // Error naming the kernel if it cannot be compiled. Any thread.
     std::shared_ptr<CompiledKernel> get(Context& context, const KernelDesc& desc, std::uint32_t args_bytes);
-    // What a kernel had that is no more. Those that have been unused for longest go where they are more than
-    // most_unused. By the thread that uses the context.
+    // Takes the pipeline of a destroyed kernel. Those unused for longest are destroyed if there are more than
+    // most_unused. Called by the thread that uses the context.
     void give_back(Context& context, std::shared_ptr<CompiledKernel> kernel);
     std::size_t size() const;
     void clear();

@@ -11,11 +11,11 @@ namespace twinray {
 class PromisedPoints {
   public:
     std::uint64_t promise() { return ++promised_; }
-    // Whether no other commands are to be submitted before.
+    // Returns whether no other commands are to be submitted before.
     bool is_due(std::uint64_t point) const { return point == passed_ + 1; }
     bool is_passed(std::uint64_t point) const { return point <= passed_; }
     std::uint64_t last_passed() const { return passed_; }
-    // What commands signal that are due: with those behind them that nobody will submit.
+    // Returns the value that due commands signal: it includes those behind them that nobody will submit.
     std::uint64_t value_of(std::uint64_t point) const {
         while (given_up_.contains(point + 1)) ++point;
         return point;
@@ -28,7 +28,7 @@ class PromisedPoints {
         given_up_.insert(point);
         lost_.insert(point);
     }
-    // Whether its commands were given up: what counted on them never came to be.
+    // Returns whether its commands were given up: work that relied on them never happened.
     bool is_lost(std::uint64_t point) const { return lost_.contains(point); }
 
   private:

@@ -65,7 +65,7 @@ class Pruner {
         for (std::size_t place = begin; place < end; place += words_of(module_[place])) visit(place, at(place));
     }
 
-    // False: of a kind whose parts refer to each other in ways that are not followed here.
+    // Returns false for a module whose parts refer to each other in ways that are not followed here.
     bool read() {
         std::size_t place = spirv::header_words;
         for (; place < module_.size() && op_at(place) != Op::Function; place += words_of(module_[place]))
@@ -130,7 +130,7 @@ class Pruner {
         return place;
     }
 
-    // The value that was put where an instruction takes one out; the instruction's own result where nothing is known.
+    // Returns the value that was put where an instruction takes one out; the instruction's own result if it is unknown.
     Id part_of(Words extract) const {
         Id part = same_[extract[3]];
         for (const std::uint32_t number : extract.subspan(4)) {
@@ -170,7 +170,7 @@ class Pruner {
         }
     }
 
-    // The block that a known condition leads to. Branches back to the head of a loop stay, since a loop must have one.
+    // Returns the block that a known condition leads to. Branches back to a loop's head stay: a loop must have one.
     std::optional<Id> only_successor(const Block& block) const {
         const Words branch = at(block.last);
         if (op_of(branch[0]) != Op::BranchConditional || !known(branch[1])) return {};
@@ -178,7 +178,7 @@ class Pruner {
         return *known(branch[1]) ? branch[2] : branch[3];
     }
 
-    // The blocks that words of a terminator name; a case of a switch may name one by chance.
+    // Returns the blocks that words of a terminator name; a case of a switch may name one by chance.
     std::vector<std::size_t> successors(const Function& function, const Block& block) const {
         if (const std::optional<Id> only = only_successor(block)) return {index_[*only]};
         std::vector<std::size_t> found;
@@ -188,7 +188,7 @@ class Pruner {
         return found;
     }
 
-    // Booleans and whole numbers that follow from those that are known. False: there was none.
+    // Derives booleans and whole numbers from known ones. Returns false if there were none.
     bool learn(const Function& function) {
         bool has_learnt = false;
         for (const Block& block : function.blocks) {
@@ -215,7 +215,7 @@ class Pruner {
         return a && b && c ? spirv::evaluate(op, *a, *b, *c) : std::nullopt;
     }
 
-    // A loop may carry a value round unchanged.
+    // A loop may pass a value around unchanged.
     std::optional<std::uint32_t> value_of_phi(const Function& function, const Block& block, Words phi) const {
         std::optional<std::uint32_t> value;
         for (std::size_t i = 3; i < phi.size(); i += 2) {
@@ -258,7 +258,7 @@ class Pruner {
         }
     }
 
-    // An instruction of a function has a result where its first operand is a type.
+    // An instruction of a function has a result if its first operand is a type.
     void note_results(std::size_t begin, std::size_t end) {
         each(begin, end, [&](std::size_t, Words instruction) {
             if (op_of(instruction[0]) == Op::Label) is_gone_[instruction[1]] = true;
@@ -309,7 +309,7 @@ class Pruner {
         put(words);
     }
 
-    // The continue target of a loop whose body never gets there.
+    // Returns the continue target of a loop whose body never gets there.
     std::optional<Id> unreachable_back_edge(const Function& function, const Block& block) const {
         if (block.merge == none || op_at(block.merge) != Op::LoopMerge) return {};
         const Block& target = function.blocks[index_[at(block.merge)[2]]];

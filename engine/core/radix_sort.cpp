@@ -50,8 +50,8 @@ RadixSort::RadixSort(Context& context, uint threads)
       scatter_(context, scatter_kernel(threads, false)),
       scatter_places_(context, scatter_kernel(threads, true)) {}
 
-// Room for the counters of as many groups as groups_of() says, or more, and for what they keep. Subadditive, as shares
-// of a batch are added up.
+// Room for the counters of at least as many groups as groups_of() says, and for the data that they keep. Subadditive,
+// because shares of a batch are added up.
 std::uint64_t RadixSort::counter_bytes(std::uint64_t count, uint threads) {
     const std::uint64_t blocks =
         threads ? std::min(divide_up(count, SORT_CPU_BLOCK), divide_up(count, CPU_GROUP * SORT_LONGEST_RUN) + threads)
@@ -85,7 +85,7 @@ RadixSort::Pairs RadixSort::record(Commands& commands, Pairs pairs, Pairs spare,
     return record_passes(commands, scatter_, pairs.keys, pairs, spare, counters, count, bits, if_counts);
 }
 
-// One item is sorted, too: its value is to be written.
+// A single item is also sorted, because its value must be written.
 RadixSort::Pairs RadixSort::record_iota(Commands& commands, Uints keys, Pairs pairs, Pairs spare, Uints counters,
                                         std::uint32_t count, std::uint32_t bits, const Counts* if_counts) const {
     if (count == 0) return pairs;

@@ -27,9 +27,9 @@ class RadixSort {
         return counter_bytes(count, tuning.sort_threads);
     }
 
-    // Sorts `pairs` by keys whose lowest `bits` bits alone may differ, using `spare` as the other half of the
-    // ping-pong; returns which of the two holds the result. `if_counts`: dispatches as many groups as it says, see
-    // below.
+    // Sorts `pairs` by keys that differ only in their lowest `bits` bits, using `spare` as the other half of the
+    // ping-pong; returns the one of the two that holds the result. `if_counts`: dispatches as many groups as it says,
+    // see below.
     struct Counts {
         const Buffer& buffer;
         std::uint64_t sort,
@@ -37,20 +37,20 @@ class RadixSort {
     };
     Pairs record(Commands& commands, Pairs pairs, Pairs spare, Uints counters, std::uint32_t count, std::uint32_t bits,
                  const Counts* if_counts = nullptr) const;
-    // The same of pairs whose values are 0, 1, 2, ..., which need not have been written. `keys` are not changed, unless
-    // they are those of `pairs`; they must not be those of `spare`. At least one bit.
+    // The same for pairs whose values are 0, 1, 2, ..., which need not have been written. `keys` are not changed,
+    // unless they are those of `pairs`; they must not be those of `spare`. At least one bit.
     Pairs record_iota(Commands& commands, Uints keys, Pairs pairs, Pairs spare, Uints counters, std::uint32_t count,
                       std::uint32_t bits, const Counts* if_counts = nullptr) const;
     uint sort_groups(std::uint64_t count) const { return groups_of(count, threads_); }
 
-    // How many items an invocation sorts: few, so that there are many groups; with `threads` so many that there are as
-    // many groups as those, because counters cost a group the same whatever it sorts, or a multiple of that, as a
-    // group's items should fit caches.
+    // The number of items that an invocation sorts: few, so that there are many groups; with `threads`, so many that
+    // there are as many groups as threads, or a multiple of that so that a group's items fit caches: counters cost a
+    // group the same for any number of items.
     static uint run_of(std::uint64_t count, uint threads);
     static uint groups_of(std::uint64_t count, uint threads);
-    static uint digit_bits(uint threads);  // sorted by in a pass
-    // Of what the histogram of a pass keeps for its scatter, which would else count again: with `threads`, where that
-    // is a byte an item at most; else 0.
+    static uint digit_bits(uint threads);  // of one pass
+    // The bytes that the histogram of a pass keeps for its scatter, which would else count again: with `threads`, if
+    // that is at most a byte per item; else 0.
     static std::uint64_t kept_bytes(std::uint64_t count, uint threads);
 
   private:

@@ -31,7 +31,7 @@ struct Part {
     const char* without;  // ends it where the device lacks something
 };
 
-// By Requirement::Of.
+// Indexed by Requirement::Of.
 constexpr Part parts[] = {
     {"everything",
      "Everything; no more need SwTlas below Level::refined, textures in buffers, animation, view factors, "

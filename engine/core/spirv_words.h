@@ -73,26 +73,26 @@ constexpr Op first_operation = static_cast<Op>(109), last_operation = static_cas
 constexpr std::uint32_t decoration_spec_id = 1, decoration_builtin = 11, decoration_offset = 35;
 constexpr std::uint32_t storage_workgroup = 4, storage_push_constant = 9;
 
-// These read and make the first word of an instruction.
+// Read and make the first word of an instruction.
 constexpr Op op_of(std::uint32_t first) { return static_cast<Op>(first & 0xffffu); }
 constexpr std::size_t words_of(std::uint32_t first) { return first >> 16; }
 constexpr std::uint32_t first_word(Op op, std::size_t words) {
     return static_cast<std::uint32_t>(words) << 16 | static_cast<std::uint32_t>(op);
 }
 
-// Whether it defines a type, whose id is the first operand.
+// Returns whether it defines a type, whose id is the first operand.
 constexpr bool is_type(Op op) {
     using enum Op;
     return (op >= static_cast<Op>(19) && op <= static_cast<Op>(38)) || op == TypeCooperativeMatrix ||
            op == TypeRayQuery || op == TypeAccelerationStructure;
 }
-// Whether what follows is the id of whatever it says something of.
+// Returns whether the next word is the id of the annotated object.
 constexpr bool is_annotation(Op op) {
     using enum Op;
     return op == Name || op == Decorate || op == DecorateId || op == DecorateString;
 }
 
-// The result of an operation on whole numbers of 32 bits or booleans; nothing for one that GLSL does not make.
+// Returns the result of an operation on 32-bit whole numbers or booleans; nothing for one that GLSL does not make.
 constexpr std::optional<std::uint32_t> evaluate(Op op, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     const auto less = [](std::uint32_t x, std::uint32_t y) {
         return static_cast<std::int32_t>(x) < static_cast<std::int32_t>(y);
@@ -129,7 +129,7 @@ constexpr std::optional<std::uint32_t> evaluate(Op op, std::uint32_t a, std::uin
     }
 }
 
-// Whether instructions fill it, one after the other.
+// Returns whether instructions fill it, one after the other.
 constexpr bool is_module(Words words) {
     if (words.size() < header_words || words[0] != 0x07230203 || words[3] > 0x3fffff) return false;
     std::size_t at = header_words;

@@ -21,7 +21,7 @@ double beta_fraction(double a, double b, double x) {
         c = not_zero(1 + term / c);
         fraction *= c * d;
     };
-    // It needs about sqrt(max(a, b)) terms where it is used.
+    // This suffices here: it needs about sqrt(max(a, b)) terms.
     const int limit = 100 + static_cast<int>(10 * std::sqrt(std::max(a, b)));
     for (int m = 1; m <= limit; ++m) {
         const double before = fraction;
@@ -50,7 +50,7 @@ double beta_quantile(double a, double b, double chance, double low = 0) {
     return high;
 }
 
-// The bound that `count` or fewer events stay below with the chance given.
+// Returns the bound below which `count` or fewer events stay with the given chance.
 double upper_bound(std::uint64_t count, std::uint64_t trials, double chance) {
     if (count >= trials) return 1;
     const double n = static_cast<double>(trials);
@@ -59,7 +59,7 @@ double upper_bound(std::uint64_t count, std::uint64_t trials, double chance) {
     return beta_quantile(k + 1, n - k, chance, k / n);
 }
 
-// Of a binomial distribution of n trials: the smallest k with P(at most k) >= chance.
+// For a binomial distribution of n trials: the smallest k with P(at most k) >= chance.
 std::size_t binomial_quantile(std::size_t n, double p, double chance) {
     const auto at_most = [&](std::size_t k) {
         return k >= n ? 1.0 : 1 - regularised_beta(static_cast<double>(k) + 1, static_cast<double>(n - k), p);
@@ -115,7 +115,7 @@ Interval quantile_interval_95(std::span<const double> sorted, double p) {
     const std::size_t n = sorted.size();
     if (p <= 0) return {sorted.front(), sorted.front()};
     if (p >= 1) return {sorted.back(), sorted.back()};
-    // Ranks count from 1; rank k bounds the quantile from below unless fewer than k samples lie under it.
+    // Ranks count from 1; rank k bounds the quantile from below unless fewer than k samples are under it.
     const std::size_t low = binomial_quantile(n, p, 0.025);
     const std::size_t high = binomial_quantile(n, p, 0.975) + 1;
     return {sorted[std::max<std::size_t>(low, 1) - 1], sorted[std::min(high, n) - 1]};
@@ -131,7 +131,7 @@ Interval rate_interval(std::uint64_t count, std::uint64_t trials, double miss) {
 
 namespace {
 
-// A weighted mean of rates, the variance of the sum that it is, and the most that one event adds to it.
+// A weighted mean of rates, the variance of the corresponding sum, and the most that one event adds to it.
 struct Moments {
     double mean = 0, variance = 0, largest = 0;
 };
@@ -165,7 +165,7 @@ Interval mean_rate_interval(std::span<const Stratum> strata, double miss) {
         const double trials = mean / variance, events = mean * trials;
         return beta_quantile(events, std::max(trials - events + 1, 1.0), chance);
     };
-    // From above it is as if one event more had happened, where one adds most.
+    // The upper bound counts one more event, in the stratum where one adds most.
     const double mean = seen.mean + seen.largest, variance = seen.variance + seen.largest * seen.largest;
     const double low = seen.mean > 0 ? bound(seen.mean, seen.variance, miss / 2) : 0;
     return {low, seen.mean < 1 ? bound(mean, variance, 1 - miss / 2) : 1};

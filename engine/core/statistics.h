@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What reports say about measurements: pure functions of the samples.
+// The statistics of measurements for reports: pure functions of the samples.
 #pragma once
 
 #include <twinray/analysis.h>
@@ -11,7 +11,7 @@
 
 namespace twinray {
 
-// NaN for no value; the mean of the middle two for an even number.
+// Returns NaN for no value; the mean of the middle two for an even number.
 double median(std::vector<double> values);
 // Median of |value - median(values)|: a spread that outliers do not move.
 double median_absolute_deviation(std::span<const double> values);
@@ -19,7 +19,7 @@ double median_absolute_deviation(std::span<const double> values);
 // `sorted`: ascending. p in [0, 1], linear between neighbours; NaN for no value.
 double quantile(std::span<const double> sorted, double p);
 // A 95 % confidence interval of the population's p-quantile between two of the samples, without assumptions on the
-// distribution: the ranks are quantiles of the binomial distribution. Where the samples are too few (under 6 for the
+// distribution: the ranks are quantiles of the binomial distribution. If the samples are too few (under 6 for the
 // median, under 368 for p = 0.99) it ends at the smallest or largest and covers less. `sorted` must not be empty.
 Interval quantile_interval_95(std::span<const double> sorted, double p);
 
@@ -42,17 +42,17 @@ struct Stratum {
 };
 // The weighted mean of the rates, whatever the numbers of trials. Strata without a trial are left out; NaN for none.
 double mean_rate(std::span<const Stratum> strata);
-// The interval that misses it with the chance `miss`, by Fay and Feuer (1997), with the beta distribution of as many
-// effective trials in place of their gamma distribution: for one stratum it is rate_interval. [0, 1] for none.
+// Returns the interval that misses it with the chance `miss`, by Fay and Feuer (1997), with the beta distribution of as
+// many effective trials in place of their gamma distribution: for one stratum it is rate_interval. [0, 1] for none.
 Interval mean_rate_interval(std::span<const Stratum> strata, double miss);
 
-// How far a sum of independent numbers within [0, most] is from its expectation, but for the chance `miss`: Bernstein's
-// inequality (1924) with a variance that is bounded by what was seen of it. `squared_differences`: the numbers are put
-// into pairs, in an order that does not depend on them, and the squares of their differences are summed; one without
-// a partner is compared with 0. Where partners have like expectations that is little more than the variance.
+// The distance of a sum of independent numbers within [0, most] from its expectation, exceeded with the chance `miss`
+// at most: Bernstein's inequality (1924) with a bound of the variance from the numbers. `squared_differences`: these
+// are put into pairs, in an order that does not depend on them, and the squares of their differences are summed; one
+// without a partner is compared with 0. If partners have like expectations, that is little more than the variance.
 double paired_margin(double squared_differences, double most, double miss);
 // The 95 % interval of the expected count of independent trials of any probabilities, `odd` of whose pairs (as above)
-// have exactly one event: what both paired_margin and rate_interval allow, each with half of the chance to miss.
+// have exactly one event: the intersection of paired_margin and rate_interval, each with half the chance to miss.
 Interval paired_count_interval_95(std::uint64_t count, std::uint64_t odd, std::uint64_t trials);
 
 // y = scale * x^slope, by least squares of log y over log x, with the 95 % interval of the slope that Student's
@@ -63,8 +63,8 @@ struct PowerLaw {
     Interval slope_95;
     std::size_t points = 0;  // those used
 };
-// Points that are not positive and finite are left out; nothing with fewer than 3, or where the largest x is less than
-// twice the smallest: over less, scatter decides the slope. x and y are equally long.
+// Points that are not positive and finite are left out. Returns nothing with fewer than 3, or if the largest x is less
+// than twice the smallest: over less, scatter decides the slope. x and y are equally long.
 std::optional<PowerLaw> fit_power_law(std::span<const double> x, std::span<const double> y);
 
 }  // namespace twinray

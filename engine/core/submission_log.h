@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What was submitted and is not known to be done: for the error of a device that stops answering.
+// Submissions that are not known to be done: for the error of a device that stops answering.
 #pragma once
 
 #include <cstdint>
@@ -17,11 +17,11 @@ struct PassWork {
 
 class SubmissionLog {
   public:
-    // `value`: of the timeline, when they are done.
+    // `value`: the timeline's value when they are done.
     void submitted(std::uint64_t value, std::string commands, std::vector<PassWork> passes);
     void reached(std::uint64_t value);
-    // "; in flight: 'trace' (1 pass: 'swtlas_trace closest' of 625 groups)", the passes with the most groups first;
-    // empty where nothing is.
+    // Says "; in flight: 'trace' (1 pass: 'swtlas_trace closest' of 625 groups)", the passes with the most groups
+    // first; empty if nothing is.
     std::string sentence() const;
 
   private:

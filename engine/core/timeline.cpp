@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Context's timeline: submitting, waiting, and freeing what the GPU has passed.
+// Context's timeline: submits, waits, and frees resources that the GPU has passed.
 #include <algorithm>
 #include <chrono>
 #include <thread>
@@ -58,7 +58,7 @@ void Context::State::wait_before_next_submission(SyncPoint point, VkPipelineStag
     awaited_.push_back({point, stages});
 }
 
-// Each submission is the driver's own, since each signals: what is merged would count as one that takes longer.
+// The driver gets each submission separately, since each signals: merged ones would count as one that takes longer.
 VkResult Context::State::enqueue(std::span<const Submission> submissions, std::uint64_t promised) const {
     std::vector<VkSemaphore> semaphores;
     std::vector<std::uint64_t> awaited, signalled(submissions.size());
@@ -151,7 +151,7 @@ void Context::State::wait_for(SyncPoint point) const {
     if (point.semaphore == timeline_) submission_log_.reached(point.value);
 }
 
-// While the device ends submissions, it is patient.
+// It keeps waiting while the device finishes submissions.
 VkResult Context::State::wait_for(const VkSemaphoreWaitInfo& info) const {
     if (most_wait_seconds_ <= 0) return vk_.vkWaitSemaphores(device_, &info, UINT64_MAX);
     const auto most = static_cast<std::uint64_t>(most_wait_seconds_ * 1e9);
@@ -167,7 +167,7 @@ VkResult Context::State::wait_for(const VkSemaphoreWaitInfo& info) const {
 void Context::State::wait_for_gpu() {
     wait(last_submission());
     for (SyncPoint point : announced_) {
-        // Commands that nobody has submitted yet are nothing that the GPU does.
+        // Commands that are not submitted yet are no work of the GPU.
         if (point.semaphore == promised_timeline_) point.value = std::min(point.value, promised_.last_passed());
         wait_for(point);
     }
@@ -210,7 +210,7 @@ void Context::State::collect() noexcept {
     }
 }
 
-// What the GPU still uses must not be destroyed, even where waiting for it fails: reading the timeline needs no memory.
+// Resources that the GPU still uses must not be destroyed, even if waiting fails: reading the timeline needs no memory.
 void Context::State::finish() noexcept {
     try {
         wait(last_submission());

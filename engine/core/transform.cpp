@@ -74,7 +74,7 @@ std::string fault_of(const Transform& transform) {
             if (!std::isfinite(row[column])) return text("transform entry ", row[column], " is not finite");
     const double det = determinant(transform);
     if (det == 0.0) return "transform is singular (its determinant is 0)";
-    // Kernels ask the same.
+    // Kernels make the same test.
     const Rows to_world{transform.rows[0], transform.rows[1], transform.rows[2]};
     if (is_usable(to_world, inverse_of(to_world))) return "";
     return text("transform has no inverse in float32 without denormal numbers (its determinant is ", det, ")");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// twinray's own allocator; vma.cpp is the one file that compiles the Vulkan Memory Allocator.
+// twinray's own allocator; only vma.cpp compiles the Vulkan Memory Allocator.
 #pragma once
 
 #include "engine/core/allocator.h"

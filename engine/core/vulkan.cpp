@@ -18,7 +18,7 @@ namespace twinray {
 namespace {
 
 PFN_vkGetInstanceProcAddr open_system_loader() {
-    // Kept open for the life of the process: drivers and layers do not survive being unloaded.
+    // It stays open for the life of the process: drivers and layers do not survive being unloaded.
     void* loader = dlopen("libvulkan.so.1", RTLD_NOW | RTLD_LOCAL);
     if (!loader) fail("no Vulkan loader: libvulkan.so.1 cannot be opened (Debian: apt-get install libvulkan1)");
     return reinterpret_cast<PFN_vkGetInstanceProcAddr>(dlsym(loader, "vkGetInstanceProcAddr"));
@@ -59,7 +59,7 @@ bool labels_are_safe(std::span<const VkLayerProperties> layers) {
     });
 }
 
-// volk looks functions up by a global of its own, which only one context at a time may set.
+// volk looks functions up by a global variable, which only one context at a time may set.
 void VulkanTable::load_device(VkDevice device) {
     static std::mutex mutex;
     const std::lock_guard lock(mutex);

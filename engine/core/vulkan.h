@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // The Vulkan functions of one device. The library calls no global vk* function, and its copy of volk is its own, so
-// that a host may link the Vulkan loader, volk or another copy beside it.
+// that an application may link the Vulkan loader, volk or another copy beside it.
 #pragma once
 
 #include <volk.h>
 
 #include <span>
 
-// No device knows these: volk has them among its globals alone.
+// No device knows these: volk has them only among its globals.
 #define TWINRAY_INSTANCE_FUNCTIONS(F)           \
     F(vkDestroyInstance)                        \
     F(vkEnumeratePhysicalDevices)               \
@@ -40,14 +40,14 @@ struct VulkanTable : VolkDeviceTable {
 
     // get_instance_proc_addr null: opens the system's Vulkan loader. Throws Error if there is none.
     void load_global(PFN_vkGetInstanceProcAddr get_instance_proc_addr);
-    // Without debug labels where an installed validation layer would crash by them: see labels_are_safe.
+    // Leaves out debug labels if an installed validation layer would crash by them: see labels_are_safe.
     void load_instance(VkInstance instance);
     void load_device(VkDevice device);
 };
 
-// False where one of the layers is the Khronos validation layer of before 1.3.243. It forgets the labels of a destroyed
-// command buffer on a thread of its own without its lock, by the handle, which a new command buffer may have by then:
-// the heap is corrupted, seldom (KhronosGroup/Vulkan-ValidationLayers, 5172).
+// Returns false if one of the layers is a Khronos validation layer older than 1.3.243. It forgets the labels of a
+// destroyed command buffer on a thread of its own without its lock, by the handle, which a new command buffer may have
+// by then: the heap is corrupted, seldom (KhronosGroup/Vulkan-ValidationLayers, 5172).
 bool labels_are_safe(std::span<const VkLayerProperties> layers);
 
 // Throws Error naming the action and the VkResult unless result is VK_SUCCESS.
