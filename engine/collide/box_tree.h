@@ -13,15 +13,15 @@ namespace twinray {
 
 static_assert(sizeof(TreeBox) == 32);
 
-// Sorts boxes on the GPU by where their centres lie along a Hilbert curve (shaders/collide/codes.comp); empty ones come
-// first. Its memory grows with the largest count so far and is used again.
+// Sorts boxes on the GPU by the places of their centres along a Hilbert curve (shaders/collide/codes.comp); empty ones
+// come first. Its memory grows with the largest count so far and is used again.
 class HilbertOrder {
   public:
     explicit HilbertOrder(Context& context);
 
     // Makes room.
     void prepare(std::size_t count);
-    // The numbers of the boxes in that order, which depends on the boxes alone; valid until the next call.
+    // Returns the numbers of the boxes in that order, which depends only on the boxes; valid until the next call.
     Uints record(Commands& commands, Ref<TreeBox> boxes, uint count) const;
     std::uint64_t bytes() const { return scratch_.bytes() + bits_.bytes(); }
 
@@ -32,7 +32,7 @@ class HilbertOrder {
     Buffer scratch_, bits_;
 };
 
-// What kernels need to search a tree: valid until the next prepare().
+// The data that kernels need to search a tree: valid until the next prepare().
 struct BoxTreeView {
     Ref<TreeBox> nodes;
     uint leaf_begin = 1;
@@ -41,18 +41,18 @@ struct BoxTreeView {
     Ref<TreeBox> leaves() const { return {nodes.address + leaf_begin * sizeof(TreeBox)}; }
 };
 
-// Its memory grows with the largest count so far and is used again.
+// The tree's memory grows with the largest count so far and is used again.
 class BoxTree {
   public:
     static constexpr std::size_t max_count = 1u << 28;
 
     explicit BoxTree(Context& context);
 
-    // Makes room for `count` boxes of which a tree is to be made and gives where to write them, in any order; empty
+    // Makes room for `count` boxes of a tree and returns the address where they must be written, in any order; empty
     // ones (lo > hi) are never found. Throws Error above max_count.
     Ref<TreeBox> prepare(std::size_t count);
     const Buffer& boxes() const { return boxes_; }  // where they are written
-    // Sorts the boxes that earlier passes have written and builds the tree. Depends on the boxes alone.
+    // Sorts the boxes that earlier passes have written and builds the tree, which depends only on the boxes.
     void record(Commands& commands) const;
     BoxTreeView view() const;
     std::uint64_t bytes() const;

@@ -40,7 +40,7 @@ struct BroadPhase::State {
           tree(device),
           search(device) {}
 
-    // Build what is to be searched.
+    // Build the boxes to be searched.
     PairSearch::Query within(AbstractAccel& accel, const char* action);
     PairSearch::Query between(AbstractAccel& accel, AccelHandle a, AccelHandle b, const char* action);
     PairSearch::Query between(AbstractAccel& a, AbstractAccel& b, const char* action);

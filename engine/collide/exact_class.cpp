@@ -10,7 +10,7 @@ namespace {
 #include "shaders/collide/neighbours.h"
 #include "twinray/glsl/cpp_end.h"
 
-// Where a line through vertices meets the plane of another triangle.
+// The point at which a line through vertices meets the plane of another triangle.
 dvec3 point_of(const Cut& cut, const WorldTriangle& plane) {
     const double from = std::abs(volume_of(plane.a, plane.b, plane.c, cut.from).value());
     const double to = std::abs(volume_of(plane.a, plane.b, plane.c, cut.to).value());
@@ -18,7 +18,7 @@ dvec3 point_of(const Cut& cut, const WorldTriangle& plane) {
     return cut.from + (cut.to - cut.from) * (from / (from + to));
 }
 
-// The ends of what the triangles' cuts have in common: those that lie within the other's.
+// Returns the ends of the common part of the triangles' cuts: those that are within the other's.
 ContactSegment common_part(const WorldTriangle& a, const WorldTriangle& b) {
     const Cuts of_a = cuts_of(a, sides_of(b, a)), of_b = cuts_of(b, sides_of(a, b));
     const std::array as = {of_a.first, of_a.last}, bs = {of_b.first, of_b.last};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Classes of triangles without error: the signs that float64 leaves open are computed by expansions of doubles.
+// Classifies triangles without error: the signs that float64 leaves open are computed by expansions of doubles.
 #pragma once
 
 #include "engine/collide/pair_class.h"
@@ -14,7 +14,7 @@ PairClass exact_class(const WorldTriangle& a, const WorldTriangle& b);
 PairClass exact_class(const WorldTriangle& a, const TriangleName& a_name, const WorldTriangle& b,
                       const TriangleName& b_name);
 
-// Of two triangles of class crossing.
+// Needs two triangles of class crossing.
 ContactSegment crossing_segment(const WorldTriangle& a, const WorldTriangle& b);
 
 }  // namespace twinray

@@ -19,12 +19,12 @@ namespace twinray {
 // with zeros left out). Exact as long as nothing over- or underflows.
 class Expansion {
   public:
-    // At most 192 times.
+    // Adds a term; at most 192 times.
     void add(double term);
-    // x y z, without rounding: four terms.
+    // Adds x y z without rounding: four terms.
     void add_product(double x, double y, double z);
     int sign() const { return size_ == 0 ? 0 : terms_[size_ - 1] > 0 ? 1 : -1; }
-    // To a relative error of 2^-51.
+    // Returns the sum with a relative error of 2^-51.
     double value() const;
 
   private:
@@ -32,13 +32,13 @@ class Expansion {
     std::size_t size_ = 0;
 };
 
-// det(a - d, b - d, c - d), and its sign: 1 where d sees a, b, c turn clockwise.
+// det(a - d, b - d, c - d), and its sign: 1 if d sees a, b, c turn clockwise.
 Expansion volume_of(const dvec3& a, const dvec3& b, const dvec3& c, const dvec3& d);
 int volume_sign(const dvec3& a, const dvec3& b, const dvec3& c, const dvec3& d);
-// Of det(a - c, b - c) as seen along an axis: 1 where a, b, c turn anticlockwise.
+// The sign of det(a - c, b - c) as seen along an axis: 1 if a, b, c turn anticlockwise.
 int area_sign(const dvec3& a, const dvec3& b, const dvec3& c, uint axis);
 
-// Why signs of these coordinates may be wrong, "" if they are right.
+// Says why signs of these coordinates may be wrong, "" if they are right.
 std::string sign_fault_of(const dvec3& point);
 
 }  // namespace twinray

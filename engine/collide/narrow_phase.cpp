@@ -82,7 +82,7 @@ Contacts NarrowPhase::find(std::span<const MeshView> meshes, std::span<const Mes
     return contacts;
 }
 
-// Those whose boxes overlap that of another: the triangles of others have nothing to touch.
+// Returns the instances whose boxes overlap that of another: triangles of others have nothing to touch.
 std::vector<uint> NarrowPhase::State::taking_part(std::span<const MeshView> meshes,
                                                   std::span<const MeshInstance> instances, bool self) {
     std::vector<uint> chosen(instances.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The classes of pairs of triangles and what kernels need to tell them, for C++.
+// The classes of pairs of triangles, and the data with which kernels find them, for C++.
 #pragma once
 
 #include <twinray/queries.h>

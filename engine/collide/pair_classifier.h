@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Pairs of triangles by how they touch, decided on the device and, where that cannot tell, exactly on the host.
+// Classifies pairs of triangles by how they touch: on the device and, if that is uncertain, exactly on the host.
 #pragma once
 
 #include <functional>
@@ -18,25 +18,25 @@ struct ClassifiedPair {
     PairClass pair_class = PairClass::separate;
 };
 
-// Classes of pairs of triangles: the GPU decides where float64 is certain, the host the others, without error.
+// Classifies pairs of triangles: the GPU decides if float64 is certain, else the host, without error.
 class PairClassifier {
   public:
-    // Throws Error where the device has no float64.
+    // Throws Error if the device has no float64.
     explicit PairClassifier(Context& context);
 
-    // The triangles that items name: on the device, and the same on the host.
+    // The triangles of items: on the device, and the same on the host.
     struct Items {
         Ref<WorldTriangle> triangles;
         Ref<TriangleName> names;
         std::function<WorldTriangle(uint)> host_triangle;
         std::function<TriangleName(uint)> host_name;
     };
-    // Those of the pairs that are not separate, in no order. Submits and waits.
+    // Returns the pairs that are not separate, in no order. Submits and waits.
     std::vector<ClassifiedPair> classify(const DevicePairs& pairs, const Items& items);
-    // Of each pair. Throws Error for a vertex that is not finite or out of the range of exact_class().
+    // Classifies each pair. Throws Error for a vertex that is not finite or out of the range of exact_class().
     std::vector<PairClass> classify(std::span<const TrianglePair> pairs);
 
-    // Of the last call: how many the host decided, and what it took.
+    // For the last call: the pairs that the host decided, and the time that it took.
     std::uint64_t host_count() const { return host_count_; }
     double host_seconds() const { return host_seconds_; }
 

@@ -105,7 +105,7 @@ DevicePairs PairSearch::find_sorted(const Query& query, uint largest_item, const
         counters_ = Buffer(context_, {.name = "collide counters", .bytes = counter_bytes});
     const auto bits = static_cast<uint>(std::bit_width(largest_item));
     Commands commands(context_, "collide sort");
-    // The sort is stable: first by the second items, then by the first ones.
+    // The sort is stable: it sorts by the second items, then by the first ones.
     RadixSort::Pairs pairs{{found.second}, {found.first}}, spare = columns(spare_, found.count);
     for (int column = 0; column < 2; ++column) {
         const RadixSort::Pairs sorted =

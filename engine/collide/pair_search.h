@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Pairs of boxes that overlap, found on the device by a tree of boxes.
+// Finds pairs of boxes that overlap, on the device by a tree of boxes.
 #pragma once
 
 #include <twinray/queries.h>
@@ -11,11 +11,11 @@
 
 namespace twinray {
 
-// One column of them, `first` or `second`, copied to the host.
+// Copies one column of them, `first` or `second`, to the host.
 std::vector<uint> download(Context& context, const DevicePairs& pairs, std::uint64_t DevicePairs::*column);
 
 // Finds the boxes of a tree that overlap given ones. Boxes are closed: those that touch overlap. The memory for pairs
-// grows with the most that were found so far and is used again.
+// grows with the largest number found so far and is used again.
 class PairSearch {
   public:
     static constexpr std::uint64_t most_pairs = 0xffffffffu;
@@ -28,12 +28,12 @@ class PairSearch {
         uint box_count = 0;
         bool other_groups = false;  // no pairs of boxes of one group
     };
-    // The items of all pairs: (lower, higher) within a tree, else (query, leaf). In no order. Submits and waits. Throws
-    // Error, beginning with `action`, that says how many pairs there are, where they exceed max_pairs().
+    // Returns the items of all pairs: (lower, higher) within a tree, else (query, leaf), in no order. Submits and
+    // waits. If there are more than max_pairs(), throws Error, beginning with `action`, that names their number.
     DevicePairs find(const Query& query, const std::string& action);
     // The same, ascending by (first, second); no item is above `largest_item`.
     DevicePairs find_sorted(const Query& query, uint largest_item, const std::string& action);
-    // How many find() would find, without memory and without limit.
+    // Returns the number that find() would find, without memory and without limit.
     std::uint64_t count(const Query& query) { return run(query, 0, query.other_groups ? 0 : SEARCH_COUNT); }
     bool any(const Query& query) { return run(query, 0, SEARCH_ANY) != 0; }
 

@@ -16,7 +16,7 @@ namespace {
 #include "shaders/collide/world_vertex.h"
 #include "twinray/glsl/cpp_end.h"
 
-// The least coordinate of the box under a row, lower by more than float64 rounds.
+// Returns a bound below the least coordinate of the box under a row, with room for float64 rounding.
 double least_coordinate(const vec4& row, const Bounds& box) {
     double sum = row.w, size = std::abs(double{row.w});
     for (int axis = 0; axis < 3; ++axis) {
@@ -27,7 +27,7 @@ double least_coordinate(const vec4& row, const Bounds& box) {
     return sum - size * 0x1p-48;
 }
 
-// For each vertex the first one at its position.
+// Returns for each vertex the first one at its position.
 std::vector<uint> ids_by_position(std::span<const vec3> positions) {
     const auto is_before = [&](uint a, uint b) {
         const vec3 p = positions[a], q = positions[b];
@@ -45,7 +45,7 @@ std::vector<uint> ids_by_position(std::span<const vec3> positions) {
     return ids;
 }
 
-// What a mesh brings to the device, one after the other.
+// The data of a mesh for the device, one after the other.
 struct Upload {
     std::vector<Commands::Region> regions;
     std::uint64_t bytes = 0;
@@ -59,7 +59,7 @@ struct Upload {
     }
 };
 
-// Addresses are offsets in what is uploaded.
+// Addresses are offsets in the uploaded data.
 InstancedMesh added_to(Upload& upload, const MeshView& mesh, std::span<const uint> ids) {
     InstancedMesh added{};
     added.positions.address = upload.add(mesh.positions);

@@ -15,8 +15,8 @@ namespace twinray {
 // Throws Error, beginning with `action`, that names the mesh or the instance with an index out of range.
 void check_instances(std::span<const MeshView> meshes, std::span<const MeshInstance> instances, const char* action);
 
-// A box around what an instance covers in world space, with vertices as in world_vertex.h, and a little more. Empty for
-// a mesh without a finite triangle.
+// Returns a box around an instance in world space, with vertices as in world_vertex.h, and a little more. Empty for a
+// mesh without a finite triangle.
 TreeBox box_of_instance(const Bounds& mesh, const Transform& transform, uint item);
 
 // The triangles of instances in world space, on the device: item i counts them instance by instance.
@@ -24,8 +24,8 @@ class TriangleSet {
   public:
     explicit TriangleSet(Context& context);
 
-    // Uploads the meshes. `chosen`: indices of the instances that take part, ascending. The spans, and what they refer
-    // to, must outlive the use of this.
+    // Uploads the meshes. `chosen`: indices of the instances that take part, ascending. The spans, and the data that
+    // they refer to, must outlive the use of this.
     void set(std::span<const MeshView> meshes, std::span<const MeshInstance> instances, std::span<const uint> chosen,
              SharedVertices shared);
     std::size_t count() const { return count_; }
@@ -35,7 +35,7 @@ class TriangleSet {
     Ref<TriangleName> names_on_device() const { return names_.ref<TriangleName>(); }
     Ref<InstancedMesh> meshes_on_device() const { return table_.ref<InstancedMesh>(); }  // by group of the boxes
 
-    // Of one item, computed on the host: the same bits.
+    // Computes one item on the host: the same bits.
     WorldTriangle triangle(uint item) const;
     TriangleName name(uint item) const;
     uint instance(uint item) const { return chosen_[mesh_of(item)]; }

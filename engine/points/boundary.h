@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Whether a mesh has an inside.
+// Tells whether a mesh has an inside.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace twinray {
 
-// An edge that triangles pass more often from one end to the other than back.
+// An edge that triangles pass more often in one direction than in the other.
 struct BoundaryEdge {
     std::array<vec3, 2> ends;
     uint triangle = 0;  // the lowest that has it, which
@@ -19,13 +19,13 @@ struct BoundaryEdge {
     int passes = 0;     // and how much more often triangles do so than back; below 0: less often
 };
 
-// Without any a point that is not on the mesh has a winding number. Vertices are one if their positions are. Triangles
-// with a vertex that is not finite do not count.
+// Without such edges, every point that is not on the mesh has a winding number. Vertices are identical if their
+// positions are. Triangles with a vertex that is not finite do not count.
 std::vector<BoundaryEdge> boundary_edges(const MeshView& mesh);
-// That of the lowest triangle; nothing if there is none.
+// Returns the edge of the lowest triangle; nothing if there is none.
 std::optional<BoundaryEdge> find_boundary_edge(const MeshView& mesh);
 
-// Why points have no side to a mesh, naming it, by its number where it has no name, and an edge; "" if they have.
+// Says why points have no side to a mesh, naming an edge and the mesh (by number if it has no name); "" if they have.
 std::string side_fault_of(const MeshView& mesh, uint number);
 
 }  // namespace twinray

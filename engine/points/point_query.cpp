@@ -126,7 +126,7 @@ void PointQuery::set(const Scene& scene) {
 }
 
 void PointQuery::set(AbstractAccel& accel) {
-    // What was held before may still be referred to if this throws.
+    // The previous scene may still be referred to if this throws.
     state_->held.push_back(std::make_unique<const Scene>(scene_of(accel)));
     set(*state_->held.back());
     state_->held.erase(state_->held.begin(), state_->held.end() - 1);

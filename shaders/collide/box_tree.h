@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A tree of boxes for finding those that overlap: the complete binary tree over the boxes in Hilbert order. Node 1 is
 // the root, nodes 2 n and 2 n + 1 are the children of n, and leaf i is node leaf_begin + i, leaf_begin being the least
-// power of two that is not below the count. No links, no stack: what comes next follows from a node's number.
+// power of two that is not below the count. No links, no stack: the next node follows from a node's number.
 #ifndef TWINRAY_COLLIDE_BOX_TREE_H
 #define TWINRAY_COLLIDE_BOX_TREE_H
 #include "shaders/shared/list.h"
@@ -103,7 +103,7 @@ FUNC TreeBox around(TreeBox a, TreeBox b)
     return both;
 }
 
-// Halved first: their sum might not be finite.
+// It halves first: the sum might not be finite.
 FUNC vec3 center_of(TreeBox box)
 {
     PRECISE vec3 center = box.min * 0.5f + box.max * 0.5f;
@@ -118,7 +118,7 @@ FUNC uint next_subtree(uint node)
     return next == 1u ? 0u : next;
 }
 
-// What overflowed is as large as can be.
+// An overflowed bound becomes as large as can be.
 FUNC float low_bound(float x) { return x >= -3.402823466e38f ? x : uintBitsToFloat(0xff800000u); }
 FUNC float high_bound(float x) { return x <= 3.402823466e38f ? x : uintBitsToFloat(0x7f800000u); }
 

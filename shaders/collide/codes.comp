@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The places of the boxes' centres along a Hilbert curve through the 2^20 x 2^20 x 2^20 cells of a cube, 60 bits: the
 // lower 30 of the boxes in the order given, then the higher of those in the order that sorting by the former made.
-// Unlike a Morton curve it never jumps, so that each stretch of it lies in a small box (Kamel and Faloutsos, "Hilbert
+// Unlike a Morton curve it never jumps, so that each stretch of it is in a small box (Kamel and Faloutsos, "Hilbert
 // R-tree", 1994).
 #version 460
 #extension GL_GOOGLE_include_directive : require

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The class of two triangles of meshes, of which those of one mesh may be neighbours. What includers of triangle_pair.h
-// declare is needed here, too.
+// The class of two triangles of meshes; those of one mesh may be neighbours. It also needs the declarations that
+// includers of triangle_pair.h make.
 #ifndef TWINRAY_COLLIDE_NEIGHBOURS_H
 #define TWINRAY_COLLIDE_NEIGHBOURS_H
 #include "shaders/collide/triangle_pair.h"
@@ -13,7 +13,7 @@ FUNC uint count_among(uvec3 t, uvec3 u)
 // The lower of both: a triangle without area may name a vertex twice.
 FUNC uint count_shared(uvec3 t, uvec3 u) { return min(count_among(t, u), count_among(u, t)); }
 
-// Whether p and q lie in one direction from v. In doubt, yes.
+// Returns whether p and q are in one direction from v; if in doubt, true.
 FUNC bool is_same_way(dvec3 v, dvec3 p, dvec3 q, INOUT(bool) doubt)
 {
     if (v == p || v == q || is_before(v, p) != is_before(v, q)) return false;
@@ -28,7 +28,7 @@ FUNC bool is_same_way(dvec3 v, dvec3 p, dvec3 q, INOUT(bool) doubt)
     return true;
 }
 
-// Turned so that the vertex with the given vertex comes first.
+// Turns the triangle so that the vertex with the given ids comes first.
 FUNC WorldTriangle from_vertex(WorldTriangle t, uvec3 ids, uvec3 others)
 {
     WorldTriangle turned = t;
@@ -47,8 +47,8 @@ FUNC WorldTriangle from_vertex(WorldTriangle t, uvec3 ids, uvec3 others)
     return turned;
 }
 
-// The class of neighbours: PAIR_SEPARATE where they have no more in common than the vertices that they share, and the
-// edge between two of them.
+// The class of neighbours: PAIR_SEPARATE if they have only their shared vertices and the edge between two of them in
+// common.
 FUNC uint class_of_neighbours(WorldTriangle t, uvec3 t_ids, WorldTriangle u, uvec3 u_ids)
 {
     uint found = class_of(t, u);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Signs of volumes and areas in float64, where they are certain. The bounds are those of the first stage of Shewchuk,
+// Signs of volumes and areas in float64, if they are certain. The bounds are those of the first stage of Shewchuk,
 // "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997: (7 + 56 u) u and (3 + 16
 // u) u of the magnitudes added up, u = 2^-53, here rounded up to 8 u and 4 u. They hold while nothing over- or
 // underflows, as among vertices of world_vertex(): see triangle_pair.h.
@@ -15,7 +15,7 @@ FUNC int certain_sign(double value, double bound)
     return bound == double(0.0f) ? 0 : UNKNOWN_SIGN; // 0: each product has a factor of exactly 0
 }
 
-// Of det(a - d, b - d, c - d): positive where d sees a, b, c turn clockwise. 0 where two points are one.
+// The sign of det(a - d, b - d, c - d): positive if d sees a, b, c turn clockwise. 0 if two points are one.
 FUNC int filtered_volume_sign(dvec3 a, dvec3 b, dvec3 c, dvec3 d)
 {
     const double BOUND = double(8.8817841970012523e-16f);
@@ -36,7 +36,7 @@ FUNC int filtered_volume_sign(dvec3 a, dvec3 b, dvec3 c, dvec3 d)
     return certain_sign(volume, bound);
 }
 
-// The coordinates across `axis`, so that x, y, z go round.
+// The coordinates across `axis`, in cyclic order of x, y, z.
 FUNC dvec2 without_axis(dvec3 p, uint axis)
 {
     if (axis == 0u) return dvec2(p.y, p.z);
@@ -44,7 +44,7 @@ FUNC dvec2 without_axis(dvec3 p, uint axis)
     return dvec2(p.x, p.y);
 }
 
-// Of det(a - c, b - c) as seen along an axis: positive where a, b, c turn anticlockwise. 0 where two points are one.
+// The sign of det(a - c, b - c) as seen along an axis: positive if a, b, c turn anticlockwise. 0 if two points are one.
 FUNC int filtered_area_sign(dvec3 a, dvec3 b, dvec3 c, uint axis)
 {
     const double BOUND = double(4.4408920985006262e-16f);

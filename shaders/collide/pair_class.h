@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// How two triangles lie to each other, as sets of points: closed, and a triangle without area is the segment or the
-// point that it covers. The class does not depend on the order of the triangles or of their vertices. Whoever includes
-// this has declared WorldTriangle: world_triangle.glsl, in C++ <twinray/queries.h>.
+// The relation of two triangles as sets of points: closed, and a triangle without area is the segment or the point that
+// it covers. The class does not depend on the order of the triangles or of their vertices. The including file declares
+// WorldTriangle: world_triangle.glsl, in C++ <twinray/queries.h>.
 #ifndef TWINRAY_COLLIDE_PAIR_CLASS_H
 #define TWINRAY_COLLIDE_PAIR_CLASS_H
 #include "shaders/collide/box_tree.h"
@@ -19,7 +19,7 @@ const uint PAIR_UNDECIDED = 6u;        // float64 cannot tell
 
 BUFFER_OF(WorldTriangle, 8);
 
-// A mesh where an instance puts it, and which of all triangles are its.
+// A mesh as an instance places it, and the range of its triangles.
 struct InstancedMesh
 {
     Rows object_to_world;

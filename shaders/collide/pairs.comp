@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The leaves that overlap each query. Within one tree a query begins right of its own leaf, so that each pair is met
+// The leaves that overlap each query. Within one tree a query begins right of its own leaf, so that each pair is found
 // once.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -10,7 +10,7 @@ layout(push_constant, scalar) uniform Push { PairSearchArgs args; };
 
 bool has(uint flag) { return (args.flags & flag) != 0u; }
 
-// Counts them; gives how many there were before, without the high word.
+// Counts them; returns how many there were before, without the high word.
 uint count(uint pairs)
 {
     uint before = atomicAdd(AT(args.total, 0).low, pairs);

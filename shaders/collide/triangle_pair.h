@@ -9,7 +9,7 @@
 #include "shaders/collide/orient.h"
 #include "shaders/collide/pair_class.h"
 
-// What a triangle covers: 2: itself; 1: the segment from a to b = c; 0: the point a = b = c.
+// The shape of a triangle: 2: itself; 1: the segment from a to b = c; 0: the point a = b = c.
 struct Hull
 {
     WorldTriangle at;
@@ -58,10 +58,9 @@ FUNC ivec3 sides_of(WorldTriangle plane, WorldTriangle t)
                  volume_sign(plane.a, plane.b, plane.c, t.c));
 }
 
-// In one plane
-// ---------------------------------------------------------------------------------------------------------------------
+// ---- In one plane ---------------------------------------------------------------------------------------------------
 
-// Whether the line from p to q has t on one side and what has the sign `own` not on that side.
+// Tells whether the line from p to q has t on one side and the point with the sign `own` not on that side.
 struct Separation
 {
     bool is_strict; // no point of t on the line
@@ -101,7 +100,7 @@ FUNC Separation edges_separation(WorldTriangle of, WorldTriangle t, uint axis)
     return found;
 }
 
-// Convex sets in a plane are apart where a line along an edge of either has them on different sides. Edges of no length
+// Convex sets in a plane are apart if a line along an edge of either has them on different sides. Edges of no length
 // never do.
 FUNC uint coplanar_class(Hull t, Hull u, uint axis)
 {
@@ -112,8 +111,7 @@ FUNC uint coplanar_class(Hull t, Hull u, uint axis)
     return has_area ? PAIR_COPLANAR_OVERLAP : PAIR_COPLANAR_TOUCH;
 }
 
-// Two triangles that are not in one plane
-// --------------------------------------------------------------------------------
+// ---- Two triangles that are not in one plane ------------------------------------------------------------------------
 
 // A line through two vertices of a triangle that meets the plane of the other one, upwards.
 struct Cut
@@ -123,7 +121,7 @@ struct Cut
     bool is_vertex; // it meets the plane in one of them
 };
 
-// Where a triangle meets the plane of the other: from one cut to the other.
+// The segment in which a triangle meets the plane of the other: from one cut to the other.
 struct Cuts
 {
     Cut first;
@@ -172,7 +170,7 @@ FUNC Cuts cuts_of(WorldTriangle t, ivec3 s)
     return cuts;
 }
 
-// On the line where the planes meet, on which side of q p is: one sign for all cuts p of one triangle and q of the
+// On the line where the planes meet, the side of q on which p is: one sign for all cuts p of one triangle and q of the
 // other.
 FUNC int order_of(Cut p, Cut q) { return volume_sign(p.from, p.to, q.from, q.to); }
 
@@ -206,8 +204,7 @@ FUNC uint triangles_class(Hull t, Hull u)
     return cuts_class(cuts_of(t.at, of_t), cuts_of(u.at, of_u));
 }
 
-// Segments and points
-// ---------------------------------------------------------------------------------------------------------------------
+// ---- Segments and points --------------------------------------------------------------------------------------------
 
 FUNC uint segment_triangle_class(Hull segment, Hull t)
 {
@@ -247,7 +244,7 @@ FUNC uint axis_of(dvec3 a, dvec3 b, dvec3 c, dvec3 d, INOUT(bool) doubt)
     return 3u;
 }
 
-// Of two segments or points.
+// Classifies two segments or points.
 FUNC uint segments_class(Hull t, Hull u)
 {
     int side = volume_sign(t.at.a, t.at.b, u.at.a, u.at.b);
@@ -256,7 +253,7 @@ FUNC uint segments_class(Hull t, Hull u)
     uint axis = axis_of(t.at.a, t.at.b, u.at.a, u.at.b, doubt);
     if (doubt) return PAIR_UNDECIDED;
     if (axis < 3u) return coplanar_class(t, u, axis);
-    // On a line, that order is the order along it.
+    // For points on a line, that order is the order along it.
     bool is_apart = is_before(t.at.b, u.at.a) || is_before(u.at.b, t.at.a);
     return is_apart ? PAIR_SEPARATE : PAIR_COPLANAR_TOUCH;
 }
@@ -267,7 +264,7 @@ FUNC uint hulls_class(Hull t, Hull u)
     return segments_class(t, u);
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
+// ---- Any two triangles ----------------------------------------------------------------------------------------------
 
 FUNC uint class_of(WorldTriangle t, WorldTriangle u)
 {

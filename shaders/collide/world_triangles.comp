@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Triangles where instances put them: vertices in float64, and boxes around them, rounded outward.
+// Triangles as instances place them: vertices in float64, and boxes around them, rounded outward.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_explicit_arithmetic_types_float64 : require
@@ -9,7 +9,7 @@
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { WorldTrianglesArgs args; };
 
-// The last mesh that does not begin after `triangle`.
+// Returns the last mesh that does not begin after `triangle`.
 uint mesh_of(uint triangle)
 {
     uint low = 0u;

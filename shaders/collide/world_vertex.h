@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The vertices of an instance's triangles in world space, as collisions define them: from float32 positions p and rows
 // r, ((r.x p.x + r.y p.y) + r.z p.z) + r.w in float64. The products are exact, each sum rounds to nearest. All are
-// multiples of 2^-298 below 2^259, so that products of three differences, and what rounds off them, neither over- nor
+// multiples of 2^-298 below 2^259, so that products of three differences, and their rounding errors, neither over- nor
 // underflow float64.
 #ifndef TWINRAY_COLLIDE_WORLD_VERTEX_H
 #define TWINRAY_COLLIDE_WORLD_VERTEX_H
@@ -51,14 +51,14 @@ FUNC float float_below(double x)
 
 FUNC vec3 floats_below(dvec3 p) { return vec3(float_below(p.x), float_below(p.y), float_below(p.z)); }
 
-// Whether no coordinate is infinite or NaN.
+// Returns whether no coordinate is infinite or NaN.
 FUNC bool is_finite_point(dvec3 p)
 {
     const double LARGEST = double(3.402823466e38f) * double(3.402823466e38f) * double(4.0f); // above any that is finite
     return abs(p.x) < LARGEST && abs(p.y) < LARGEST && abs(p.z) < LARGEST;
 }
 
-// Empty where a vertex is not finite.
+// The box is empty if a vertex is not finite.
 FUNC TreeBox box_around(WorldTriangle t, uint item, uint group)
 {
     TreeBox box = empty_tree_box();
