@@ -18,8 +18,8 @@ std::optional<dvec3> point_of(const Scene& scene, const Hit& hit) {
     return a + (b - a) * static_cast<double>(hit.u) + (c - a) * static_cast<double>(hit.v);
 }
 
-// Of points relative to the grid's centre, where squares lose little. Pairs are those of neighbouring rays; a ray that
-// hits nothing brings nothing to a difference.
+// Sums of points relative to the grid's centre, where squares lose little. Pairs are those of neighbouring rays; a ray
+// that hits nothing adds nothing to a difference.
 struct Sums {
     double count = 0;
     dvec3 points = dvec3(0);
@@ -54,7 +54,7 @@ Sums sum_of(Points points, dvec3 center) {
     return sums;
 }
 
-// One for each run of rays_of_sum rays, which are added up in order: no thread decides about a bit.
+// Returns one for each run of rays_of_sum rays; these are added up in order, so that no thread influences a bit.
 std::vector<Sums> sums_of(const Scene& scene, std::span<const Hit> hits, dvec3 center, Points points) {
     std::vector<Sums> sums((hits.size() + rays_of_sum - 1) / rays_of_sum);
     parallel_for(sums.size(), [&](std::size_t begin, std::size_t end) {

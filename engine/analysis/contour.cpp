@@ -10,7 +10,7 @@
 namespace twinray {
 namespace {
 
-// Float64 where that suffices, else the widest that the machine has.
+// Uses float64 if that suffices, else the widest type of the machine.
 template <class Real>
 class Contours {
   public:
@@ -47,7 +47,7 @@ class Contours {
 
     static constexpr std::size_t most_pieces = 16;  // of one length
 
-    // Along the longer edge in closed form: along a short one that would be a small difference of large terms.
+    // Integrates along the longer edge in closed form: along a short one it would be a small difference of large terms.
     Contours(const Edge& of_a, const Edge& of_b) : Contours(of_a, of_b, length_of(of_a) <= length_of(of_b)) {}
     Contours(const Edge& of_a, const Edge& of_b, bool b_is_longer) : outer_(b_is_longer ? of_a : of_b) {
         const Edge& inner = b_is_longer ? of_b : of_a;
@@ -67,14 +67,14 @@ class Contours {
 
     static Real length_of(const Edge& edge) { return length(edge.to - edge.from); }
 
-    // A value, and the size of what was added up to it: what both roundings of that and of coordinates are a part of.
+    // A value, and the sum of magnitudes that its rounding errors are proportional to.
     struct Term {
         Real value = 0, size = 0;
     };
 
     static Real log_of(Real square) { return square == 0 ? Real{0} : std::log(square) / 2; }
 
-    // ln r to the inner edge, along all of that.
+    // The integral of ln r to the inner edge, along all of that.
     Term inner(Real s) const {
         const Vec3 to = to_edge_ - (outer_.from + way_ * s);
         const Real begin = dot(to, along_), end = begin + length_;
@@ -82,7 +82,7 @@ class Contours {
         const Real square = dot(beside, beside), height = std::sqrt(square);
         const Real turn = height == 0 ? Real{0} : std::atan2(height * length_, square + begin * end);
         const Real log_end = log_of(end * end + square), log_begin = log_of(begin * begin + square);
-        // The logarithms and the angle are also what the integral changes by where the ends or the height do.
+        // The logarithms and the angle are also the derivatives of the integral by the ends and the height.
         const Real reach = std::abs(begin) + length_ + height;
         return {end * log_end - begin * log_begin - length_ + height * turn,
                 length_ + reach * (std::abs(log_end) + std::abs(log_begin) + turn)};
@@ -136,9 +136,9 @@ class Contours {
                 difference <= std::max(4 * rounding * length_, rounded)};
     }
 
-    // Along all of the outer edge, whose pieces are halved where the rules do not agree. What is left of halving a
-    // logarithm that often is less than a rounding. It is at a few places of an edge: where more pieces than those
-    // need do not agree, rounding keeps them from it, and the error tells by how much.
+    // Integrates along all of the outer edge, whose pieces are halved while the rules disagree. After so many halvings,
+    // a logarithm leaves less than a rounding. It is at a few places of an edge: if more pieces than those disagree,
+    // rounding prevents agreement, and the error tells by how much.
     Sum halved() const {
         constexpr int most_halvings = std::numeric_limits<Real>::digits / 2 + 4;
         Pieces open;
@@ -178,7 +178,7 @@ ContourExchange exchange(const Polygon64& a, const Polygon64& b, double unit) {
 }  // namespace
 
 ContourExchange contour_exchange(const Polygon64& a, const Polygon64& b) {
-    // In units of the distance, so that logarithms of far polygons are small.
+    // Units of the distance keep logarithms of far polygons small.
     const double unit = std::max({a.longest_edge(), b.longest_edge(), length(a.vertices[0] - b.vertices[0])});
     const ContourExchange first = exchange<double>(a, b, unit);
     constexpr double enough = 0x1p-32;  // of the flow: less than float32 keeps

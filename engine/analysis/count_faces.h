@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Hits counted by groups of faces on the device, and the arguments of the kernel that does.
+// Counts hits by groups of faces on the device; the arguments of the kernel.
 #pragma once
 
 #include "engine/analysis/faces.h"

@@ -40,7 +40,7 @@ const Interval& Estimator::rate(std::uint64_t events, std::uint64_t rays) {
     return found->second;
 }
 
-// `value` is `events` of so many rays as make it that fraction: not of `rays` where faces of a group weigh differently.
+// `value` is `events` of so many rays as make it that fraction: not of `rays` if faces of a group weigh differently.
 const Interval& Estimator::counted(double value, std::uint64_t events, std::uint64_t rays) {
     if (events == 0 || events == rays) return rate(events, rays);
     const auto trials = static_cast<std::uint64_t>(std::llround(static_cast<double>(events) / value));

@@ -14,21 +14,21 @@
 namespace twinray {
 
 inline constexpr std::size_t replicate_count = 16;
-// Of each independent replicate of a sequence, all of them equally long: a sum, or a mean.
+// A sum or a mean for each independent replicate of a sequence, all of them equally long.
 using Replicates = std::array<double, replicate_count>;
 
-// What is known of a value that cannot be but within `possible`: neither it nor its interval leaves that, and the
-// interval holds it.
+// Restricts an estimate to the interval `possible`: neither the value nor its interval leaves that, and the interval
+// holds the value.
 Estimate within(const Interval& possible, double value, const Interval& interval_95);
 
-// The mean of replicates, with Student's 95 % interval for their scatter.
+// Returns the mean of replicates, with Student's 95 % interval for their scatter.
 Estimate scattered(const Replicates& values);
 
-// Fractions in [0, 1] as the means of their replicates, `events` rays of `rays` in all. The interval is Student's for
-// the scatter of the replicates, within [0, 1]; where fewer than 10 rays, or all but as many, had the event, replicates
-// are too few to scatter as they should, and it is that of Clopper and Pearson (1934), which is never too short for
-// independent rays, nor for stratified ones. No interval is shorter than what no ray may have seen, some 3.7 / rays
-// either way: replicates of stratified rays can all agree. Those of counts take long to compute and are the same again
+// Estimates fractions in [0, 1] as the means of their replicates, `events` rays of `rays` in all. The interval is
+// Student's for their scatter, within [0, 1]; if fewer than 10 rays, or all but as many, had the event, replicates are
+// too few to scatter as they should, and it is that of Clopper and Pearson (1934), never too short for independent or
+// stratified rays. No interval is shorter than some 3.7 / rays either way, which no ray may have seen: replicates of
+// stratified rays can all agree. Intervals of counts take long to compute and recur: they are kept.
 // and again: they are kept.
 class Estimator {
   public:

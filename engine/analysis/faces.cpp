@@ -133,7 +133,7 @@ void check_faces(const Scene& scene, const Faces& faces) {
 
 namespace {
 
-// With ranks of the metadata of faces as materials, so that groups are numbered without gaps.
+// Uses ranks of the metadata of faces as materials, so that groups are numbered without gaps.
 Faces::State::Held hold(AbstractAccel& accel) {
     Faces::State::Held held{
         .scene = scene_of(accel), .metadata = {}, .accel = accel.view().accel, .at = accel.backend().edit_count()};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What analyses share about faces: their table on the device, and checks that accelerator and scene belong together.
+// The common part of analyses: the table of faces on the device, and checks that accelerator and scene belong together.
 #pragma once
 
 #include <twinray/analysis.h>
@@ -16,21 +16,21 @@ namespace twinray {
 #include "twinray/glsl/cpp_end.h"
 static_assert(sizeof(Face) == 8 && sizeof(FacesOfInstance) == 72);
 
-// In float64, as everything that the host computes of faces.
+// Computes in float64, like all that the host computes about faces.
 dvec3 in_world(const Transform& transform, vec3 point);
 
-// Of each instance.
+// Returns the number of triangles of each instance.
 std::vector<std::size_t> triangle_counts(const Scene& scene);
 
 // Throws Error, beginning with the accelerator's name and `action`, unless it holds these instances, of geometries with
-// so many triangles each, in this order: push_scene() filled it from the scene that they were counted in. What a kernel
-// reads of a hit's face is then within its tables.
+// so many triangles each, in this order: push_scene() filled it from the scene that they were counted in. All reads of
+// a kernel for a hit's face are then within its tables.
 void check_filled(const AbstractAccel& accel, std::span<const std::size_t> triangle_counts, const char* action);
 
-// Throws Error, beginning with `action`, unless the faces are of what this accelerator holds now.
+// Throws Error, beginning with `action`, unless the faces are those that this accelerator holds now.
 void check_current(AbstractAccel& accel, const Faces& faces, const char* action);
 
-// Throws Error where the numbers of faces and instances are not the same.
+// Throws Error if the numbers of faces and instances differ.
 void check_faces(const Scene& scene, const Faces& faces);
 
 struct Faces::State {
@@ -44,7 +44,7 @@ struct Faces::State {
     std::vector<std::vector<uint>> materials;  // by mesh; empty: all 0
     std::vector<uint> custom_groups;           // of faces
     std::size_t mesh_count = 0, material_count = 0;
-    // Of an accelerator.
+    // The parts that only Faces of an accelerator have.
     struct Held {
         Scene scene;
         std::vector<uint> metadata;

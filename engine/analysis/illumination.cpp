@@ -9,7 +9,7 @@
 namespace twinray {
 namespace {
 
-// What the direction shows of each face; 0 where the side that it meets receives nothing.
+// Returns the area of each face as seen along the direction; 0 if the side that it meets receives nothing.
 std::vector<double> unobstructed_areas(const Scene& scene, const Faces& faces, const RayGridPlan& plan, Sides sides) {
     std::vector<double> areas(faces.count());
     if (plan.ray_count == 0) return areas;
@@ -52,7 +52,7 @@ class GroupCounts {
         args.ray_count = batch.count;
         kernel_.dispatch(commands, args, (batch.count + 1) / 2);
     }
-    // One more than groups: see CountFacesArgs.
+    // Returns one more entry than groups: see CountFacesArgs.
     std::vector<GroupCount> read() const {
         return download<GroupCount>(context_, counts_, std::size_t{args_.group_count} + 1);
     }
@@ -85,7 +85,7 @@ std::vector<GroupCount> count_hits(AbstractAccel& accel, const RayGridPlan& plan
 }
 
 void estimate(LitArea& lit, const GroupCount& count, const RayGridPlan& plan) {
-    // No more light than without shadows, though more rays may hit than are its share.
+    // No face gets more light than without shadows, though more rays may hit than are its share.
     const Interval possible = {0, lit.unobstructed};
     Interval interval = possible;
     if (plan.grid.points == GRID_AT_RANDOM) {

@@ -13,8 +13,8 @@ namespace twinray {
 
 // Lines i,j,F,ci_low,ci_high.
 void write_matrix_csv(const std::filesystem::path& file, std::span<const ViewFactorRow> rows);
-// As scipy.sparse.save_npz writes a csr_matrix, and beside it the intervals, each entry's estimator, and of each row
-// its area, what leaves the scene, what meets backs and how many rays were sent. `areas`: one a row.
+// Writes a csr_matrix in the format of scipy.sparse.save_npz, with the intervals, each entry's estimator, and for each
+// row its area, the fractions that leave the scene and meet backs, and its number of rays. `areas`: one per row.
 void write_matrix_npz(const std::filesystem::path& file, std::span<const ViewFactorRow> rows,
                       std::span<const double> areas);
 

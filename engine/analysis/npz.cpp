@@ -35,7 +35,7 @@ class Record {
 
 constexpr std::uint64_t dos_date = 0x21;  // 1980-01-01: the same bytes whenever they are written
 
-// What the local header and the directory both say of a member.
+// Adds the fields of a member that the local header and the directory share.
 void add_common(Record& record, const std::string& name, std::uint64_t sum, std::uint64_t bytes) {
     record.u16(20).u16(0).u16(0).u16(0).u16(dos_date);
     record.u32(sum).u32(bytes).u32(bytes).u16(name.size()).u16(0);

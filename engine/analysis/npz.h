@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Arrays as NumPy reads them.
+// Writes arrays for NumPy.
 #pragma once
 
 #include <cstdint>
@@ -10,18 +10,18 @@
 
 namespace twinray {
 
-// An .npz file: a ZIP archive, not compressed, of one .npy file an array (numpy.lib.format, version 1.0), little
+// An .npz file: a ZIP archive, not compressed, with one .npy file per array (numpy.lib.format, version 1.0), little
 // endian.
 class Npz {
   public:
     // `shape` empty: one dimension. The values must live until write(). Throws Error for more than 4 GiB of one array,
-    // which wants another format.
+    // which needs another format.
     template <class T>
     void add(const std::string& name, std::span<const T> values, std::vector<std::size_t> shape = {}) {
         add(name, type_of(T{}), values.size(), std::as_bytes(values), std::move(shape));
     }
     void add_text(const std::string& name, const std::string& ascii);  // a scalar of bytes, as "S3"
-    // Whole or not at all; throws Error naming the file.
+    // Writes the whole file or nothing; throws Error naming it.
     void write(const std::filesystem::path& file) const;
 
   private:

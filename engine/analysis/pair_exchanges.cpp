@@ -29,7 +29,7 @@ struct Sampling {
     }
 };
 
-// How many pairs of each group are sampled.
+// Returns the number of sampled pairs of each group.
 std::vector<std::uint64_t> sampled_pairs_of(const PairPlan& plan, std::size_t groups) {
     std::vector<std::uint64_t> counts(groups);
     for (const PlannedPair& pair : plan.pairs) {
@@ -40,9 +40,9 @@ std::vector<std::uint64_t> sampled_pairs_of(const PairPlan& plan, std::size_t gr
     return counts;
 }
 
-// With M rays of which hardly one is blocked the interval reaches some 4 / M of F times what the heaviest ray is above
-// the mean, which is 4 at most where faces are a quarter of their size apart; that of hits 2 sqrt(F / N). This many
-// keep it below that. A row's pairs need no more than 8 sqrt(pairs * N) together.
+// With M rays of which hardly one is blocked, the interval reaches some 4 / M of F times the ratio of the heaviest ray
+// to the mean, which is 4 at most if faces are a quarter of their size apart; that of hits reaches 2 sqrt(F / N). This
+// many rays keep it below that. A row's pairs need no more than 8 sqrt(pairs * N) together.
 std::uint64_t least_rounds(const PlannedPair& pair, double area, std::uint64_t rays_of_row) {
     double flow = 0;
     for (const SampledPair& faces : pair.sampled) flow += faces.unblocked;
@@ -85,7 +85,7 @@ void sample(std::vector<Sampling>& samplings, PairSampler& sampler) {
     }
 }
 
-// Neither gets more than it sends in all.
+// Neither group exchanges more than it sends in all.
 KnownExchange exchange_of(const PlannedPair& pair, const Estimate& sampled, const std::vector<double>& areas) {
     const auto [flow, error, evaluations] = pair.contour;
     const auto [value, interval] =

@@ -37,7 +37,7 @@ FacePart part_of_face(const Polygon64& triangle, const Polygon64& part) {
     return result;
 }
 
-// What is known of two faces.
+// The known geometry of two faces.
 struct FacePair {
     uint a, b;
     std::vector<FacingPair> parts;   // that see each other, of each pair of sides
@@ -69,7 +69,7 @@ class Planner {
     }
 
   private:
-    // False where hits are to tell.
+    // Returns false if hits are to be used.
     bool plan(PlannedPair& pair, std::string& refusal) const {
         for (const uint a : members_[pair.i])
             for (const uint b : members_[pair.j]) {
@@ -85,12 +85,12 @@ class Planner {
         return true;
     }
 
-    // Whether a row's rays do not suffice for all faces of the pair.
+    // Returns whether a row's rays do not suffice for all faces of the pair.
     bool is_too_much(const PlannedPair& pair) const {
         return options_.estimator == PairEstimator::automatic && pair.sampled.size() * CHUNK > options_.rays;
     }
 
-    // Nothing where they do not see each other.
+    // Returns nothing if they do not see each other.
     std::optional<FacePair> look_at(uint a, uint b) const {
         const Polygon64 &of_a = polygons_.faces[a], &of_b = polygons_.faces[b];
         const double rounding = rounding_of(std::max(polygons_.sizes[a], polygons_.sizes[b]));
@@ -142,7 +142,7 @@ class Planner {
         return choose(faces, pair);
     }
 
-    // Contours are kept unless areas are sure to be better, which take 10^4 rays and more to an error of 2^-12.
+    // Contours are kept unless areas are sure to be better, which need 10^4 rays and more for an error of 2^-12.
     bool choose(const FacePair& faces, PlannedPair& pair) const {
         const bool is_far = faces.gap_over_size >= least_gap_for_area;
         if (!faces.in_between) {
@@ -165,8 +165,8 @@ class Planner {
             add(faces.in_between ? anything_up_to(contour_of(faces)) : contour_of(faces), pair);
     }
 
-    // Whether a part reaches so far before the other's plane that float32 holds its samples there. They are moved away
-    // from edges, too, by some 2^-18 of the coordinates, which counts where a corner is all that is seen.
+    // Returns whether a part reaches so far in front of the other's plane that float32 keeps its samples there. Samples
+    // are also moved away from edges, by some 2^-18 of the coordinates, which matters if only a corner is seen.
     bool can_be_sampled(const FacePair& faces) const {
         const double size = std::max(polygons_.sizes[faces.a], polygons_.sizes[faces.b]);
         return std::any_of(faces.parts.begin(), faces.parts.end(), [&](const FacingPair& parts) {
@@ -177,7 +177,7 @@ class Planner {
         });
     }
 
-    // What is known where something may be in the way of any part of it.
+    // The bounds if an obstacle may be in front of any part of it.
     static ContourExchange anything_up_to(const ContourExchange& unblocked) {
         const double half = (unblocked.flow + unblocked.error) / 2;
         return {half, half, unblocked.evaluations};
@@ -201,7 +201,7 @@ class Planner {
         pair.contour.evaluations += contour.evaluations;
     }
 
-    // Of two sides, all points of both faces see each other on one or the other.
+    // With two sides, all points of both faces see each other on one or the other.
     SampledPair sampled(const FacePair& faces) const {
         const Polygon64 &a = polygons_.faces[faces.a], &b = polygons_.faces[faces.b];
         const FacingPair parts = options_.sides == Sides::both ? FacingPair{a, b} : faces.parts.front();

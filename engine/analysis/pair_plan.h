@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// By which estimator each pair of groups of faces is to be told: pure functions.
+// Chooses the estimator for each pair of groups of faces: pure functions.
 #pragma once
 
 #include <twinray/analysis.h>
@@ -25,17 +25,17 @@ struct FacePolygons {
     explicit FacePolygons(const Scene& scene);
 };
 
-// Faces of which areas are sampled, each where it lies before the other's plane.
+// Two faces whose areas are sampled, each by its part on the front side of the other's plane.
 struct SampledPair {
     uint a, b;
     FacePart part_a, part_b;
-    double fraction;   // of the product of both areas, what the parts have
+    double fraction;   // the parts' share of the product of both areas
     double distance;   // of the parts' centers
     double unblocked;  // A F if nothing were in between
     bool may_be_blocked;
 };
 
-// What groups i and j exchange, i <= j: A_i F_ij, of which contours tell `contour` and areas the rest.
+// The exchange of groups i and j, i <= j: A_i F_ij, of which contours give `contour` and areas the rest.
 struct PlannedPair {
     uint i, j;
     ContourExchange contour;
@@ -53,15 +53,15 @@ struct PairPlanOptions {
     std::uint64_t rays = 1 << 14;  // of a row: what areas may take in `automatic`
 };
 
-// Areas have less variance than hits where the gap is at least this part of the longest edge: at 0.2 both have as much,
-// for parallel squares as for perpendicular ones (docs/view-factors.md).
+// Areas have less variance than hits if the gap is at least this part of the longest edge: at 0.2 both have as much,
+// for parallel squares and for perpendicular ones (docs/view-factors.md).
 inline constexpr double least_gap_for_area = 0.25;
 // Below this, a few samples in narrow places decide, and intervals of areas do not hold.
 inline constexpr double least_gap_asked_for = 1.0 / 16;
 
-// `members`: the faces of each group, those with an area. Throws Error naming faces and limit where the estimator that
-// is asked for does not fit a pair, or where there are more than most_paired_faces.
-// `progress` is told of groups.
+// `members`: the faces with an area of each group. Throws Error naming faces and limit if the requested estimator does
+// not fit a pair, or if there are more than most_paired_faces.
+// `progress` gets numbers of groups.
 PairPlan plan_pairs(const FacePolygons& polygons, std::span<const std::vector<uint>> members,
                     const PairPlanOptions& options, const ProgressCallback& progress = {});
 

@@ -16,19 +16,18 @@ static_assert(sizeof(PairChunk) == 88 && sizeof(PairRaysArgs) == 56 && sizeof(Pa
 
 class PairSampler {
   public:
-    // Two faces that are sampled, and where what is found is added.
+    // Two faces that are sampled, and the destination of the results.
     struct Pair {
         const SampledPair* faces;
-        double share;               // by what the exchange of these faces is multiplied
+        double share;               // the factor for the exchange of these faces
         std::uint64_t first, last;  // chunks of rays
         PairSums* sums;
     };
 
-    // `accel` holds the scene of `faces`, put there by push_scene(), and is in sync. All must outlive this.
+    // `accel` holds the scene of `faces`, from push_scene(), and is in sync. All must outlive this.
     PairSampler(AbstractAccel& accel, const Faces& faces, Sides sides, Sequence sequence, uint seed);
 
-    // Adds chunks [first, last) of each pair's rays. What they are depends on its faces, their order and the seed
-    // alone.
+    // Adds chunks [first, last) of each pair's rays. The rays depend only on its faces, their order and the seed.
     void sample(std::span<const Pair> pairs);
 
   private:

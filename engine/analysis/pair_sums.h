@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What rays between points of faces have told of their exchange so far: pure functions.
+// The results so far of rays between points of faces, for their exchange: pure functions.
 #pragma once
 
 #include <span>
@@ -10,14 +10,14 @@ namespace twinray {
 
 class PairSums {
   public:
-    // Of a chunk of rays (see shaders/analysis/pair_rays.h): what each would add to the exchange if it were all of
-    // them, before `unit`; negative where it is blocked.
+    // Adds a chunk of rays (see shaders/analysis/pair_rays.h): the exchange by each if it were the only one, before
+    // `unit`; negative if it is blocked.
     void add(std::span<const float> weights, double unit);
 
     std::uint64_t rays() const { return rays_; }
-    // The mean, with the 95 % interval of Student's distribution for the scatter of the replicates. Where something may
-    // be in the way, but fewer than 10 rays are blocked, or fewer than 10 free, replicates are too few to tell: the
-    // interval then has room for the rate of Clopper and Pearson, of rays as heavy as the heaviest.
+    // Returns the mean, with the 95 % interval of Student's distribution for the scatter of the replicates. If an
+    // obstacle is possible, but fewer than 10 rays are blocked, or fewer than 10 free, replicates are too few to tell:
+    // the interval then has room for the rate of Clopper and Pearson, of rays as heavy as the heaviest.
     Estimate exchange(bool may_be_blocked) const;
 
   private:

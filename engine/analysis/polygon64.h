@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Faces as convex polygons in float64, and what of one lies before the plane of another: pure functions.
+// Faces as convex polygons in float64, and the part of one on the front side of the plane of another: pure functions.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace twinray {
 
-// A triangle, or what a plane has left of it. The vertices turn counter-clockwise seen from the side that counts.
+// A triangle, or the part of it that a plane leaves. Vertices are counter-clockwise as seen from its front.
 struct Polygon64 {
     std::array<dvec3, 4> vertices = {};
     std::size_t count = 0;
@@ -22,16 +22,16 @@ struct Polygon64 {
     void add(const dvec3& vertex) { vertices[count++] = vertex; }
     std::span<const dvec3> points() const { return {vertices.data(), count}; }
     const dvec3& after(std::size_t i) const { return vertices[(i + 1) % count]; }
-    // As long as the area.
+    // Returns the normal vector with the length of the area.
     dvec3 area_vector() const;
     double area() const { return length(area_vector()); }
     double longest_edge() const;
     dvec3 center() const;  // of the vertices
-    // Seen from the other side.
+    // Returns the polygon seen from the other side.
     Polygon64 flipped() const;
 };
 
-// Where the points lie along an axis.
+// The range of the points along an axis.
 struct Extent {
     double low = std::numeric_limits<double>::infinity(), high = -low;
 
@@ -46,25 +46,24 @@ struct PolygonBox {
 };
 PolygonBox box_of(const Polygon64& polygon);  // which has vertices
 
-// How far a coordinate may be off that a few operations have made from numbers as large as `size`.
+// Returns the largest error of a coordinate after a few operations on numbers as large as `size`.
 double rounding_of(double size);
 
-// What of `polygon` lies on the side of the plane of `triangle` from which that turns counter-clockwise; nothing where
-// that is an edge, or less. Vertices within `rounding` of the plane lie in it.
+// Returns the part of `polygon` on the side of the plane of `triangle` from which that is counter-clockwise; empty if
+// the part is an edge, or less. Vertices within `rounding` of the plane are in it.
 Polygon64 before(const Polygon64& polygon, const Polygon64& triangle, double rounding);
 
-// What of two triangles sees the other, each on the side from which it turns counter-clockwise; empty where none does.
+// The parts of two triangles that see each other from their counter-clockwise sides; empty if none do.
 struct FacingPair {
     Polygon64 a, b;
     bool is_empty() const { return a.count == 0 || b.count == 0; }
 };
 FacingPair facing_parts(const Polygon64& a, const Polygon64& b, double rounding);
 
-// The largest distance of a point of `polygon` from the plane of `other`, on the side from which that turns
-// counter-clockwise.
+// Returns the largest distance of a point of `polygon` from the plane of `other`, on the front side of that.
 double height_before(const Polygon64& polygon, const Polygon64& other);
 
-// A lower bound of their distance over the longest edge of both.
+// Returns a lower bound of their distance over the longest edge of both.
 double gap_over_size(const Polygon64& a, const Polygon64& b);
 
 }  // namespace twinray

@@ -22,7 +22,7 @@ void check(std::span<const double> values, std::size_t rows, const char* name, d
             fail("radiosity: ", name, " of row ", i, " is ", values[i], "; it must be ", low, " to ", high);
 }
 
-// By what the float32 entries of a row are multiplied so that they add up to what it has not lost.
+// The factor for the float32 entries of a row after which they add up to the part that is not lost.
 double closing_factor(const ViewFactorRow& row) {
     if (row.factors.empty()) return 1;
     double sum = 0;
@@ -34,7 +34,7 @@ double closing_factor(const ViewFactorRow& row) {
     return seen / sum;
 }
 
-// F, or what `value` says of its entries.
+// Returns F, or a matrix with `value` of its entries.
 template <class Value>
 Matrix matrix_of(const std::vector<ViewFactorRow>& rows, const Value& value) {
     const auto n = static_cast<Eigen::Index>(rows.size());
@@ -49,7 +49,7 @@ Matrix matrix_of(const std::vector<ViewFactorRow>& rows, const Value& value) {
     return matrix;
 }
 
-// (I - rho F) x = b.
+// The linear system (I - rho F) x = b.
 class System {
   public:
     System(const Matrix& factors, const Vector& reflectance) : matrix_(-(reflectance.asDiagonal() * factors)) {
@@ -60,8 +60,8 @@ class System {
         solver_.setTolerance(1e-8);
     }
 
-    // Correction by correction, until one makes it no better. Each is of a right side of length 1: Eigen 5's tolerance
-    // is absolute, that of Eigen 3.4 relative.
+    // Solves correction by correction, until one makes it no better. Each has a right side of length 1: Eigen 5's
+    // tolerance is absolute, that of Eigen 3.4 relative.
     Vector solve(const Vector& b) {
         Vector x = Vector::Zero(b.size()), residual = b;
         iterations_ = 0;

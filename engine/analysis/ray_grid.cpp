@@ -17,7 +17,7 @@ constexpr uint largest_side = 65535;
 
 std::string text_of(dvec3 v) { return text("(", v.x, ", ", v.y, ", ", v.z, ")"); }
 
-// Axes of the plane, and the way of the rays.
+// The axes of the plane, and the direction of the rays.
 struct Axes {
     dvec3 across, up, along;
 };
@@ -29,7 +29,7 @@ Axes axes_of(dvec3 direction) {
     return {across, normalize(cross(along, across)), along};
 }
 
-// What lies between the least and the largest coordinates on the axes.
+// The range between the least and the largest coordinates on the axes.
 struct PlaneExtent {
     dvec3 low = dvec3(INFINITY), high = dvec3(-INFINITY);  // across, up, along
     double largest = 0;                                    // coordinate in world space
@@ -74,7 +74,7 @@ void check_range(dvec3 point) {
 }  // namespace
 
 dvec3 unit_direction(dvec3 direction) {
-    // Squares of components may leave float64.
+    // Squares of components may overflow float64.
     const double largest = std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
     if (!(largest > 0) || !is_finite(direction))
         fail("the direction ", text_of(direction), " must be finite and not 0");
@@ -88,8 +88,8 @@ RayGridPlan plan_ray_grid(const Scene& scene, const RayGridDesc& desc) {
     const PlaneExtent extent = extent_of(scene, axes);
     if (extent.is_empty()) return {};
     const dvec3 size = extent.high - extent.low;
-    // A twentieth of the scene stays between it and the plane. Origins and what an accelerator makes of them are off by
-    // some roundings of coordinates.
+    // The plane is a twentieth of the scene in front of it. Origins, and these after an accelerator's transforms, are
+    // off by some roundings of coordinates.
     const double gap = 0.05 * std::max({size.x, size.y, size.z});
     const double rounding = 0x1p-21 * (extent.largest + gap);
     const double depth = extent.low.z - gap - rounding;

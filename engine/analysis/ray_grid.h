@@ -21,22 +21,22 @@ struct RayGridPlan {
     dvec3 center = dvec3(0);      // of the grid
 };
 
-// Cells of a rectangle across the direction in front of all finite triangles, that covers what they look like from
-// there, with a margin of some roundings of their coordinates. Throws Error for a direction that is 0 or not finite,
-// for `side`, and for scenes that rays in float32 cannot start in front of.
+// Plans cells of a rectangle across the direction in front of all finite triangles, which covers their projection, with
+// a margin of some roundings of their coordinates. Throws Error for a direction that is 0 or not finite, for `side`,
+// and for scenes that float32 rays cannot start in front of.
 RayGridPlan plan_ray_grid(const Scene& scene, const RayGridDesc& desc);
 
-// At most, in a submission of rays of a grid or of faces: 64 MiB on the device with their hits.
+// The most rays in a submission for a grid or for faces: 64 MiB on the device with their hits.
 constexpr uint rays_of_batch = 1 << 20;
 
 // A run of rays of a plan. It begins with an even number.
 struct RayBatch {
     uint first = 0, count = 0;
 };
-// Each has at most rays_of_batch.
+// Each batch has at most rays_of_batch.
 std::vector<RayBatch> ray_batches(std::uint64_t ray_count);
 
-// As long as 1; throws Error for a direction that is 0 or not finite.
+// Scales to length 1; throws Error for a direction that is 0 or not finite.
 dvec3 unit_direction(dvec3 direction);
 
 // Makes the rays of batches and traces them.
@@ -45,11 +45,11 @@ class RayGridTrace {
     // Syncs the accelerator, which must not change until the last batch is done.
     RayGridTrace(AbstractAccel& accel, const RayGridPlan& plan);
 
-    // What is recorded is submitted on the way, if it might take too long.
+    // Recorded work is submitted on the way if it might take too long.
     void record(Commands& commands, RayBatch batch);
-    // Submits what was recorded, waits and learns how long it takes.
+    // Submits the recorded work, waits and learns how long it takes.
     void finish(Commands& commands) { pace_.finish(commands); }
-    // Of the last batch; the first one is that of its first ray.
+    // Holds the last batch; its first hit is that of the batch's first ray.
     const Buffer& hits() const { return hits_; }
 
   private:

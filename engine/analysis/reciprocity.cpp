@@ -12,7 +12,7 @@
 namespace twinray {
 namespace {
 
-// What i and j exchange, i <= j: at first A_i F_ij and A_j F_ji, 0 where no ray told.
+// The exchange of i and j, i <= j: at first A_i F_ij and A_j F_ji, 0 without rays.
 struct Exchange {
     uint i, j;
     double of_i = 0, of_j = 0;
@@ -22,7 +22,7 @@ struct Exchange {
 // A 95 % interval is about two standard deviations long either way.
 double deviation(const ViewFactor& factor) { return static_cast<double>(factor.high - factor.low) / 4; }
 
-// Ascending by i and j.
+// Returns them ascending by i and j.
 std::vector<Exchange> exchanges_of(const std::vector<ViewFactorRow>& rows, const std::vector<double>& areas) {
     std::size_t count = 0;
     for (const ViewFactorRow& row : rows) count += row.factors.size();
@@ -59,8 +59,8 @@ const ViewFactor* find(const ViewFactorRow& row, uint target) {
     return found != row.factors.end() && found->target == target ? &*found : nullptr;
 }
 
-// Of A F, where that many rays found the fraction F; of the fraction that a row has in truth, not of the one it found,
-// so that a row that found less does not count for more.
+// The variance of A F if that many rays found the fraction F. `flow` gives the true fraction of a row, not the one it
+// found, so that a row that found less does not count for more.
 double variance(double flow, double area, std::uint64_t rays) {
     const double fraction = std::min(1.0, flow / area);
     return area * area * fraction * (1 - fraction) / static_cast<double>(rays);
@@ -89,8 +89,8 @@ Joint joint(const Exchange& exchange, const std::vector<ViewFactorRow>& rows, co
     return mean;
 }
 
-// Where each row's remainder of 1 is to go: x_ij = flow_ij + variance_ij (lambda_i + lambda_j), with the lambda for
-// which rows add up to their areas.
+// Distributes each row's remainder of 1: x_ij = flow_ij + variance_ij (lambda_i + lambda_j), with the lambda for which
+// rows add up to their areas.
 class Projection {
   public:
     Projection(const std::vector<ViewFactorRow>& rows, const std::vector<double>& areas) : rows_(rows), areas_(areas) {
@@ -154,14 +154,14 @@ class Projection {
         Joint both;
     };
 
-    // A row all of whose rays were lost may still exchange what others saw: its variance is of what that leaves.
+    // A row all of whose rays were lost may still exchange what others saw: its variance is that of the remainder.
     Joint joint_of(const ViewFactorRow& row, const Estimate& lost, double left) const {
         if (row.rays == 0) return {};
         const double area = areas_[row.group], flow = lost.value * area;
         return {flow, variance(std::clamp(left, 0.0, flow), area, row.rays)};
     }
 
-    // Each row is solved in units of its own area: those of small faces matter as much.
+    // Each row is solved in units of its own area, so that those of small faces matter as much.
     Eigen::VectorXd multipliers() const {
         const auto n = static_cast<Eigen::Index>(rows_.size());
         Eigen::VectorXd missing = Eigen::VectorXd::Zero(n), diagonal = Eigen::VectorXd::Zero(n);
@@ -193,7 +193,7 @@ class Projection {
         return scale.cwiseProduct(lambda);
     }
 
-    // Entry by entry in order, without a copy of them all.
+    // It multiplies entry by entry in order, without a copy of them all.
     using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
     Matrix upper_matrix(const Eigen::VectorXd& diagonal, const Eigen::VectorXd& scale) const {
         Matrix matrix(diagonal.size(), diagonal.size());
@@ -209,7 +209,7 @@ class Projection {
         return matrix;
     }
 
-    // `old`: what was counted; null where no ray told, which leaves up to `unseen`.
+    // `old`: the counted factor; null without rays, which leaves up to `unseen`.
     static void carry_interval(const ViewFactor* old, float unseen, ViewFactor& factor) {
         const float low = factor.value - (old ? old->value - old->low : factor.value);
         const float high = factor.value + (old ? old->high - old->value : unseen);

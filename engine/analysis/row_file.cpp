@@ -45,7 +45,7 @@ class Reader {
 
     std::size_t at() const { return at_; }
     void skip(std::size_t count) { at_ += count; }
-    // Nothing where the next row is not whole.
+    // Returns nothing if the next row is not whole.
     std::optional<ViewFactorRow> row() {
         RowHeader header;
         if (!peek(&header, at_, sizeof(header))) return std::nullopt;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rows of view factors, one after the other, in a run that a later one can go on from.
+// Computes rows of view factors, one after the other, in a run that a later one can continue.
 #pragma once
 
 #include <functional>
@@ -10,7 +10,7 @@
 
 namespace twinray {
 
-// All that rows depend on, as a RowFile knows it. `accel`: who traces.
+// Describes everything that rows depend on, for a RowFile. `accel`: the tracing accelerator.
 std::string configuration_of(const ViewFactorOptions& options, PairEstimator estimator, std::string_view accel,
                              const Scene& scene, const Faces& faces);
 
@@ -21,10 +21,9 @@ struct ComputedRows {
     std::uint64_t rays() const;  // of this run
 };
 
-// The rows of an earlier run if it `resumes`, else none, and an empty file. `file` may be null.
+// Returns the rows of an earlier run if it `resumes`, else none, and an empty file. `file` may be null.
 ComputedRows begin_rows(RowFile* file, bool resumes);
-// Computes those that are missing and appends them to the file; tells `advance` how many rows are there now that were
-// not.
+// Computes the missing rows and appends them to the file; passes the number of new rows to `advance`.
 void complete_rows(ComputedRows& computed, ViewFactors& factors, RowFile* file,
                    const std::function<void(std::uint64_t)>& advance);
 

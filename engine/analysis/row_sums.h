@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the rays of one row of view factors have met so far.
+// The hits so far of the rays of one row of view factors.
 #pragma once
 
 #include <span>
@@ -18,10 +18,10 @@ class RowSums {
         Replicates sums;  // of weights
     };
 
-    // Of a chunk of rays (see shaders/analysis/view_factors.h), each of which counts as `weight`. Order does not matter
-    // but for rounding; weights that are powers of two do not round.
+    // Adds a chunk of rays (see shaders/analysis/view_factors.h), each of which counts as `weight`. Order does not
+    // matter but for rounding; weights that are powers of two do not round.
     void add(std::span<const uint> targets, double weight);
-    // Joins what was added; the rest is then up to date.
+    // Merges the added chunks; the rest is then up to date.
     void settle();
 
     std::uint64_t rays() const { return rays_; }

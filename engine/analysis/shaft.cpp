@@ -10,7 +10,7 @@ void add_edges(const Polygon64& polygon, std::vector<dvec3>& edges) {
     for (std::size_t i = 0; i < polygon.count; ++i) edges.push_back(polygon.after(i) - polygon.vertices[i]);
 }
 
-// Whether an edge of `one` parts it from `other`, in a plane with this normal; they may touch.
+// Returns whether an edge of `one` separates it from `other`, in a plane with this normal; they may touch.
 bool has_edge_between(const Polygon64& one, const Polygon64& other, const dvec3& normal, double rounding) {
     for (std::size_t i = 0; i < one.count; ++i) {
         const dvec3 across = normalize(cross(one.after(i) - one.vertices[i], normal));
@@ -37,7 +37,7 @@ Shaft::Shaft(const FacingPair& pair, double rounding) : pair_(pair), rounding_(r
         for (std::size_t j = own; j < edges_.size(); ++j) add_axis(cross(edges_[i], edges_[j]));
 }
 
-// Nothing along no direction.
+// Returns nothing for a direction of 0.
 std::optional<Shaft::Axis> Shaft::axis_along(const dvec3& direction) const {
     const double size = length(direction);
     if (!(size > 0)) return std::nullopt;
@@ -49,7 +49,7 @@ void Shaft::add_axis(const dvec3& direction) {
     if (const std::optional<Axis> axis = axis_along(direction)) axes_.push_back(*axis);
 }
 
-// Parts by an axis: strictly, or touching; but what lies in the plane of a polygon must lie beside it.
+// Returns whether an axis separates it: strictly, or touching; but a face in the plane of a polygon must be beside it.
 bool Shaft::is_apart(const Polygon64& face, const Axis& axis) const {
     const Extent of_face = extent_of(face, axis.unit);
     const double gap = of_face.gap_to(axis.a.with(axis.b));

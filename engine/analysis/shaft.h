@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What can come between two polygons: pure functions.
+// The obstacles that can be between two polygons: pure functions.
 #pragma once
 
 #include <optional>
@@ -15,14 +15,14 @@ class Shaft {
   public:
     Shaft(const FacingPair& pair, double rounding);
 
-    // Whether `face` may be in the way. False only where a plane parts it from the shaft: the axes are those of the
-    // theorem of separating axes, so that what touches the shaft from outside is not in the way, as walls of a convex
-    // room are not. A face that lies in the plane of a polygon and covers some of it is. What reaches into the shaft by
-    // less than `rounding` does not count.
+    // Returns whether `face` may be in the way; false only if a plane separates it from the shaft. The axes are those
+    // of the theorem of separating axes, so that a face that touches the shaft from outside is not in the way, such as
+    // a wall of a convex room. A face that lies in the plane of a polygon and covers some of it is. A face that reaches
+    // into the shaft by less than `rounding` does not count.
     bool may_be_blocked_by(const Polygon64& face, const PolygonBox& box_of_face) const;
 
   private:
-    // A direction, and where the polygons lie along it.
+    // A direction, and the range of the polygons along it.
     struct Axis {
         dvec3 unit;
         Extent a, b;

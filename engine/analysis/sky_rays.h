@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How many rays from the faces of a scene get out of it, counted on the device.
+// Counts on the device how many rays from the faces of a scene leave it.
 #pragma once
 
 #include "engine/analysis/count_faces.h"
@@ -21,8 +21,8 @@ class SkyRays {
     // meanwhile. Throws Error for `samples` and for an accelerator with other instances.
     SkyRays(AbstractAccel& accel, const Faces& faces, const SkyRaysDesc& desc);
 
-    // By face: rays from points all over it that meet nothing. To the sky they go by what uniform light from above the
-    // horizon would bring through either side. Rays are independent of each other and of those of other streams.
+    // Counts, by face, the rays from points all over it that meet nothing. To the sky they are distributed like uniform
+    // light from above the horizon through either side. Rays are independent of each other and of other streams.
     std::vector<GroupCount> free_to_sky(dvec3 zenith) const { return trace(zenith, false, 0); }
     std::vector<GroupCount> free_to_sun(dvec3 sun, uint stream) const { return trace(sun, true, stream); }
 

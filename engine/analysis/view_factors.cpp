@@ -34,7 +34,7 @@ bool has(const std::vector<ViewFactor>& factors, uint target) {
     return std::binary_search(factors.begin(), factors.end(), ViewFactor{.target = target}, is_before);
 }
 
-// Whether contours add up to 1, as far as they are known: rays then meet nothing else.
+// Returns whether the known contours add up to 1: rays then meet nothing else.
 bool is_full(const std::vector<ViewFactor>& known) {
     double left = 1;
     for (const ViewFactor& factor : known) left -= factor.by == PairEstimator::contour ? factor.high : 0;
@@ -49,7 +49,7 @@ ViewFactor factor_of(const KnownExchange& exchange, uint target, double area) {
             exchange.by};
 }
 
-// A face of a group gets rays by its area. A round takes chunks of it in proportion to `chunks`, so that weights stay.
+// Faces of a group get rays by area. A round takes chunks of each in proportion to `chunks`, so that weights stay.
 struct Row {
     struct Member {
         uint face;
@@ -85,7 +85,7 @@ std::vector<std::vector<ViewFactor>> factors_of(std::span<const KnownExchange> k
     return factors;
 }
 
-// Null where each face is a group of its own.
+// Returns null if each face is a group of its own.
 Buffer groups_on_device(Context& context, const Faces& faces, FaceGrouping grouping) {
     if (grouping == FaceGrouping::face) return {};
     const std::vector<uint> groups = faces.groups(grouping);
@@ -163,8 +163,8 @@ std::size_t ViewFactors::batch_size() const {
                                    4096);
 }
 
-// How often the first round's rays are to have been taken after the next one: doubles while errors are above the
-// target; none where the row is done.
+// The number of times that the first round's rays are taken after the next round: doubles while errors are above the
+// target; none if the row is done.
 std::uint64_t ViewFactors::State::rounds_of(const Row& row) {
     if (row.rounds == 0) return row.members.empty() ? 0 : 1;
     if (!options.target_error || row.sums.rays() * 2 > options.rays) return row.rounds;
@@ -201,7 +201,7 @@ std::vector<ViewFactorRow> ViewFactors::rows(std::size_t first, std::size_t last
     return results;
 }
 
-// The next round of each.
+// Traces the next round of each.
 void ViewFactors::State::trace(std::vector<Row*>& rows) {
     struct Owner {
         Row* row;

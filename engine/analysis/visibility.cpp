@@ -29,7 +29,7 @@ class Tiles {
     Tiles(AbstractAccel& accel, std::span<const vec3> points, std::span<const vec3> directions,
           std::span<const vec3> normals, const VisibilityDesc& desc);
 
-    // Of `count` points from `first` on, by point, then by direction.
+    // Answers for `count` points from `first` on, by point, then by direction.
     void find(std::size_t first, std::size_t count, std::uint8_t* answers);
     std::size_t points_of_tile() const { return rays_.bytes() / sizeof(Ray) / directions_; }
 

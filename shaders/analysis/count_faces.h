@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Hits counted by the groups of faces that they are on.
+// Counts hits by the groups of their faces.
 #ifndef TWINRAY_ANALYSIS_COUNT_FACES_H
 #define TWINRAY_ANALYSIS_COUNT_FACES_H
 #include "shaders/analysis/faces.h"
@@ -18,7 +18,7 @@ struct CountFacesArgs
     FaceTable table;
     REF(Hit) hits;
     Uints groups; // of each face; absent: a face is its own group
-    // One more than groups: the last one counts as odd the pairs of which one ray meets any group.
+    // There is one more than groups: the last one counts as odd the pairs of which one ray hits any group.
     REF(GroupCount) counts;
     uint ray_count;
     uint group_count;

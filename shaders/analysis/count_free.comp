@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Adds what two rays of a face met to its counts.
+// Adds the results of two rays of a face to its counts.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

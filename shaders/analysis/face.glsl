@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which face: faces are numbered by instance, then by triangle.
+// Names a face: faces are numbered by instance, then by triangle.
 struct Face
 {
     uint instance;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What each ray has met.
+// Finds the target of each ray.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

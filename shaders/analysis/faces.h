@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What analysis counts by: a face is a triangle of an instance. Faces are numbered by instance, then by triangle.
-// Whoever includes this has declared Face: face.glsl, in C++ <twinray/analysis.h>.
+// Faces are the units of analyses: a face is a triangle of an instance. Faces are numbered by instance, then by
+// triangle. The including file declares Face: face.glsl, in C++ <twinray/analysis.h>.
 #ifndef TWINRAY_ANALYSIS_FACES_H
 #define TWINRAY_ANALYSIS_FACES_H
 #include "twinray/glsl/spawn.h"
@@ -28,7 +28,7 @@ FUNC uint face_of(FaceTable table, Hit hit)
     return AT(table.instances, hit.instance_index).first + hit.primitive_index;
 }
 
-// The point (1-u-v) v0 + u v1 + v v2 of a face, in world space, with what it takes to leave it.
+// The point (1-u-v) v0 + u v1 + v v2 of a face, in world space, with the data for a ray to leave it.
 FUNC SurfacePoint point_on_face(FaceTable table, uint face, vec2 uv)
 {
     Face which = AT(table.faces, face);
@@ -37,7 +37,7 @@ FUNC SurfacePoint point_on_face(FaceTable table, uint face, vec2 uv)
                          vertices_of(instance.positions, instance.indices, which.primitive), uv);
 }
 
-// Whether a direction comes from the side on which the vertices turn counter-clockwise in object space.
+// Returns whether a direction comes from the side on which the vertices turn counter-clockwise in object space.
 FUNC bool meets_front(FaceTable table, uint face, vec3 direction)
 {
     Face which = AT(table.faces, face);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rays between points of two faces, and what they tell of the exchange.
+// Rays between points of two faces, and their parts of the exchange.
 #ifndef TWINRAY_ANALYSIS_PAIR_RAYS_H
 #define TWINRAY_ANALYSIS_PAIR_RAYS_H
 #include "shaders/analysis/face_part.h"

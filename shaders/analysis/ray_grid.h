@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Parallel rays through the cells of a plane: what one sees of a scene that looks at it from far away.
+// Parallel rays through the cells of a plane: the view of a scene from far away.
 #ifndef TWINRAY_ANALYSIS_RAY_GRID_H
 #define TWINRAY_ANALYSIS_RAY_GRID_H
 #include "twinray/glsl/random.h"
@@ -30,7 +30,7 @@ struct GridRaysArgs
     uint count;
 };
 
-// Column and row of a cell. Any two cells 2 i and 2 i + 1 are neighbours, but where strips end.
+// Column and row of a cell. Any two cells 2 i and 2 i + 1 are neighbours, except at the ends of strips.
 FUNC uvec2 grid_cell(RayGrid grid, uint index)
 {
     uint strip = index / (GRID_STRIP * grid.side);

@@ -58,7 +58,7 @@ FUNC Ray sky_ray(SkyRaysArgs args, uint index)
     vec3 direction = args.towards;
     if (args.to_sun == 0u)
     {
-        // By the cosine, over all of the sphere that is not below the horizon.
+        // The density is the cosine, over all of the sphere that is not below the horizon.
         direction = to_world(frame_about(point.normal), sample_cosine_hemisphere(first));
         if (dot(direction, args.towards) < 0.0f) direction = -direction;
     }

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: MIT
-// Rays that leave a face as diffuse radiation does, and what they meet.
+// Rays that leave a face as diffuse radiation does, and their targets.
 #ifndef TWINRAY_ANALYSIS_VIEW_FACTORS_H
 #define TWINRAY_ANALYSIS_VIEW_FACTORS_H
 #include "shaders/analysis/faces.h"
 #include "twinray/glsl/sampling.h"
 #include "twinray/glsl/sobol.h"
 
-// Samples are drawn in as many independent sequences, whose scatter tells the error of the mean.
+// Samples are drawn in as many independent sequences, whose scatter gives the error of the mean.
 const uint REPLICATES = 16u;
 const uint SAMPLES_OF_CHUNK = 4u; // of each replicate
 const uint CHUNK = 64u;           // rays, one invocation each: REPLICATES * SAMPLES_OF_CHUNK
 
-// How far from its edges a face radiates, in offsets of its spawn points: enough for walls that meet it at 8 degrees.
+// A face radiates at this distance from its edges, in offsets of its spawn points: enough for walls at 8 degrees to it.
 const float EDGE_OFFSETS = 8.0f;
 
-// Rays from one face: samples `first` to `first + SAMPLES_OF_CHUNK - 1` of each replicate. Ray i of it is of replicate
-// i / SAMPLES_OF_CHUNK.
+// Rays from one face: samples `first` to `first + SAMPLES_OF_CHUNK - 1` of each replicate. Ray i belongs to replicate i
+// / SAMPLES_OF_CHUNK.
 struct RayChunk
 {
     uint face;
@@ -23,7 +23,7 @@ struct RayChunk
 };
 BUFFER_OF(RayChunk, 8);
 
-// What a ray can meet but faces.
+// The targets of rays other than faces.
 const uint TARGET_OPEN = 0xffffffffu; // nothing
 const uint TARGET_BACK = 0xfffffffeu; // a back side, where only fronts count
 
@@ -62,8 +62,8 @@ FUNC vec4 sample_of(FaceRaysArgs args, uint face, uint replicate, uint index)
     return vec4(unit_floats(uvec2(words.x, words.y)), unit_floats(uvec2(words.z, words.w)));
 }
 
-// A point of the face, with barycentric coordinates u, v. One that lies nearer to an edge than some offsets is moved
-// away from it: there it may round to beyond a wall that meets the face at the edge, or start beyond it.
+// A point of the face, with barycentric coordinates u, v. One nearer to an edge than some offsets is moved away from
+// it: it might be rounded to the far side of a wall that meets the face at the edge, or start beyond it.
 FUNC SurfacePoint inner_point(FaceTable table, uint face, vec2 uv)
 {
     SurfacePoint point = point_on_face(table, face, uv);
@@ -74,8 +74,8 @@ FUNC SurfacePoint inner_point(FaceTable table, uint face, vec2 uv)
     return point_on_face(table, face, vec2(inside.y, inside.z));
 }
 
-// A ray from a face, uniform by area and by the cosine of its angle with the normal. Of two sides, half the rays leave
-// each.
+// A ray from a face, uniform by area and by the cosine of its angle with the normal. With two sides, half the rays
+// leave each.
 FUNC Ray diffuse_ray(FaceTable table, uint face, vec4 u, bool is_two_sided)
 {
     bool is_front = !is_two_sided || u.z < 0.5f;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rays from points along vectors, each along each, and which of them meet nothing.
+// Rays from each point along each vector, and which of them hit nothing.
 #ifndef TWINRAY_ANALYSIS_VISIBLE_H
 #define TWINRAY_ANALYSIS_VISIBLE_H
 #include "twinray/glsl/ray.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Four rays an invocation.
+// Each invocation answers for four rays.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"
