@@ -10,19 +10,19 @@
 
 namespace twinray {
 
-// The CRC-32 of zlib, PNG and gzip; finds every error within 32 neighbouring bits. `start`: of what comes before.
+// The CRC-32 of zlib, PNG and gzip; it finds every error within 32 neighbouring bits. `start`: of the bytes before.
 std::uint32_t crc32_of(std::span<const std::byte> bytes, std::uint32_t start = 0);
 
 // Unpacks gzip data; `object` names its source in errors (damaged, truncated, more than 4 GiB unpacked).
 Bytes unpack_gzip(const Bytes& packed, const std::string& object);
 
-// The whole file, unpacked when its suffix is .gz.
+// Reads the whole file, and unpacks it if its suffix is .gz.
 Bytes read_packed_file(const std::filesystem::path& file);
 
-// Base64 as data URIs use it (padding optional); nothing when a character is foreign to it.
+// Decodes base64 of data URIs (padding optional); returns nothing for a foreign character.
 std::optional<Bytes> decode_base64(std::string_view base64);
 
-// %20 -> space and so on; a percent sign without two hexadecimal digits stays as it is.
+// Converts %20 to a space and so on; a percent sign without two hexadecimal digits stays.
 std::string decode_percent(std::string_view uri);
 
 // The extension with its dot, in lower case.

@@ -38,7 +38,7 @@ void for_each_triangle(const Scene& scene, const Take& take) {
 }
 
 // The sum of all triangles' normals times their areas, over the sum of their areas: 0 for closed surfaces; for rooms
-// with one side open it points out of the opening, for a picture on a wall to where it is seen from.
+// with one side open it points out of the opening, for a picture on a wall to the viewer.
 dvec3 mean_normal(const Scene& scene) {
     dvec3 sum(0.0);
     double area = 0;
@@ -50,7 +50,7 @@ dvec3 mean_normal(const Scene& scene) {
     return area > 0 ? sum / area : sum;
 }
 
-// From the scene to the camera, unit.
+// The unit direction from the scene to the camera.
 vec3 usual_backward(const Scene& scene) {
     const vec3 three_quarters = normalize(vec3(0.55f, 0.4f, 1));
     const dvec3 facing = mean_normal(scene);
@@ -58,7 +58,7 @@ vec3 usual_backward(const Scene& scene) {
     if (strength < 0.02) return three_quarters;
     const auto weight = static_cast<float>(std::min((strength - 0.02) / 0.1, 0.95));
     vec3 direction = mix(three_quarters, vec3(facing / strength), weight);
-    // Not from straight above, where up is no longer up, nor from far below.
+    // The camera is neither straight above, where up is no longer up, nor far below.
     const float across = length(vec2(direction.x, direction.z));
     direction.y = std::clamp(direction.y, -0.2f * across, 1.2f * across);
     return normalize(direction);
@@ -71,8 +71,8 @@ vec3 backward_of(vec3 direction) {
     return -normalize(direction / largest);
 }
 
-// The two planes, through the camera and along one axis of its picture, that points lie between; along the other axis
-// they do not count.
+// The two planes, through the camera and along one axis of its picture, between which points are; their coordinates
+// along the other axis do not count.
 class Wedge {
   public:
     // slope: across over away from the camera, at the edge of the picture.
@@ -83,7 +83,7 @@ class Wedge {
         low_ = std::min(low_, along - toward);
         high_ = std::max(high_, along + toward);
     }
-    // Where the camera stands, from the origin along the axis and backward; 0 without points.
+    // The camera's position, from the origin along the axis and backward; 0 without points.
     double middle() const { return low_ <= high_ ? (low_ + high_) / 2 : 0; }
     double distance() const { return low_ <= high_ ? (high_ - low_) / (2 * slope_) : 0; }
 

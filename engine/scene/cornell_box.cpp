@@ -43,7 +43,7 @@ Scene cornell_box_scene() {
     add(scene, make_quad({-1, -1, -1}, x, y), "back", WHITE);
     add(scene, make_quad({-1, -1, -1}, y, z), "left", RED);
     add(scene, make_quad({1, -1, -1}, z, y), "right", GREEN);
-    // A little under the ceiling, which it would otherwise share a plane with.
+    // It is slightly under the ceiling, whose plane it would otherwise share.
     add(scene, make_quad({-0.25f, 0.995f, -0.25f}, {0.5f, 0, 0}, {0, 0, 0.5f}), "light", LIGHT);
     add(scene, make_box({-0.3f, 0, -0.3f}, {0.3f, 1.2f, 0.3f}), "metal box", METAL,
         turned_about_y(0.28f, 0.96f, {-0.38f, -1, -0.3f}));

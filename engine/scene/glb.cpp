@@ -27,7 +27,7 @@ ChannelTable linear_table() {
     return table;
 }
 
-// glTF wants nodes that are made of a rotation and scales along the axes: columns that are perpendicular, but for
+// Checks what glTF needs of nodes: a rotation and scales along the axes, so columns that are perpendicular, but for
 // rounding.
 bool is_decomposable(const Transform& transform) {
     const auto column = [&](int i) { return dvec3(transform.rows[0][i], transform.rows[1][i], transform.rows[2][i]); };
@@ -67,7 +67,7 @@ class GlbModel {
         add_root(std::move(node));
     }
 
-    // Unlit, in coordinates about the scene's origin.
+    // Marks are unlit and in coordinates about the scene's origin.
     void add(std::span<const GlbMarks::Vertex> marks, int mode, const char* name) {
         std::vector<vec3> positions;
         std::vector<Channels> channels;
@@ -84,7 +84,7 @@ class GlbModel {
     }
 
     std::size_t bytes() const { return model_.buffers[0].data.size(); }
-    // glTF knows neither buffers nor scenes with nothing in them.
+    // glTF allows neither buffers nor scenes without contents.
     tinygltf::Model finished() && {
         if (model_.nodes.empty()) {
             model_.buffers.clear();
@@ -106,7 +106,7 @@ class GlbModel {
         model_.nodes.push_back(std::move(node));
     }
 
-    // -1: nothing of it can be written.
+    // Returns -1 if nothing of it can be written.
     int mesh_of(const Instance& instance, std::span<const Rgb> colors, bool is_node) {
         const Transform to_world = is_node ? Transform{} : instance.transform;
         if (!is_node) return make_mesh(scene_.meshes[instance.mesh], to_world, colors);

@@ -16,7 +16,7 @@
 #include "engine/scene/bytes.h"
 #include "engine/scene/image_exr.h"
 
-// A private copy of stb_image, with only the decoders that we offer to untrusted files.
+// A private copy of stb_image, with only the decoders for untrusted files.
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
 #define STBI_ONLY_PNG
@@ -49,7 +49,7 @@ std::string fault_of_huffman_tables(std::span<const std::uint8_t> segment) {
     return segment.empty() ? "" : "a Huffman table is cut off";
 }
 
-// Without a length: fill bytes, restarts, and what stands for a byte 0xff.
+// Returns whether the marker has no length: fill bytes, restarts, and the escape of a byte 0xff.
 bool is_alone(std::uint8_t marker) { return marker <= 0x01 || (marker >= 0xd0 && marker <= 0xd8) || marker == 0xff; }
 
 // The bytes behind a line.
@@ -65,7 +65,7 @@ std::span<const std::uint8_t> radiance_rows(std::span<const std::uint8_t> bytes)
     return next_line(next_line(bytes));
 }
 
-// Takes the runs of one channel of a row off `rows`. False: they are cut off.
+// Takes the runs of one channel of a row off `rows`. Returns false if they are incomplete.
 bool take_runs(std::span<const std::uint8_t>& rows, std::uint64_t width) {
     for (std::uint64_t done = 0; done < width;) {
         if (rows.empty()) return false;
@@ -79,8 +79,8 @@ bool take_runs(std::span<const std::uint8_t>& rows, std::uint64_t width) {
     return true;
 }
 
-// Says what is wrong with the size of a PNG, "" where nothing is or the bytes are of another format: deflate makes at
-// most 1032 bytes of one, and stb_image counts them in 31 bits.
+// Says what is wrong with the size of a PNG, "" if nothing is or the bytes are of another format: deflate makes at most
+// 1032 bytes of one, and stb_image counts them in 31 bits.
 std::string fault_of_png(std::span<const std::uint8_t> bytes) {
     constexpr std::size_t header_end = 29;  // signature, length, "IHDR", width, height, bits, colour
     constexpr std::uint64_t most_expansion = 1032, most_bytes = INT32_MAX;
@@ -94,15 +94,15 @@ std::string fault_of_png(std::span<const std::uint8_t> bytes) {
     return text("too large: ", width, " x ", height, " pixels, more than its ", bytes.size(), " bytes can hold");
 }
 
-// Whether so many bytes can hold the pixels of a Radiance image: stb_image makes black ones of what is missing.
-// Rows of 8 to 32767 pixels may be runs, of at most 127 pixels in 2 bytes, for each of 4 channels.
+// Returns whether so many bytes can hold the pixels of a Radiance image: stb_image makes missing ones black. Rows of 8
+// to 32767 pixels may be runs, of at most 127 pixels in 2 bytes, for each of 4 channels.
 bool can_hold_radiance(std::uint64_t bytes, std::uint64_t width, std::uint64_t height) {
     const bool has_runs = width >= 8 && width < 32768;
     const std::uint64_t row = has_runs ? 4 + 4 * 2 * ((width + 126) / 127) : 4 * width;
     return height == 0 || row <= bytes / height;
 }
 
-// Whether the runs of a Radiance image's rows end before the bytes do. stb_image makes up what is missing.
+// Returns whether the runs of a Radiance image's rows end before the bytes do. stb_image makes up missing ones.
 bool has_whole_runs(std::span<const std::uint8_t> bytes, std::uint64_t width, std::uint64_t height) {
     constexpr std::size_t row_head = 4;  // 2, 2 and the width, where the row has runs
     std::span<const std::uint8_t> rows = radiance_rows(bytes);
@@ -115,8 +115,8 @@ bool has_whole_runs(std::span<const std::uint8_t> bytes, std::uint64_t width, st
     return true;
 }
 
-// Says what is wrong with the Huffman tables of a JPEG, anywhere before its end, "" where nothing is or the bytes are
-// of another format. stb_image trusts the number of codes.
+// Says what is wrong with the Huffman tables of a JPEG, anywhere before its end, "" if nothing is or the bytes are of
+// another format. stb_image trusts the number of codes.
 std::string fault_of_jpeg(std::span<const std::uint8_t> bytes) {
     constexpr std::uint8_t huffman_tables = 0xc4, end = 0xd9;
     if (bytes.empty() || bytes[0] != 0xff) return "";
@@ -148,7 +148,7 @@ std::string damaged(const char* format) {
     return text("a damaged ", format, " (", reason ? reason : "unknown reason", ")");
 }
 
-// Names what an undecodable image is, since "unknown format" helps nobody.
+// Names the format of an undecodable image, since "unknown format" helps nobody.
 std::string description_of(std::span<const std::uint8_t> bytes) {
     using namespace std::string_view_literals;
     const std::string_view head(reinterpret_cast<const char*>(bytes.data()), std::min<std::size_t>(bytes.size(), 16));
@@ -167,7 +167,7 @@ int checked_size(std::span<const std::uint8_t> bytes, const std::string& object)
     return static_cast<int>(bytes.size());
 }
 
-// Into four channels, by stb's function for numbers of T.
+// Decodes into four channels, by stb's function for numbers of T.
 template <class T>
 void decode(std::span<const std::uint8_t> bytes, Image& image, std::vector<T>& rgba,
             T* (*load)(const stbi_uc*, int, int*, int*, int*, int)) {

@@ -12,13 +12,13 @@
 namespace twinray {
 namespace {
 
-// How many bytes of pixels a byte of a file can become: deflate's 1032, of lines or of the means and ends of DWA's 8 x
-// 8 blocks; other codecs stay below.
+// The most bytes of pixels that a byte of a file can become: deflate's 1032, for lines or for the means and ends of
+// DWA's 8 x 8 blocks; other codecs stay below.
 std::uint64_t most_expansion(Imf::Compression compression) {
     return compression == Imf::DWAA_COMPRESSION || compression == Imf::DWAB_COMPRESSION ? 1u << 15 : 1u << 11;
 }
 
-// Before memory is taken for a size that nothing but a header tells.
+// Checks a size that only a header gives before memory is taken for it.
 void check_pixels_fit(const Imf::Header& header, std::uint64_t pixels, const std::filesystem::path& file) {
     std::uint64_t pixel_bytes = 0;
     for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel)
@@ -57,7 +57,7 @@ HdrImage read_pixels(Imf::InputFile& in, const std::filesystem::path& file) {
     return image;
 }
 
-// Of the pixels that a image has, and of the whole that they are of; both with their last pixel.
+// The windows of the image's pixels and of the whole that they belong to; both include their last pixel.
 Imath::Box2i data_window(const HdrImage& image) {
     const HdrImage::Part part = image.part.value_or(HdrImage::Part{});
     const Imath::V2i first(static_cast<int>(part.x), static_cast<int>(part.y));

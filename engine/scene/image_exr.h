@@ -13,8 +13,8 @@ HdrImage load_exr_image(const std::filesystem::path& file);
 // window. Throws Error naming the file.
 void write_exr_image(const std::filesystem::path& file, const HdrImage& image, std::span<const ImageChannel> channels);
 
-// Throws Error naming `object` when an image of this size is empty or over 2^28 pixels, beyond which a file is
-// more likely damaged than meant.
+// Throws Error naming `object` if an image of this size is empty or over 2^28 pixels, beyond which a file is more
+// likely damaged than meant.
 void check_image_size(std::int64_t width, std::int64_t height, const std::string& object);
 
 }  // namespace twinray

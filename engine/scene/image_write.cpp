@@ -14,7 +14,7 @@ namespace {
 
 float luminance(vec3 color) { return dot(color, vec3(0.2126f, 0.7152f, 0.0722f)); }
 
-// Khronos PBR Neutral (2024): leaves what is below 0.8 alone, apart from undoing the glare of a dielectric's Fresnel
+// Khronos PBR Neutral (2024): leaves values below 0.8 alone, apart from undoing the glare of a dielectric's Fresnel
 // reflection, and compresses highlights towards white.
 vec3 tone_mapped(vec3 color) {
     constexpr float fresnel = 0.04f, start = 0.8f - fresnel, desaturation = 0.15f;

@@ -30,7 +30,7 @@ Value weighted(const Value& a, double weight_a, const Value& b, double weight_b)
     return sum;
 }
 
-// `fallback` where the value has no direction.
+// Returns `fallback` if the value has no direction.
 Value normalized(Value v, const Value& fallback) {
     const double length = length_of(v);
     if (!(length > 0)) return fallback;
@@ -38,7 +38,7 @@ Value normalized(Value v, const Value& fallback) {
     return v;
 }
 
-// Along the shorter great circle. The angle comes from the lengths of difference and sum, so that small ones are exact.
+// Follows the shorter great circle. The angle comes from the lengths of difference and sum: small ones are exact.
 Value slerp(const Value& a, Value b, double t) {
     double cosine = 0;
     for (std::size_t i = 0; i < a.size(); ++i) cosine += a[i] * b[i];
@@ -49,7 +49,7 @@ Value slerp(const Value& a, Value b, double t) {
     return weighted(a, std::sin((1 - t) * angle) / sine, b, std::sin(t * angle) / sine);
 }
 
-// glTF 2.0, appendix C.5. Tangents are by second.
+// glTF 2.0, appendix C.5. Tangents are per second.
 Value hermite(const Keyframes& keyframes, std::size_t key, double t, double duration) {
     const double t2 = t * t, t3 = t2 * t;
     const Value points =

@@ -14,7 +14,7 @@ namespace {
 
 double largest_entry(const dvec3& v) { return std::max({v.x, v.y, v.z}); }
 
-// The largest power of ten, or below 1 of two, that is not larger: its multiples are float64.
+// Returns the largest power of ten, or below 1 of two, that is not larger: its multiples are float64.
 double round_step(double extent) {
     return extent < 1 ? std::exp2(std::floor(std::log2(extent))) : std::pow(10.0, std::floor(std::log10(extent)));
 }
@@ -35,7 +35,7 @@ dvec3 choose_local_origin(const Bounds64& bounds) {
     const double reach = bounds.reach();
     constexpr double smallest = std::numeric_limits<float>::min();  // below it float32 has no steps to speak of
     if (reach < smallest || !is_far(reach, bounds.extent())) return dvec3(0);
-    // A point may be what rounding has left of something smaller than a step of float32.
+    // A point may be the rounded rest of something smaller than a step of float32.
     const double step = round_step(bounds.extent() > 0 ? bounds.extent() : reach * 0x1p-23);
     const dvec3 middle = bounds.lo * 0.5 + bounds.hi * 0.5;
     return {rounded(middle.x, step), rounded(middle.y, step), rounded(middle.z, step)};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What importers and accelerators check of meshes.
+// Checks of meshes for importers and accelerators.
 #pragma once
 
 #include <twinray/geometry.h>
@@ -8,16 +8,16 @@
 
 namespace twinray {
 
-// A normal from a file, or 0, that is none, where one of its components is no number or infinite.
+// Returns a normal from a file, or 0, which means none, if one of its components is NaN or infinite.
 vec3 normal_or_none(const dvec3& normal);
 
-// Triangles with a NaN or infinite coordinate; accelerators treat them as inactive.
+// Counts triangles with a NaN or infinite coordinate; accelerators treat them as inactive.
 std::size_t count_non_finite_triangles(const MeshView& mesh);
 
-// Of length 1; 0 where it has no direction: it is 0, or an entry is NaN or infinite.
+// Scales to length 1; returns 0 if it has no direction: it is 0, or an entry is NaN or infinite.
 dvec3 unit_or_zero(dvec3 v);
 
-// Normals without a direction.
+// Counts normals without a direction.
 std::size_t count_undirected_normals(const Mesh& mesh);
 
 }  // namespace twinray

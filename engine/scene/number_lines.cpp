@@ -16,15 +16,15 @@
 namespace twinray {
 namespace {
 
-// Not by read_file, since what another program writes may come through a pipe.
+// read_file() is not used, since the output of another program may come through a pipe.
 Bytes bytes_of(const std::filesystem::path& file, const std::string& what) {
     std::ifstream in(file, std::ios::binary);
     if (!in || std::filesystem::is_directory(file)) fail(what, " '", file.string(), "' cannot be read");
     return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
-// Up to a comment. A comma in a line with semicolons is a decimal point, as spreadsheets write it in half of Europe,
-// and no number has one here.
+// Returns the fields up to a comment. A comma in a line with semicolons is a decimal point, as spreadsheets write it in
+// half of Europe, and no number has one here.
 std::vector<std::string_view> fields_of(std::string_view line) {
     line = line.substr(0, line.find('#'));
     const char separator = line.find(';') == line.npos ? ',' : ';';
@@ -37,13 +37,13 @@ std::vector<std::string_view> fields_of(std::string_view line) {
     return fields;
 }
 
-// Names of columns, and no number that is written in some other way.
+// Returns whether they are names of columns, without a number in another notation.
 bool is_heading(const std::vector<std::string_view>& fields) {
     return std::string_view("0123456789+-.").find(fields[0][0]) == std::string_view::npos &&
            std::ranges::none_of(fields, [](std::string_view field) { return parse_number(field).has_value(); });
 }
 
-// One that is no number, or beyond those of double, is of no use in any of these files.
+// NaN, and a number beyond the range of double, are invalid in all these files.
 std::optional<std::vector<double>> numbers_of(const std::vector<std::string_view>& fields) {
     std::vector<double> numbers;
     for (const std::string_view field : fields) {

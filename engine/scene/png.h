@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Pictures as PNG, in memory.
+// Encodes pictures as PNG in memory.
 #pragma once
 
 #include <cstddef>

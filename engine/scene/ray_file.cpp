@@ -23,7 +23,7 @@ static_assert(std::endian::native == std::endian::little, "ray and hit files are
 
 constexpr std::size_t numbers_a_ray = sizeof(Ray) / sizeof(float);
 
-// All of the file, as many T as fit into it.
+// Returns the whole file, as many T as fit into it.
 template <class T>
 std::vector<T> read_all(const std::filesystem::path& file) {
     std::ifstream in(file, std::ios::binary | std::ios::ate);

@@ -14,7 +14,7 @@ glm::dmat3 rotation_matrix(const dvec4& q) {
             s * (x * z + y * w),     s * (y * z - x * w),     1 - s * (x * x + y * y)};
 }
 
-// What an animation drives, node by node.
+// The local transforms that an animation drives, node by node.
 struct Locals {
     std::vector<Trs> transforms;
     std::vector<std::vector<double>> weights;

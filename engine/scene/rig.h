@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What moves in a scene: the node hierarchy of its file with animations, skins and morph targets, and the pose that
-// they give at a time. As glTF 2.0 has them (3.7.2.2, 3.7.3 and 3.11). Pure data, pure functions, in float64.
+// The moving parts of a scene: the node hierarchy of its file with animations, skins and morph targets, as in glTF 2.0
+// (3.7.2.2, 3.7.3 and 3.11), and the pose that they give at a time. Pure data, pure functions, in float64.
 #pragma once
 
 #include <cstdint>
@@ -23,12 +23,12 @@ struct Trs {
     dvec3 scale = dvec3(1);
 };
 glm::dmat4 matrix_of(const Trs& trs);
-// With 1 in place of scales of 0: the axes that are left when it has shrunk to nothing.
+// Replaces scales of 0 by 1: the axes remain when a node has shrunk to nothing.
 glm::dmat4 frame_of(const Trs& trs);
 
 enum class Interpolation : std::uint8_t { linear, step, cubic_spline };
 
-// Values at times, and what lies between them.
+// Values at times, and their interpolation.
 struct Keyframes {
     Interpolation interpolation = Interpolation::linear;
     bool is_rotation = false;   // values are quaternions: interpolated on the sphere, of length 1
@@ -37,11 +37,11 @@ struct Keyframes {
     std::vector<float> values;  // one a time; of cubic_spline three: in-tangent, value, out-tangent
 };
 
-// At `seconds`; before the first time and after the last their values.
+// Returns the value at `seconds`; before the first time and after the last, their values.
 std::vector<double> value_at(const Keyframes& keyframes, double seconds);
 
 struct Animation {
-    // What keyframes drive.
+    // The property that keyframes drive.
     struct Channel {
         enum class Path : std::uint8_t { translation, rotation, scale, weights };
         uint node = 0;  // index into Rig::nodes
@@ -68,7 +68,7 @@ struct MorphTarget {
     std::vector<vec3> positions, normals, tangents;
 };
 
-// How the vertices of a mesh move.
+// The data that move the vertices of a mesh.
 struct VertexMotion {
     std::vector<MorphTarget> targets;
     uint influences = 0;         // joints a vertex; 0: no skin
@@ -79,23 +79,23 @@ struct VertexMotion {
 // A mesh of the scene whose vertices follow a pose.
 struct DeformedMesh {
     uint mesh = 0;           // index into Scene::meshes, which holds it in the rest pose
-    uint node = 0;           // whose morph weights count
+    uint node = 0;           // its morph weights are used
     std::int32_t skin = -1;  // index into Rig::skins; then the vertices are in world space; -1: none
     MeshVertices base;       // before targets and skin
     VertexMotion motion;
 };
 
-// What poses a scene.
+// The data that pose a scene.
 struct Rig {
     struct Node {
         std::string name;
         std::int32_t parent = -1;  // index into nodes, less than its own; -1: none
         Trs rest;
-        glm::dmat4 matrix = glm::dmat4(1);  // instead of `rest`, where is_fixed
+        glm::dmat4 matrix = glm::dmat4(1);  // replaces `rest` if is_fixed
         bool is_fixed = false;              // the file gives a matrix, which no animation may drive
         std::vector<double> weights;        // of the morph targets of its mesh, at rest
     };
-    // What a node carries: it stands at the node's transform to the world * local.
+    // An object that a node carries: it is placed at the node's transform to the world * local.
     struct Attachment {
         std::int32_t node = -1;  // -1: the world itself
         glm::dmat4 local = glm::dmat4(1);
@@ -114,19 +114,19 @@ struct Rig {
     dvec3 origin = dvec3(0);  // of the scene, which poses are relative to
 };
 
-// Of each node of a rig.
+// The state of each node of a rig.
 struct Pose::Nodes {
     std::vector<glm::dmat4> nodes;             // to world space, relative to the rig's origin
     std::vector<glm::dmat4> frames;            // the same with axes that scales of 0 leave: of cameras and lights
     std::vector<std::vector<double>> weights;  // of morph targets
 };
-// What the animation does not drive is at rest.
+// Nodes that the animation does not drive are at rest.
 Pose pose_at(const Rig& rig, const Animation& animation, double seconds);
 
 glm::dmat4 matrix_of(const Pose& pose, const Rig::Attachment& attachment);
-// Of a camera or light: what a node scales to 0 keeps its axes, since glTF keeps scales from both.
+// The frame of a camera or light: it keeps the axes that a node scales to 0, since glTF excludes scales from both.
 glm::dmat4 frame_of(const Pose& pose, const Rig::Attachment& attachment);
-// By joint: from the mesh as it was bound to world space. Rounded once; not finite where the pose is not.
+// Returns by joint the map from the mesh as it was bound to world space. Rounded once; not finite if the pose is not.
 std::vector<Transform> joint_transforms(const Skin& skin, const Pose& pose);
 
 // weights: of the morph targets, as many as `motion` has. joints: joint_transforms(); empty without skin.
@@ -134,17 +134,17 @@ MeshVertices deformed(const MeshVertices& base, const VertexMotion& motion, std:
                       std::span<const Transform> joints);
 MeshVertices deformed(const Rig& rig, const DeformedMesh& mesh, const Pose& pose);
 
-// The frame without its scale, which glTF keeps from cameras and lights; nothing when an axis has no length.
+// Returns the frame without its scale, which glTF excludes from cameras and lights; nothing if an axis has no length.
 std::optional<glm::dmat4> unscaled(const glm::dmat4& world);
 
-// Rounded to float, whatever comes of it.
+// Rounds to float, whatever the result.
 Transform transform_of(const glm::dmat4& matrix);
 
-// A light's or a camera's position and direction; `frame` as unscaled() leaves it.
+// Sets a light's or a camera's position and direction; `frame` comes from unscaled().
 void place_light(Light& light, const glm::dmat4& frame);
 void place_camera(Camera& camera, const glm::dmat4& frame);
 
-// As pose_scene(scene, pose), by a rig that the scene need not have.
+// Like pose_scene(scene, pose), by a rig that the scene need not have.
 void pose_scene(Scene& scene, const Rig& rig, const Pose& pose);
 
 }  // namespace twinray

@@ -34,7 +34,7 @@ void add_default_material(Scene& scene) {
         }
 }
 
-// What every loaded scene promises, whichever reader it came from.
+// Completes a scene as every reader must leave it.
 void complete(Scene& scene, const std::filesystem::path& file) {
     const bool has_hidden = scene.rig && !scene.rig->hidden.empty();
     if (scene.instances.empty() && !has_hidden)

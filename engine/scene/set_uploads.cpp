@@ -68,7 +68,7 @@ SetUploads::Staged SetUploads::stage(Commands& commands, Elements elements) cons
     return staged;
 }
 
-// On the device, so that what kernels wrote moves along.
+// Copies on the device, so that elements that kernels wrote move along.
 void SetUploads::record_growth(Commands& commands, const Staged& staged) const {
     const auto is_there = [](const std::optional<Buffer>& replacement) { return replacement.has_value(); };
     if (std::none_of(staged.replacements.begin(), staged.replacements.end(), is_there)) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Arrays of elements on the device, which are uploaded as far as the host changed them.
+// Arrays of elements on the device, of which only those that the host changed are uploaded.
 #pragma once
 
 #include <optional>
@@ -19,30 +19,30 @@ struct ElementRun {
     uint first = 0, last = 0;
     bool operator==(const ElementRun&) const = default;
 };
-// The runs of these elements, which may come in any order, each once.
+// Returns the runs of these elements, which may come in any order, each once.
 std::vector<ElementRun> runs_of(std::vector<uint> elements);
 
-// How many elements to make room for: `capacity` where it suffices, else twice of it at least.
+// Returns the number of elements to make room for: `capacity` if it suffices, else at least twice that.
 std::uint64_t grown_capacity(std::uint64_t count, std::uint64_t capacity);
 
-// One device array for each type. What kernels wrote into elements that the host did not change since stays.
+// One device array for each type. Elements that kernels wrote and the host did not change since stay.
 class SetUploads {
   public:
     using Type = SetStorage::Type;
     SetUploads(Context& context, std::string name, std::vector<Type> types);
 
-    // The host changed, or appended, this element of a type.
+    // Called when the host changed, or appended, this element of a type.
     void note_push() { is_clean_ = false; }
     void note_update(std::size_t type, uint index);
 
-    // The elements of each type as the host has them. A clean storage returns the last sync point and does nothing.
+    // The elements of each type as the host holds them. A clean storage returns the last sync point and does nothing.
     using Elements = std::span<const std::span<const std::byte>>;
     SyncPoint sync(Elements elements);
-    // Into the caller's commands.
+    // Records into the caller's commands.
     void sync(Commands& commands, Elements elements);
 
-    // For those who record more than this into the same commands: records what is new, then, once that is certain to
-    // run, takes it over.
+    // For callers that record more than this into the same commands: records the new elements, then takes them over
+    // once the commands are certain to run.
     struct Staged {
         std::vector<std::optional<Buffer>> replacements;  // by type, where it grew
         std::vector<SetSlot> slots;

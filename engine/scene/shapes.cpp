@@ -11,7 +11,7 @@
 namespace twinray {
 namespace {
 
-// In [0, 1); the standard's own distributions differ between libraries.
+// Returns numbers in [0, 1); the standard's own distributions differ between libraries.
 class Uniform {
   public:
     explicit Uniform(uint seed) : engine_(seed) {}

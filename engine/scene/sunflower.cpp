@@ -38,7 +38,7 @@ Transform placed(float size, vec3 center) {
     return {{vec4(size, 0, 0, center.x), vec4(0, size, 0, center.y), vec4(0, 0, size, center.z)}};
 }
 
-// The k-th bead of Vogel's spiral (1979): each a golden angle further, so that all have the same room.
+// The k-th bead of Vogel's spiral (1979): each is a golden angle further, so that all have the same room.
 Instance bead(uint k) {
     const float along = std::sqrt((static_cast<float>(k) + 0.5f) / bead_count), radius = outer_radius * along;
     const float angle = static_cast<float>(k) * std::numbers::pi_v<float> * (3 - std::sqrt(5.0f));

@@ -59,7 +59,7 @@ double srgb_number(double linear) {
     return linear <= 0.0031308 ? linear * 12.92 : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
 }
 
-// What a texel of the smaller level covers of one axis of the larger.
+// The texels of one axis of the larger level that a texel of the smaller one covers.
 struct Cover {
     double from, to;
     double of(uint texel) const { return std::min(to, texel + 1.0) - std::max(from, double(texel)); }

@@ -9,13 +9,13 @@ namespace twinray {
 struct TexelSize {
     uint width, height;
 };
-// Of a level: half as wide and high as the one before, 1 at least.
+// The size of a level: half as wide and high as the one before, at least 1.
 TexelSize level_size(const Texels& texels, std::size_t level);
 std::size_t texel_bytes(const Texels& texels);  // of one texel
 
 // Throws Error naming `object`, the texels and what does not fit: channels, the number of levels, the bytes of one.
 void check_texels(const Texels& texels, const std::string& object);
-// Whether one may lie in the memory of the other.
+// Returns whether one may use the memory of the other.
 bool is_alike(const Texels& a, const Texels& b);
 // With four channels.
 Texels widened(Texels texels);

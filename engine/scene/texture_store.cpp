@@ -42,7 +42,7 @@ uint wrap_word(Wrap wrap) {
     return TEXTURE_REPEAT;
 }
 
-// Whether what reads the texels decodes them; those in 16 bits are decoded already.
+// Returns whether the reader of the texels decodes them; those in 16 bits are decoded already.
 bool is_decoded(const TextureOptions& options, const Texels& texels) {
     return options.is_srgb && texels.format == TexelFormat::unorm8;
 }
@@ -57,7 +57,7 @@ uint options_word(const TextureOptions& options, const Texels& texels) {
            (options.between_levels == Filter::nearest ? 4u : 0u);
 }
 
-// Of one, two or four channels.
+// Needs one, two or four channels.
 VkFormat format_of(const Texels& texels, bool is_srgb) {
     constexpr VkFormat formats[4][3] = {{VK_FORMAT_R8_UNORM, VK_FORMAT_R8G8_UNORM, VK_FORMAT_R8G8B8A8_UNORM},
                                         {VK_FORMAT_R16_UNORM, VK_FORMAT_R16G16_UNORM, VK_FORMAT_R16G16B16A16_UNORM},
@@ -75,7 +75,7 @@ std::uint64_t bytes_of_levels(const Texels& texels) {
     return bytes;
 }
 
-// What is_alike() asks of texels, without their numbers.
+// The properties of texels that is_alike() compares, without their numbers.
 Texels form_of(const Texels& texels) {
     return {{},
             texels.width,
@@ -109,7 +109,7 @@ struct TextureStore::State {
         SampledImage image;  // one of the two
         Buffer texels;
     };
-    // What the next sync has recorded of a texture that it makes or replaces.
+    // The recorded work of the next sync for a texture that it makes or replaces.
     struct Made {
         std::size_t index;
         Texels form;
@@ -165,7 +165,7 @@ TextureStore::State::State(Context& context, std::string name, TextureStorage st
              context.properties().name, "' does not have enabled; use buffers");
 }
 
-// As it is kept: what Vulkan has no format for is brought into one that it has.
+// Converts to the stored form: formats that Vulkan lacks become one that it has.
 Texels TextureStore::State::checked(Texels&& texels, const TextureOptions& options, const char* action) const {
     check_texels(texels, name_ + ": " + action);
     const bool is_float = texels.format == TexelFormat::float16 || texels.format == TexelFormat::float32;

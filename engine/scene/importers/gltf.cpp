@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How a glTF file becomes a Scene: here its meshes by the shape that skins and morph targets give them; each other step
+// Turns a glTF file into a Scene: here its meshes by the shape that skins and morph targets give them; each other step
 // has a file of its own.
 #include <algorithm>
 #include <map>
@@ -20,7 +20,7 @@ namespace {
 
 constexpr uint EMPTY = UINT32_MAX;  // a mesh without triangles
 
-// A glTF mesh has its shape from these.
+// These decide the shape of a glTF mesh.
 struct Shape {
     uint mesh = 0;
     int skin = -1;

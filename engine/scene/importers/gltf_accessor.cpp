@@ -27,7 +27,7 @@ std::size_t component_size(int component_type) {
     }
 }
 
-// What lies where in a buffer view.
+// The layout of an accessor in its buffer view.
 struct Layout {
     int view = -1;
     std::size_t offset = 0, stride = 0, size = 0, count = 0;
@@ -47,7 +47,7 @@ void copy_elements(const GltfFile& file, const Layout& layout, std::uint8_t* tar
         std::memcpy(target + i * layout.size, bytes.data() + layout.offset + i * layout.stride, layout.size);
 }
 
-// Vectors of vertices lie on multiples of 4 bytes (glTF 2.0, 3.6.2.4). Some writers pad them and do not give the
+// Vectors of vertices are at multiples of 4 bytes (glTF 2.0, 3.6.2.4). Some writers pad them and do not give the
 // stride, without which they would be tightly packed: the view is then as long as the padded ones are.
 bool is_padded(const tinygltf::Accessor& accessor, std::size_t element_size, std::size_t view_size) {
     const std::size_t padded = (element_size + 3) / 4 * 4;
@@ -84,7 +84,7 @@ void apply_sparse(const GltfFile& file, const tinygltf::Accessor& accessor, std:
     if (!is_unsigned) file.fail(object, " sparse: indices have component type ", sparse.indices.componentType);
     if (sparse.count < 0 || std::size_t(sparse.count) > accessor.count)
         file.fail(object, " sparse: count ", sparse.count, " is not within 0 and the accessor's ", accessor.count);
-    // Of type int in tinygltf 2.5, of an unsigned one in later versions.
+    // The offsets are int in tinygltf 2.5, unsigned in later versions.
     if (std::int64_t(sparse.indices.byteOffset) < 0 || std::int64_t(sparse.values.byteOffset) < 0)
         file.fail(object, " sparse: negative byteOffset");
 

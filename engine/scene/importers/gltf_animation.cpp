@@ -29,7 +29,7 @@ std::optional<Interpolation> interpolation_of(const std::string& name) {
     return std::nullopt;
 }
 
-// Puts one animation together. Throws Error naming the channel or sampler.
+// Builds one animation. Throws Error naming the channel or sampler.
 class AnimationReader {
   public:
     AnimationReader(const GltfFile& file, const Rig& rig, const std::vector<std::int32_t>& flat, const json& source,
@@ -54,7 +54,7 @@ class AnimationReader {
         return static_cast<int>(*accessor);
     }
 
-    // Channels that name no node, or one that is not shown, are of no effect.
+    // Channels that name no node, or one that is not shown, have no effect.
     void read_channel(const json& channel, const std::string& object) {
         const json target = channel.is_object() ? channel.value("target", json()) : json();
         if (!target.is_object()) file_.fail(object, ": has no target");
@@ -141,7 +141,7 @@ const json& member_of(const json& object, const char* key) {
     return found == object.end() ? none : *found;
 }
 
-// By KHR_animation_pointer, whose channels name no node.
+// Detects KHR_animation_pointer, whose channels name no node.
 bool shows_and_hides_nodes(const json& animation) {
     const json& channels = member_of(animation, "channels");
     return std::ranges::any_of(channels, [](const json& channel) {
@@ -151,7 +151,7 @@ bool shows_and_hides_nodes(const json& animation) {
     });
 }
 
-// Without the file's name, which begins it.
+// Removes the file's name, which begins the text.
 std::string fault_of(const GltfFile& file, const Error& error) {
     const std::string message = error.what(), prefix = text("'", file.path.string(), "': ");
     return message.starts_with(prefix) ? message.substr(prefix.size()) : message;

@@ -130,7 +130,7 @@ GltfFile open_gltf(const std::filesystem::path& path) {
     file.motion = take_motion(source.root);
     check_types(file, source.root);
     parse_model(file, source.root);
-    // Morph targets that move few vertices of a mesh have such accessors, of as many elements as it has vertices.
+    // Morph targets that move few vertices of a mesh have such accessors, with as many elements as it has vertices.
     file.zeros_left = std::size_t{1} << 22;
     for (const tinygltf::Buffer& buffer : buffers) file.zeros_left += 64 * buffer.data.size();
     file.model.buffers = std::move(buffers);

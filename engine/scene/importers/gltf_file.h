@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A glTF file opened: container, JSON and buffers, before anything is made of them.
+// An open glTF file: container, JSON and buffers, before anything is made from them.
 //
 // tinygltf turns the JSON into structs and does no more. The bytes of buffers and images are read here, because
 // tinygltf fails a whole scene for one image, trusts image ranges, and explains a missing extension as a bad length.
@@ -24,10 +24,10 @@ namespace twinray {
 struct GltfFile {
     std::filesystem::path path;
     tinygltf::Model model;  // buffers hold their bytes; images hold name, uri, bufferView and mimeType, not pixels
-    // "animations" and "skins": tinygltf is not given them, so that faults of those that nothing uses do not matter.
+    // "animations" and "skins": tinygltf does not get them, so that faults of unused ones do not matter.
     std::shared_ptr<const nlohmann::json> motion;
     std::vector<std::string> warnings;
-    // Elements that accessors without a bufferView may still have, of all reads of them: no bytes vouch for these.
+    // How many elements accessors without a bufferView may still have, over all reads: no bytes account for them.
     mutable std::size_t zeros_left = 0;
 
     template <class... Parts>
@@ -35,26 +35,26 @@ struct GltfFile {
         throw Error(text("'", path.string(), "': ", parts...));
     }
 
-    // Says each sentence once, however many objects it is true of.
+    // Adds each sentence once, however many objects it is true of.
     void warn(const std::string& sentence) {
         if (std::ranges::find(warnings, sentence) == warnings.end()) warnings.push_back(sentence);
     }
 };
 
-// Reads the file and all its buffers. Throws Error naming the file on: not glTF 2.0, damaged container or JSON, a
-// required extension that we lack, a missing or short buffer.
+// Reads the file and all its buffers. Throws Error naming the file if it is not glTF 2.0, or has a damaged container or
+// JSON, an unsupported required extension, or a missing or short buffer.
 GltfFile open_gltf(const std::filesystem::path& path);
 
-// The bytes of a buffer view; throws Error naming `object`, the range and the buffer's size when it leaves the buffer.
+// Returns a buffer view's bytes; throws Error naming `object`, the range and the buffer's size if it exceeds that.
 std::span<const std::uint8_t> view_bytes(const GltfFile& file, int view, const std::string& object);
 
-// What a URI stands for: the data after "data:...;base64," or the file beside the glTF. Throws Error.
+// Reads the target of a URI: the data after "data:...;base64," or the file beside the glTF. Throws Error.
 Bytes read_uri(const GltfFile& file, const std::string& uri);
 
-// "node 3 'wheel'": how errors name the objects of a file.
+// "node 3 'wheel'": the name of an object of a file in errors.
 std::string gltf_name(const char* kind, std::size_t index, const std::string& name);
 
-// Reading extension objects, which tinygltf leaves untyped; what is missing or of another type gives the fallback.
+// Read extension objects, which tinygltf leaves untyped; missing members and those of another type give the fallback.
 const tinygltf::Value* find_member(const tinygltf::Value& object, const std::string& key);
 const tinygltf::Value* find_extension(const tinygltf::ExtensionMap& extensions, const std::string& name);
 double number_or(const tinygltf::Value& object, const std::string& key, double fallback);

@@ -56,7 +56,7 @@ class Placements {
     std::vector<vec4> rotations_;
 };
 
-// By node: whether an animation scales it or one above it.
+// Returns for each node whether an animation scales it or one above it.
 std::vector<bool> scaled_nodes(const Rig& rig) {
     std::vector<bool> scaled(rig.nodes.size());
     for (const Animation& animation : rig.animations)

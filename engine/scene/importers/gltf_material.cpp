@@ -12,7 +12,7 @@
 namespace twinray {
 namespace {
 
-// These keep factors of glTF materials within what glTF allows: outside of it, surfaces would emit by reflecting.
+// Keeps factors of glTF materials within what glTF allows: outside of it, surfaces would emit by reflecting.
 float clamped_factor(double factor, double lo, double hi) {
     return static_cast<float>(factor >= lo ? std::min(factor, hi) : lo);  // NaN becomes lo
 }
@@ -32,9 +32,9 @@ Wrap wrap_of(int mode) {
     return mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? Wrap::mirrored_repeat : Wrap::repeat;
 }
 
-// KHR_texture_transform: scale, then rotate, then offset. A positive rotation turns uv counter-clockwise as seen
-// with v pointing down. The GLSL in the extension's text turns the other way and is known to be wrong
-// (KhronosGroup/glTF issue 1563); the sample model, which this follows, is what implementations agree on.
+// KHR_texture_transform: scale, then rotate, then offset. A positive rotation turns uv counter-clockwise as seen with v
+// pointing down. The GLSL in the extension's text turns the other way and is known to be wrong (KhronosGroup/glTF issue
+// 1563); the sample model, which this follows, is what implementations agree on.
 void set_transform(Texture& texture, const tinygltf::Value& transform) {
     std::vector<double> offset = numbers_of(transform, "offset"), scale = numbers_of(transform, "scale");
     if (offset.size() != 2) offset = {0, 0};
@@ -60,10 +60,10 @@ class GltfTextures {
     // `object` names the user in errors and warnings: "material 3 'wood' baseColorTexture".
     Texture read(int texture, int texcoord, const tinygltf::ExtensionMap& extensions, const std::string& object);
 
-    // A reference inside an extension: member `key` of `parent`; no texture when it is absent.
+    // Reads a reference inside an extension: member `key` of `parent`; no texture if it is absent.
     Texture read(const tinygltf::Value& parent, const std::string& key, const std::string& object);
 
-    // Whether its image could not be decoded.
+    // Returns whether its image could not be decoded.
     bool is_placeholder(const Texture& texture) const {
         return texture.image >= 0 && images_[std::size_t(texture.image)].is_placeholder;
     }
@@ -138,7 +138,7 @@ Image GltfTextures::decode(std::size_t index) const {
     return decode_image(view_bytes(file_, image.bufferView, name), name);
 }
 
-// A picture has one level, so that minFilter is of no effect.
+// A picture has one level, so that minFilter has no effect.
 void GltfTextures::set_sampler(Texture& result, int sampler, const std::string& object) const {
     if (sampler == -1) return;
     const auto& samplers = file_.model.samplers;
@@ -163,7 +163,7 @@ struct Reader {
     }
     Texture texture(const char* key) const { return textures.read(extension, key, object); }
 
-    // A map that cannot be read would only spoil the shape.
+    // An unreadable map would only spoil the shape.
     Texture normal_texture(const char* key) const {
         const Texture normal = texture(key);
         return textures.is_placeholder(normal) ? Texture{} : normal;
@@ -200,7 +200,7 @@ void read_anisotropy(const Reader& from, Material& material) {
     material.anisotropy_texture = from.texture("anisotropyTexture");
 }
 
-// How thick is what rays tell: only whether there is a volume counts, of which a texture says nothing.
+// Rays measure the thickness: it only matters whether there is a volume, of which a texture says nothing.
 void read_volume(const Reader& from, Material& material) {
     material.thickness = clamped_factor(from.number("thicknessFactor", 0), 0, no_limit);
     material.attenuation_color = from.color("attenuationColor", vec3(1));
@@ -209,8 +209,8 @@ void read_volume(const Reader& from, Material& material) {
             clamped_factor(from.number("attenuationDistance", 1), std::numeric_limits<float>::min(), no_limit);
 }
 
-// Takes KHR_materials_{anisotropy, clearcoat, sheen, specular, volume} into `material`; other extensions are none of
-// its business. `object` names the material in errors and warnings.
+// Reads KHR_materials_{anisotropy, clearcoat, sheen, specular, volume} into `material` and ignores other extensions.
+// `object` names the material in errors and warnings.
 void read_gltf_layer(const std::string& name, const tinygltf::Value& extension, const std::string& object,
                      GltfTextures& textures, Material& material) {
     const Reader from{extension, object, textures};
@@ -263,7 +263,7 @@ class MaterialReader {
         material.metallic_roughness_texture = slot(pbr.metallicRoughnessTexture, "metallicRoughnessTexture");
         material.emission_texture = slot(source.emissiveTexture, "emissiveTexture");
         material.normal_texture = slot(source.normalTexture, "normalTexture");
-        // Colours of a checkerboard warn; read as normals they would only spoil the shape.
+        // A checkerboard of colours is a warning; read as normals it would only spoil the shape.
         if (textures_.is_placeholder(material.normal_texture)) material.normal_texture = {};
     }
 

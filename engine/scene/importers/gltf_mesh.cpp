@@ -14,13 +14,13 @@ namespace {
 
 using tinygltf::Primitive;
 
-// The arrays that a mesh as a whole has.
+// The arrays of a whole mesh.
 struct VertexLayout {
     bool normals = false, tangents = false, uvs = false, second_uvs = false, colors = false;
     MotionLayout motion;
 };
 
-// Arrays as those of Mesh.
+// The same arrays as in Mesh.
 struct GltfVertices {
     std::vector<vec3> positions, normals;
     std::vector<vec4> tangents;
@@ -29,7 +29,7 @@ struct GltfVertices {
     VertexMotion motion;
 };
 
-// An accessor's index, or -1.
+// Returns an accessor's index, or -1.
 int attribute_of(const Primitive& primitive, const std::string& name) {
     const auto found = primitive.attributes.find(name);
     return found == primitive.attributes.end() ? -1 : found->second;
@@ -98,7 +98,7 @@ VertexLayout vertex_layout(const GltfFile& file, const std::vector<const Primiti
         layout.uvs |= has("TEXCOORD_0");
         layout.second_uvs |= has("TEXCOORD_1");
         layout.colors |= has("COLOR_0");
-        // Shading derives tangents where a mesh has none, so all or none is right and a mixture is not.
+        // Shading derives tangents if a mesh has none, so all or none is right and a mixture is not.
         layout.tangents &= has("TANGENT") && has("NORMAL");
     }
     layout.motion = motion_layout(file, primitives, object, is_skinned);
@@ -107,8 +107,8 @@ VertexLayout vertex_layout(const GltfFile& file, const std::vector<const Primiti
     return layout;
 }
 
-// The vertices of one primitive: their attributes, and what moves them. What it lacks of the layout is 0, of colours
-// white, of the second texture coordinates the first.
+// The vertices of one primitive: their attributes and motion data. Missing parts of the layout are 0, missing colours
+// white, and missing second texture coordinates equal the first.
 GltfVertices read_gltf_vertices(GltfFile& file, const Primitive& primitive, const VertexLayout& layout,
                                 const std::string& object) {
     GltfVertices v;
@@ -191,7 +191,7 @@ class MeshReader {
     }
 
   private:
-    // Where a primitive's vertices lie in mesh_.
+    // The position of a primitive's vertices in mesh_.
     struct Part {
         uint base = 0;
         std::size_t count = 0;
@@ -262,7 +262,7 @@ class MeshReader {
         add_variants(read_variant_materials(file_, primitive, object), before);
     }
 
-    // Of the triangles from the first on, which have their own material by now.
+    // Adds variants for the triangles from the first on, which have their own material by now.
     void add_variants(const std::vector<int>& materials, std::size_t first) {
         if (variants_.empty() && !materials.empty())
             variants_.resize(materials.size(),

@@ -9,7 +9,7 @@
 
 namespace twinray {
 
-// What a mesh as a whole has; its primitives give 0 for what they lack.
+// The motion data of a whole mesh; its primitives give 0 for what they lack.
 struct MotionLayout {
     std::size_t targets = 0;
     bool normals = false, tangents = false;  // of targets
@@ -20,7 +20,7 @@ struct MotionLayout {
 MotionLayout motion_layout(const GltfFile& file, const std::vector<const tinygltf::Primitive*>& primitives,
                            const std::string& object, bool is_skinned);
 
-// Of the vertices of one primitive. Weights are divided by their sum; vertices without any weight follow the first
+// Reads the vertices of one primitive. Weights are divided by their sum; vertices without any weight follow the first
 // joint, with a warning.
 VertexMotion read_gltf_motion(GltfFile& file, const tinygltf::Primitive& primitive, const MotionLayout& layout,
                               std::size_t vertex_count, const std::string& object);
@@ -31,7 +31,7 @@ void append(std::vector<T>& all, const std::vector<T>& part) {
 }
 void append(VertexMotion& all, const VertexMotion& part);
 
-// Of some vertices, which have `width` values each.
+// The motion data of some vertices, with `width` values each.
 template <class T>
 std::vector<T> picked(const std::vector<T>& values, std::size_t width, const std::vector<uint>& vertices) {
     std::vector<T> result;

@@ -15,7 +15,7 @@ std::string node_name(const GltfFile& file, std::size_t index) {
     return gltf_name("node", index, file.model.nodes[index].name);
 }
 
-// Every node's parent or -1. Throws when a child does not exist or has two parents.
+// Returns every node's parent or -1. Throws if a child does not exist or has two parents.
 std::vector<int> find_parents(const GltfFile& file) {
     const auto& nodes = file.model.nodes;
     std::vector<int> parents(nodes.size(), -1);

@@ -23,21 +23,21 @@ struct GltfNode {
     bool is_visible = true;  // by KHR_node_visibility, its own and that of all nodes above
 };
 
-// The nodes of the default scene, else of the first one, or where there are no scenes all root nodes, with their
-// descendants; parents come first. Warns where a scene had to be chosen.
-// Throws Error naming the node on: a missing child, two parents, a cycle, over 1000 levels, a transform that is not
+// Returns the nodes of the default scene, else of the first one, or without scenes all root nodes, with their
+// descendants; parents come first. Warns if a scene had to be chosen.
+// Throws Error naming the node for a missing child, two parents, a cycle, over 1000 levels, and a transform that is not
 // finite, not affine or has the wrong number of entries.
 std::vector<GltfNode> flatten_nodes(GltfFile& file);
 
-// A matrix by its 16 entries, column after column. Its last row, 0 0 0 1 but for rounding, becomes that, and the others
-// are divided by its last entry. Throws Error naming `object` where the last row is another one.
+// Returns a matrix by its 16 entries, column after column. Its last row, 0 0 0 1 but for rounding, becomes that, and
+// the others are divided by its last entry. Throws Error naming `object` if the last row is another one.
 glm::dmat4 affine_matrix(const GltfFile& file, std::span<const double, 16> entries, const std::string& object);
 
 // Empty lists are neutral. Throws Error naming `object` on wrong lengths and a quaternion of length 0.
 Trs read_trs(const GltfFile& file, const std::vector<double>& translation, const std::vector<double>& rotation,
              const std::vector<double>& scale, const std::string& object);
 
-// Rounded to float; throws Error naming `object` when an entry is or becomes infinite or NaN.
+// Rounds to float; throws Error naming `object` if an entry is or becomes infinite or NaN.
 Transform rounded_transform(const GltfFile& file, const glm::dmat4& matrix, const std::string& object);
 
 struct GltfInstance {
@@ -47,12 +47,12 @@ struct GltfInstance {
     Rig::Attachment attachment;
     bool is_hidden = false;  // as Rig::Hidden; its transform is then the identity
 };
-// One for each placement of a mesh by a visible node, EXT_mesh_gpu_instancing included. Those whose transform has a
-// fault_of() are hidden where an animation of the rig scales their node or one above, else skipped with a warning.
-// Nodes do not move what a skin carries: it is in world space already.
+// Returns one for each placement of a mesh by a visible node, EXT_mesh_gpu_instancing included. Those whose transform
+// has a fault_of() are hidden if an animation of the rig scales their node or one above, else skipped with a warning.
+// Nodes do not move skinned meshes: these are in world space already.
 std::vector<GltfInstance> read_gltf_instances(GltfFile& file, const std::vector<GltfNode>& nodes, const Rig& rig);
 
-// Cameras of all nodes and KHR_lights_punctual of visible ones, and which nodes carry them.
+// Reads cameras of all nodes and KHR_lights_punctual of visible ones, and the nodes that carry them.
 std::vector<Rig::Attachment> read_gltf_cameras(GltfFile& file, const std::vector<GltfNode>& nodes, Scene& scene);
 std::vector<Rig::Attachment> read_gltf_lights(GltfFile& file, const std::vector<GltfNode>& nodes, Scene& scene);
 

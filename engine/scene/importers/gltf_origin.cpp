@@ -18,7 +18,7 @@ using glm::dmat4;
 
 dmat4 translation(const dvec3& offset) { return glm::translate(dmat4(1), to_glm(offset)); }
 
-// Before any instance is rounded.
+// It is computed before any instance is rounded.
 Bounds64 world_bounds(const Scene& scene, const Rig& rig, const Pose& pose) {
     std::vector<Bounds> of_meshes;
     for (const Mesh& mesh : scene.meshes) of_meshes.push_back(bounds_of(MeshView(mesh)));
@@ -36,7 +36,7 @@ Bounds64 world_bounds(const Scene& scene, const Rig& rig, const Pose& pose) {
     return bounds;
 }
 
-// The point of a space that stands at the scene's origin, where that of the space itself stands far away; else 0.
+// Returns the point of a space at the scene's origin, if the space's own origin is far away; else 0.
 dvec3 point_at_origin(const dmat4& to_scene, double reach) {
     const dvec3 position(to_scene[3]);
     if (!is_far(std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)}), reach)) return dvec3(0);
@@ -53,7 +53,7 @@ class MeshMover {
   public:
     MeshMover(Scene& scene, Rig& rig, double reach) : scene_(scene), rig_(rig), reach_(reach) {}
 
-    // Whether there was any.
+    // Returns whether there was any.
     bool move() {
         const Pose rest = rest_pose(rig_);
         std::vector<dvec3> offsets(scene_.meshes.size(), dvec3(0));
@@ -73,7 +73,7 @@ class MeshMover {
     }
 
   private:
-    // Of the space in which the mesh was bound. The skin may be that of other meshes, so it gets one of its own.
+    // Moves the space in which the mesh was bound. Other meshes may have the same skin, so it gets one of its own.
     dvec3 move_skin(DeformedMesh& mesh, const Pose& rest) {
         Skin skin = rig_.skins[static_cast<std::size_t>(mesh.skin)];
         const dvec3 offset = point_at_origin(rest->nodes[skin.joints[0]] * skin.inverse_binds[0], reach_);
@@ -89,7 +89,7 @@ class MeshMover {
     double reach_;
 };
 
-// What no node carries, as that which a skin does, is placed in the world as it was.
+// Places what no node carries, such as skinned meshes, in the world as it was.
 void move_places(Rig& rig) {
     for (Rig::Attachment& attachment : rig.instances)
         if (attachment.node < 0)

@@ -20,7 +20,7 @@ std::size_t target_count(const tinygltf::Mesh& mesh) {
     return count;
 }
 
-// The node's, else the mesh's, else none of any target.
+// Returns the node's, else the mesh's, else none of any target.
 std::vector<double> rest_weights(const GltfFile& file, const GltfNode& node) {
     const tinygltf::Node& source = file.model.nodes[node.index];
     if (source.mesh < 0 || std::size_t(source.mesh) >= file.model.meshes.size()) return {};

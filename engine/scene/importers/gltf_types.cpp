@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Members of a wrong type, which tinygltf passes over in silence and a scene would then lack.
+// Finds members of a wrong type, which tinygltf ignores silently and a scene would then lack.
 #include <algorithm>
 #include <set>
 #include <string_view>
@@ -41,7 +41,7 @@ const char* description(Kind kind) {
     return "";
 }
 
-// glTF uses these keys with one meaning wherever they stand.
+// glTF uses these keys with one meaning everywhere.
 std::optional<Kind> kind_of(const std::string& key) {
     struct Keys {
         Kind kind;

@@ -6,7 +6,7 @@ namespace {
 
 constexpr const char* extension_name = "KHR_materials_variants";
 
-// The entries of a list in the extension; none where there is no such list.
+// Returns the entries of a list in the extension; none if there is no such list.
 std::vector<tinygltf::Value> entries_of(const tinygltf::ExtensionMap& extensions, const char* list) {
     const tinygltf::Value* extension = find_extension(extensions, extension_name);
     const tinygltf::Value* member = extension ? find_member(*extension, list) : nullptr;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Cameras and lights: what looks at the triangles and shines on them.
+// Reads cameras and lights.
 #include <cmath>
 #include <numbers>
 
@@ -12,7 +12,7 @@ namespace {
 
 std::string name_or(const std::string& name, const std::string& fallback) { return name.empty() ? fallback : name; }
 
-// False when the lens cannot form an image.
+// Returns false if the lens cannot form an image.
 bool set_lens(const tinygltf::Camera& source, Camera& camera) {
     if (source.type == "orthographic") {
         camera.orthographic_half_height = static_cast<float>(std::abs(source.orthographic.ymag));
@@ -33,7 +33,7 @@ std::optional<Light::Kind> light_kind_of(const std::string& type) {
     return std::nullopt;
 }
 
-// False where it was skipped.
+// Returns false if it was skipped.
 bool add_light(GltfFile& file, const GltfNode& node, const tinygltf::Light& source, Scene& scene) {
     const std::optional<Light::Kind> kind = light_kind_of(source.type);
     const std::optional<glm::dmat4> frame = unscaled(node.frame);

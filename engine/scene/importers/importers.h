@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The readers behind load_scene. What they return is not yet checked and completed; load_scene does that:
-// triangles without a material have the index after the last one. `origin`: as load_scene takes it.
+// The readers behind load_scene(), which checks and completes their scenes: triangles without a material have the index
+// after the last one. `origin`: the argument of load_scene().
 #pragma once
 
 #include <filesystem>

@@ -15,7 +15,7 @@
 namespace twinray {
 namespace {
 
-// Whether the word is one of those that change nothing here: other models of light, and what comes in every file.
+// Returns whether the word changes nothing here: other lighting models, and words that every file has.
 bool is_of_no_use(std::string_view keyword) {
     constexpr std::array<std::string_view, 7> words = {"Ka", "Ks", "Ns", "Ni", "Tf", "illum", "sharpness"};
     return std::ranges::find(words, keyword) != words.end();
@@ -28,7 +28,7 @@ std::string with_slashes(std::string_view path) {
     return changed;
 }
 
-// Up to `most` numbers that something still follows.
+// Cuts off up to `most` numbers that are followed by something.
 std::array<float, 3> cut_numbers(std::string_view& rest, std::size_t most, float otherwise) {
     std::array<float, 3> numbers = {otherwise, otherwise, otherwise};
     for (std::size_t i = 0; i < most; ++i) {
@@ -132,7 +132,7 @@ void MtlReader::read_line(const ObjLines& line) {
         passed_over_.add(keyword, line.line());
 }
 
-// A material that is there already is told anew.
+// A material that exists already is defined anew.
 void MtlReader::start(std::string_view name) {
     const auto [entry, is_new] = indices_.try_emplace(std::string(name), static_cast<uint>(scene_.materials.size()));
     current_ = Current{.index = entry->second};
@@ -162,7 +162,7 @@ void MtlReader::read_color(const ObjLines& line) {
     current_->has_color = true;
 }
 
-// Tr is 1 - d. Where a file says both, d counts: some programs write them equal.
+// Tr is 1 - d. If a file has both, d counts: some programs write them equal.
 void MtlReader::read_opacity(const ObjLines& line) {
     std::string_view rest = line.numbers();
     std::string_view word = cut_word(rest);
@@ -201,7 +201,7 @@ std::int32_t MtlReader::image_of(std::string_view name) {
     return entry->second;
 }
 
-// As seen from the .mtl file, or else from the .obj file.
+// Looks relative to the .mtl file, then to the .obj file.
 std::filesystem::path MtlReader::find(std::string_view name) const {
     std::error_code ignored;
     const std::filesystem::path beside = file_.parent_path() / with_slashes(name);

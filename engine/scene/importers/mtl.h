@@ -14,20 +14,20 @@
 
 namespace twinray {
 
-// What a surface of no stated colour looks like: grey, no metal.
+// The material of a surface of no stated colour: grey, no metal.
 Material plain_material(std::string name);
 
-// The materials of .mtl files, put at the end of Scene::materials in the order of the files. What is missing or has no
-// use here is told in Scene::warnings.
+// The materials of .mtl files, put at the end of Scene::materials in the order of the files. Missing and unused parts
+// are listed in Scene::warnings.
 class MtlReader {
   public:
     MtlReader(Scene& scene, std::filesystem::path obj_folder) : scene_(scene), obj_folder_(std::move(obj_folder)) {}
 
-    // What `mtllib` says: the name of one file, which may have blanks in it, or of several that each end in .mtl.
+    // Reads the value of `mtllib`: one file's name, which may have blanks in it, or several that each end in .mtl.
     void read_files(std::string_view names);
 
-    // The material's index. One that no file has is plain, and warn_of_missing() says so; `line`: where it is asked
-    // for.
+    // Returns the material's index. One that no file has is plain, and warn_of_missing() says so; `line` is that of its
+    // use.
     uint index_of(const std::string& name, std::size_t line);
     void warn_of_missing();
 

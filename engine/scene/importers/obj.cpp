@@ -27,7 +27,7 @@
 namespace twinray {
 namespace {
 
-// The contents of a file, before meshes are made of it.
+// The contents of a file, before meshes are made from it.
 struct ObjFile {
     static constexpr uint none = std::numeric_limits<uint>::max();
 
@@ -49,7 +49,7 @@ struct ObjFile {
     std::vector<vec2> uvs;      // v upwards
     std::vector<FaceVertex> face_vertices;
     std::vector<Face> faces;
-    // The names that `o` gives, or `g` where no `o` is in force; empty before either.
+    // The names from `o`, or from `g` if no `o` is in force; empty before either.
     std::vector<std::string> part_names;
     std::vector<MaterialName> materials;
     std::vector<std::string> libraries;  // what each `mtllib` says
@@ -59,7 +59,7 @@ struct ObjFile {
 // Names in the order of their first use.
 class Names {
   public:
-    // The name's number, and whether it is new.
+    // Returns the name's number, and whether it is new.
     std::pair<uint, bool> number_of(const std::string& name) {
         const auto [entry, is_new] = numbers_.try_emplace(name, static_cast<uint>(numbers_.size()));
         return {entry->second, is_new};
@@ -113,7 +113,7 @@ class ObjParser {
         std::size_t count = 0;
     };
 
-    // Bytes behind the eighth are left alone.
+    // Values after the eighth are ignored.
     Numbers read_numbers(std::size_t least) const {
         Numbers numbers;
         std::string_view rest = lines_.numbers();
@@ -186,7 +186,7 @@ class ObjParser {
         return vertex;
     }
 
-    // Up to the next slash. From 1 on, or counted back from the last of those that are there; none if it is left out.
+    // Cuts an index up to the next slash: from 1 on, or counted back from the last so far; none if it is left out.
     uint cut_index(std::string_view& word, std::size_t count, std::string_view whole) const {
         if (word.empty() || word.front() == '/') {
             word.remove_prefix(word.empty() ? 0 : 1);
@@ -204,7 +204,7 @@ class ObjParser {
         return static_cast<uint>(from_zero);
     }
 
-    // At the end, since faces may come before what they use.
+    // Called at the end, since faces may precede their vertices.
     void check_corners() {
         for (const ObjFile::Face& face : file_.faces)
             for (std::size_t i = 0; i < face.vertex_count; ++i) {
@@ -245,7 +245,7 @@ class ObjParser {
     PassedOver missing_, passed_over_;
 };
 
-// Throws Error naming `object` and the line that is wrong.
+// Throws Error naming `object` and the line with the fault.
 ObjFile parse_obj(std::string_view text, const std::string& object) { return ObjParser(text, object).parse(); }
 
 // Turns a parsed file into a Scene.
@@ -273,7 +273,7 @@ class ObjReader {
         bool has_uvs = false, has_normals = false;
     };
 
-    // Of the vertices that faces use.
+    // Returns the box of the vertices that faces use.
     Bounds64 bounds() const {
         Bounds64 bounds;
         for (const ObjFile::FaceVertex& vertex : file_.face_vertices) bounds.include(file_.positions[vertex.position]);

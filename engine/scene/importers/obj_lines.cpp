@@ -8,7 +8,7 @@
 namespace twinray {
 namespace {
 
-// At a #, but for one in a number of Microsoft's C library.
+// A comment begins at a #, but not in a number of Microsoft's C library.
 std::size_t comment_begin(std::string_view line) {
     const auto is_in_number = [&](std::size_t at) {
         const std::string_view after = line.substr(at + 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What .obj and .mtl files have in common.
+// The common part of .obj and .mtl files.
 #pragma once
 
 #include <cstddef>
@@ -8,16 +8,16 @@
 
 namespace twinray {
 
-// The lines that say something, one after the other. A backslash at the end of a line joins the next one to it, unless
-// a comment has begun.
+// The lines with contents, one after the other. A backslash at the end of a line joins the next one to it, unless a
+// comment has begun.
 class ObjLines {
   public:
     explicit ObjLines(std::string_view text) : rest_(text) {}
 
     bool next();  // false at the end
     std::string_view keyword() const { return keyword_; }
-    // What follows the keyword, without a comment, which # begins anywhere. In a name it has to stand alone, since
-    // there are materials called "Material #25".
+    // Returns the text after the keyword, without a comment, which # begins anywhere. In a name it has to stand alone,
+    // since there are materials called "Material #25".
     std::string_view numbers() const;
     std::string_view name() const;
     std::size_t line() const { return line_; }  // where it begins, from 1

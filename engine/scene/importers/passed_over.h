@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What importers skip.
+// Lists the parts of files that importers skip.
 #pragma once
 
 #include <cstddef>
@@ -9,12 +9,12 @@
 
 namespace twinray {
 
-// What a reader has no use for, to be said once.
+// Parts of a file that a reader ignores; each is reported once.
 class PassedOver {
   public:
     void add(std::string_view word, std::size_t line) { first_lines_.emplace(word, line); }
     bool empty() const { return first_lines_.empty(); }
-    // "'cstype' (line 2), 'vp' (line 7)", in the order of lines; of many the first.
+    // Returns "'cstype' (line 2), 'vp' (line 7)", in the order of lines; the first ones if there are many.
     std::string list() const;
 
   private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Stands in for images that are missing.
+// The replacement for missing images.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace twinray {
 
-// Magenta and black squares: what stands in for an image that cannot be shown, so that nobody overlooks it.
+// Magenta and black squares replace an image that cannot be shown, so that nobody overlooks it.
 Image checkerboard_image(const std::string& name);
 
 }  // namespace twinray

@@ -109,7 +109,7 @@ bool read_line(const std::string& line, std::size_t number, PlyHeader& header) {
     return header.elements.empty() || keyword == "comment" || keyword == "obj_info";
 }
 
-// After this no count makes anyone reserve more memory than the file vouches for.
+// After this, no count makes a reader reserve more memory than the file's size justifies.
 void check_counts(const PlyHeader& header, std::size_t body_size, const std::string& object) {
     for (const PlyElement& element : header.elements) {
         std::size_t least = element.properties.empty() ? 1 : 0;
@@ -122,12 +122,12 @@ void check_counts(const PlyHeader& header, std::size_t body_size, const std::str
     }
 }
 
-// Throws Error naming `object` and the line that it does not understand, or the element that is larger than the file.
+// Throws Error naming `object` and the line that it cannot parse, or the element that is larger than the file.
 PlyHeader parse_ply_header(const Bytes& bytes, const std::string& object) {
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     if (!text.starts_with("ply") || text.size() < 4)
         fail("'", object, "': not a PLY file (it does not start with 'ply')");
-    // All lines end as the first one does. Were it told by each, a body after CR that begins with the byte 10 would
+    // All lines end as the first one does. If each were examined, a body after CR that begins with the byte 10 would
     // lose it.
     const std::size_t first_end = text.find_first_of("\r\n");
     const bool ends_in_cr = first_end != text.npos && text[first_end] == '\r' && text.substr(first_end + 1, 1) != "\n";
@@ -191,7 +191,7 @@ class PlyValues {
         return static_cast<double>(value);
     }
 
-    // As its digits say, though its type may have fewer.
+    // Returns all digits of the number, even if its type has fewer.
     double next_word() {
         const std::string_view text(reinterpret_cast<const char*>(bytes_.data()), bytes_.size());
         std::string_view rest = text.substr(position_);
@@ -216,7 +216,7 @@ bool is_any_of(const std::string& name, std::initializer_list<const char*> names
     return std::ranges::find(names, name) != names.end();
 }
 
-// Where a vertex property goes: 0-2 position, 3-5 normal, 6-7 texture coordinates, 8 nowhere.
+// The destination of a vertex property: 0-2 position, 3-5 normal, 6-7 texture coordinates, 8 nowhere.
 constexpr std::size_t nowhere = 8;
 
 std::size_t slot_of(const PlyProperty& property) {
@@ -284,7 +284,7 @@ class PlyReader {
         return 0;
     }
 
-    // Any other element too, of which nothing is kept.
+    // It also reads other elements, of which nothing is kept.
     void read_faces(const PlyElement& element) {
         const bool has_strips = element.name == "tristrips";
         if (!holds_faces(element)) passed_over_.add(element.name, element.line);
@@ -324,7 +324,7 @@ class PlyReader {
         }
     }
 
-    // After all elements, since nothing says that the vertices come first.
+    // It runs after all elements, since vertices need not come first.
     void check_corners() const {
         std::size_t at = 0;
         for (std::size_t face = 0; face < vertex_counts_.size(); at += vertex_counts_[face++])
@@ -335,7 +335,7 @@ class PlyReader {
                          positions_.size(), " vertices");
     }
 
-    // Of the vertices that faces use.
+    // Returns the box of the vertices that faces use.
     Bounds64 bounds() const {
         Bounds64 bounds;
         for (const double index : indices_) bounds.include(positions_[static_cast<std::size_t>(index)]);

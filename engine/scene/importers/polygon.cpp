@@ -11,8 +11,8 @@
 namespace twinray {
 namespace {
 
-// The vertices in the plane that the polygon faces most, turned so that its area is positive, as whole numbers up to
-// 2^52: differences of them are exact. That costs no more than their own rounding where they are farthest from 0.
+// Returns the vertices in the plane that the polygon faces most, turned so that its area is positive, as whole numbers
+// up to 2^52: differences are exact. The error is at most their own rounding where they are farthest from 0.
 std::vector<dvec2> flattened(std::span<const dvec3> vertices) {
     dvec3 sum(0), size(0);  // of the triangles about the first vertex
     for (std::size_t i = 2; i < vertices.size(); ++i) {
@@ -39,7 +39,7 @@ std::vector<dvec2> flattened(std::span<const dvec3> vertices) {
 
 double doubled_area(dvec2 a, dvec2 b, dvec2 c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
 
-// The exact sign of doubled_area(): of products that round to the same, the rest decides (Dekker, 1971).
+// Returns the exact sign of doubled_area(): if products round to the same, the remainder decides (Dekker, 1971).
 int turn(dvec2 a, dvec2 b, dvec2 c) {
     const dvec2 ab = b - a, ac = c - a;
     const double left = ab.x * ac.y, right = ab.y * ac.x;
@@ -59,7 +59,7 @@ struct Triangle2 {
 struct Box2 {
     dvec2 lo, hi;
 
-    // Whether the box lies beyond one of the sides.
+    // Returns whether the box is beyond one of the sides.
     bool is_beside(const Triangle2& t) const {
         return is_beyond(t.a, t.b) || is_beyond(t.b, t.c) || is_beyond(t.c, t.a);
     }
@@ -80,7 +80,7 @@ class PointTree {
         build(points, 0, set_.begin(), set_.end());
     }
 
-    // Whether `blocks` any of the points in the triangle's reach.
+    // Returns whether `blocks` any of the points in the triangle's reach.
     template <class Blocks>
     bool any(const Triangle2& triangle, const Blocks& blocks) const {
         return !set_.empty() && any(triangle, blocks, 0, set_.begin(), set_.end());
@@ -115,8 +115,8 @@ class PointTree {
     std::vector<Box2> boxes_;
 };
 
-// Cuts ears off: vertices that turn inwards and in whose triangle no other one lies. What turns inwards does so ever
-// after, and an ear with a vertex in it has one in it that does not; so only those are looked for.
+// Cuts ears off: vertices that turn inwards and in whose triangle no other one is. A vertex that turns inwards does so
+// ever after, and an ear with a vertex in it has one in it that does not; so only those are searched.
 class EarCutter {
   public:
     explicit EarCutter(std::span<const dvec3> vertices) : flat_(flattened(vertices)), left_(flat_.size()) {
@@ -135,7 +135,7 @@ class EarCutter {
         do cut_ears();
         while (left_ >= 3 && cut_least_corner());
         while (left_ >= 3) cut_corner();
-        // What is less is lost in the rounding of positions to float32.
+        // Smaller areas are lost in the rounding of positions to float32.
         return {std::move(triangles_), turned_area_ > 0x1p-24 * whole_area_};
     }
 
@@ -151,8 +151,8 @@ class EarCutter {
             }
     }
 
-    // Without an ear the rest has no area, or crosses itself, if only by the rounding of its vertices; there the
-    // smallest triangle does the least harm. Returns false where that would take too long.
+    // Without an ear the rest has no area, or crosses itself, if only by the rounding of its vertices; the smallest
+    // triangle then does the least harm. Returns false if that would take too long.
     bool cut_least_corner() {
         if (least_cuts_left_-- == 0) return false;
         for (uint i = next_[at_], first = at_; i != first; i = next_[i])
@@ -185,7 +185,7 @@ class EarCutter {
         return is_spike(at_) || (t.turn() > 0 && !is_blocked(t));
     }
 
-    // Whether the outline goes there and straight back, with nothing inside between.
+    // Returns whether the outline goes there and straight back, with nothing inside between.
     bool is_spike(uint i) const { return flat_[previous_[i]] == flat_[next_[i]] && has_turned_inwards_[i]; }
 
     bool is_blocked(const Triangle2& ear) const {
@@ -195,7 +195,7 @@ class EarCutter {
         return blockers_.any(ear, [&](uint i) {
             const dvec2 p = flat_[i];
             if (next_[i] == i || p == ear.a || p == ear.c) return false;
-            // Where the outline comes by the tip a second time, it may run through the ear without a vertex in it.
+            // If the outline comes by the tip a second time, it may run through the ear without a vertex in it.
             return p == ear.b ? leads_into(previous_[i]) || leads_into(next_[i]) : ear.contains(p);
         });
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Polygons into triangles.
+// Cuts polygons into triangles.
 #pragma once
 
 #include <cstddef>
@@ -16,16 +16,16 @@ struct Triangulation {
     bool overlaps = false;         // the polygon crosses itself, so that some triangles face the other way
 };
 
-// Cuts a polygon, convex or not, into triangles of its winding that cover it once. Its outline may touch itself, as
-// where a hole is reached by a slit. What crosses itself ends as a fan.
+// Cuts a polygon, convex or not, into triangles of its winding that cover it once. Its outline may touch itself, such
+// as where a slit leads to a hole. A polygon that crosses itself ends as a fan.
 Triangulation triangulate_polygon(std::span<const dvec3> vertices);
 
-// The faces of a file, cut one after the other, and what was wrong with them.
+// Cuts the faces of a file one after the other, and lists their faults.
 class FaceCutter {
   public:
-    // Of vertex numbers, until the next call; none of fewer than 3 vertices. `number`: by which warnings name the face.
+    // Returns triangles of vertex numbers until the next call; none below 3 vertices. Warnings name face `number`.
     const std::vector<uvec3>& cut(std::span<const dvec3> vertices, std::size_t number);
-    // A sentence for each kind of fault; `unit`: what faces are numbered by, "line" or "face".
+    // Returns a sentence for each kind of fault; `unit`: the numbering of faces, "line" or "face".
     std::vector<std::string> warnings(const std::string& unit) const;
 
   private:

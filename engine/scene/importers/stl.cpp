@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// .stl files, binary and text. A facet's normal says nothing that its vertices do not and is not read, whatever it is.
+// .stl files, binary and text. A facet's normal follows from its vertices and is not read, whatever it is.
 #include <algorithm>
 #include <cstring>
 
@@ -41,7 +41,7 @@ std::uint32_t stated_count(const Bytes& bytes) {
     return count;
 }
 
-// Headers begin with "solid", too. Four characters are a count that no text is long enough for.
+// Binary headers may also begin with "solid". Four characters are a count that no text is long enough for.
 bool is_binary(const Bytes& bytes) {
     return bytes.size() >= HEADER_SIZE && stated_count(bytes) <= facets_that_fit(bytes);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The one file that compiles tinygltf. Debian's shared library is not used: libdraco, which a host may bring
-// along, exports another version of the same symbols, and which one is called would depend on the order of linking.
+// The only file that compiles tinygltf. Debian's shared library is not used: libdraco, which an application may link,
+// exports another version of the same symbols, and the order of linking would decide which one is called.
 #include <nlohmann/json.hpp>
 
 #define TINYGLTF_IMPLEMENTATION
