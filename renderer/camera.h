@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Cameras as kernels take them.
+// Converts cameras to the form that kernels take.
 #pragma once
 
 #include <twinray/scene.h>

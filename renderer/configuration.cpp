@@ -18,7 +18,7 @@ constexpr const char* environment_entry = "environment";
 constexpr const char *picture_entry = "picture", *part_entry = "part";
 constexpr const char* default_sky_value = "default sky";
 
-// Of many values, one after the other.
+// The sum of many values, one after the other.
 class Sum {
   public:
     template <class T>

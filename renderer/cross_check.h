@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Two accelerators on the same rays.
+// Compares two accelerators on the same rays.
 #pragma once
 
 #include <filesystem>
@@ -17,7 +17,7 @@ class CrossChecker final : public WaveObserver {
     void record(Commands& commands, const TraceDesc& desc, Uints pixels) override;
     void collect() override;
 
-    // The first max_kept of them.
+    // Returns the first max_kept of them.
     const std::vector<Disagreement>& recorded() const { return recorded_; }
     std::uint64_t found() const { return found_; }
     // One per pixel: whether any of its rays disagreed, recorded or not.
@@ -41,8 +41,8 @@ struct PictureDifference {
 };
 PictureDifference compare_pictures(const HdrImage& first, const HdrImage& second, const std::vector<uint>& marks);
 
-// To look at: `first`, dimmed and grey, with a dot of 3 x 3 pixels on every pixel that differs: yellow where a ray
-// disagreed, red where none did. White of the dots: `white`.
+// Returns a picture for viewing: `first`, dimmed and grey, with a dot of 3 x 3 pixels on every pixel that differs:
+// yellow if a ray disagreed, red if none did. `white` is the white of the dots.
 HdrImage difference_picture(const HdrImage& first, const HdrImage& second, const std::vector<uint>& marks, float white);
 
 }  // namespace twinray::path_tracer

@@ -21,7 +21,7 @@ vec3 default_radiance(vec3 direction) {
     return dot(direction, sun_direction) > sun_cosine ? sky + vec3(110, 104, 92) : sky;
 }
 
-// Cumulated from 0 to 1; all 0 but the last where the weights have no sum.
+// Appends sums from 0 to 1; all 0 but the last if the weights have no sum.
 void append_sums(std::vector<float>& sums, std::span<const double> weights) {
     const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
     double sum = 0;

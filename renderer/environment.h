@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Light from all around: maps and a sky, and how they are sampled.
+// Light from all directions: maps and a sky, and their sampling.
 #pragma once
 
 #include <filesystem>
@@ -22,10 +22,10 @@ struct EnvironmentMap {
     bool is_black() const { return row_sums.empty(); }
 };
 
-// The same radiance from everywhere.
+// Makes a sky of the same radiance from everywhere.
 HdrImage constant_sky(vec3 radiance);
 
-// For scenes without any light: a blue gradient over a grey ground, with a soft sun high to the front left.
+// Makes a sky for scenes without any light: a blue gradient over a grey ground, with a soft sun high to the front left.
 HdrImage default_sky();
 
 }  // namespace twinray::path_tracer

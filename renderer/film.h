@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a picture is made of: for each pixel the sums of its samples, and what samples they are. Films of the same
+// The contents of a picture: for each pixel the sums of its samples, and the set of these samples. Films of the same
 // configuration add up in any order to the same bits.
 #pragma once
 
@@ -14,25 +14,25 @@
 
 namespace twinray::path_tracer {
 
-// All that the value of a sample depends on, but for its number, by name: samples of unlike configurations do not
+// Everything that the value of a sample depends on, except its number, by name: samples of unlike configurations do not
 // belong into one picture.
 using Configuration = std::vector<std::pair<std::string, std::string>>;
 
-// "seed is 2, not 1; ..." for all that differs; empty where nothing does.
+// Says "seed is 2, not 1; ..." for each difference; empty if there is none.
 std::string difference(const Configuration& found, const Configuration& wanted);
-// The value of that name, or nothing.
+// Returns the value of that name, or nothing.
 std::string value_of(const Configuration& configuration, const std::string& name);
 
-// Which blocks of samples a film holds, by number.
+// The numbers of the blocks of samples that a film holds.
 class BlockSet {
   public:
     void insert(uint number);
     bool contains(uint number) const;
     void unite(const BlockSet& other);
     uint count() const;
-    // 1 + the largest number; 0: it is empty.
+    // Returns 1 + the largest number; 0 if it is empty.
     uint end() const;
-    // A number that both hold, or nothing.
+    // Returns a number that both hold, or nothing.
     std::optional<uint> common(const BlockSet& other) const;
 
     // Bit i % 32 of word i / 32 stands for block i; the last word is not 0.
@@ -52,39 +52,39 @@ struct Film {
     BlockSet blocks = BlockSet{};
     std::vector<FilmPixel> pixels = {};
 
-    // Without samples.
+    // Makes a film without samples.
     static Film empty(uint width, uint height, uint block_size, Configuration configuration);
 
-    // A block's sum of one pixel: the CPU reference of accumulate.comp. The caller notes the block's number.
+    // Adds a block's sum of one pixel: the CPU reference of accumulate.comp. The caller notes the block's number.
     void add(std::size_t pixel, vec3 sum);
-    // Throws Error, naming both, where the other's samples are of another configuration or partly the same ones.
+    // Throws Error, naming both, if the other's samples are of another configuration or partly the same ones.
     void merge(const Film& other, const std::string& name, const std::string& other_name);
 
     HdrImage mean() const;
-    // Of each pixel's mean luminance: the square of its standard error, from how its blocks differ. Infinite where
-    // there are less than two.
+    // For each pixel's mean luminance: the square of its standard error, from how its blocks differ. Infinite if there
+    // are fewer than two.
     std::vector<double> variances() const;
-    // Of the picture: the root mean square of the pixels' standard errors, over the mean luminance of the picture. What
-    // to expect of the root mean square of its difference to the true picture (relative RMSE). Infinite where some
-    // pixel has less than two blocks.
+    // For the picture: the root mean square of the pixels' standard errors, over its mean luminance. It estimates the
+    // root mean square of its difference to the true picture (relative RMSE). Infinite if some pixel has fewer than two
+    // blocks.
     double error() const;
-    // Of a pixel, on average.
+    // The average over pixels.
     double mean_samples() const;
 };
 
-// Of samples that do not depend on each other the above is unbiased. Samples of one Sobol sequence are spread more
-// evenly than that, and the error is smaller than it says.
+// This is unbiased for samples that do not depend on each other. Samples of one Sobol sequence are spread more evenly
+// than that, and the error is smaller than it says.
 
 // A sum of a pixel: red, green, blue, or of squared luminances (FILM_SQUARES).
 double sum_of(const FilmPixel& pixel, uint sum);
 double mean_luminance(const Film& film);
 
-// Layers are what .exr pictures tell besides radiance.
+// Layers are the channels of .exr pictures besides radiance.
 // samples.N: samples of each pixel; variance.Y: square of the standard error of its luminance.
 std::vector<ImageChannel> layers_of(const Film& film);
-// albedo.R G B, normal.X Y Z: means over the rays, 0 where there is nothing; depth.Z: distance from the camera, mean
-// over the rays that see something, infinite where none does; instance.ID, primitive.ID: of the first sample, 2^32 - 1
-// where it sees nothing. rays: of a pixel.
+// albedo.R G B, normal.X Y Z: means over the rays, 0 if there are none; depth.Z: distance from the camera, mean over
+// the rays that see something, infinite if none does; instance.ID, primitive.ID: of the first sample, 2^32 - 1 if it
+// sees nothing. rays: per pixel.
 std::vector<ImageChannel> layers_of(const std::vector<FirstSurface>& first_surfaces, uint rays);
 
 }  // namespace twinray::path_tracer

@@ -56,7 +56,7 @@ class Reader {
     std::span<const std::byte> bytes_;
 };
 
-// Of a film that has no more pixels than a file could have bytes, so that nothing overflows.
+// Needs a film that has no more pixels than a file could have bytes, so that nothing overflows.
 std::uint64_t size_of(const FilmHeader& header) {
     return sizeof header + std::uint64_t{header.text_bytes} + std::uint64_t{header.word_count} * sizeof(uint) +
            std::uint64_t{header.width} * header.height * sizeof(FilmPixel) + sizeof(uint);

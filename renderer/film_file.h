@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Films as files: checkpoints, shards, and what they merge to.
+// Files of films: checkpoints, shards, and their merged films.
 #pragma once
 
 #include <filesystem>
@@ -8,13 +8,13 @@
 
 namespace twinray::path_tracer {
 
-// Whole or not at all: what was there before is replaced at the end. Little endian: "twinray film 1\n" and a zero byte;
-// six uint32: width, height, block size, bytes of the text, words of the block set, CRC-32 of the text; the text, one
-// "name: value" a line; the block set; the pixels, row by row, as FilmPixel in shaders/path_tracer/film.h; CRC-32 of
-// all before it.
+// Writes the whole film or nothing: an existing file is replaced at the end. Little endian: "twinray film 1\n" and a
+// zero byte; six uint32: width, height, block size, bytes of the text, words of the block set, CRC-32 of the text; the
+// text, one "name: value" a line; the block set; the pixels, row by row, as FilmPixel in shaders/path_tracer/film.h;
+// CRC-32 of all before it.
 void save_film(const std::filesystem::path& file, const Film& film);
 
-// Throws Error naming the file where it is no film, is damaged or cut short.
+// Throws Error naming the file if it is no film, damaged or cut short.
 Film load_film(const std::filesystem::path& file);
 
 bool is_film_file(const std::filesystem::path& file);

@@ -8,8 +8,8 @@
 namespace twinray::path_tracer {
 namespace {
 
-// exp(-extinction * attenuation_distance) is the attenuation color. Black has a finite one, whose product with a way of
-// length 0 is 0.
+// exp(-extinction * attenuation_distance) is the attenuation color. Black has a finite extinction, so that its product
+// with a way of length 0 is 0.
 vec3 extinction_of(const Material& material) {
     if (!std::isfinite(material.attenuation_distance)) return vec3(0);
     const vec3 extinction = -log(material.attenuation_color) / material.attenuation_distance;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t bucket_count = 12;
 
-// What a node holds, in float64.
+// The contents of a node, in float64.
 struct Bound {
     dvec3 lo = dvec3(INFINITY), hi = dvec3(-INFINITY);
     dvec3 axis = dvec3(0);
@@ -62,7 +62,7 @@ Bound around(Bound a, const Bound& b) {
     return a;
 }
 
-// The measure of the directions that a bound shines into: the solid angle of its cone, and what is beyond it up to
+// The measure of the directions that a bound shines into: the solid angle of its cone, and of the part beyond it up to
 // reach_angle, weighted by the cosine.
 double measure_of_directions(const Bound& bound) {
     constexpr double pi = std::numbers::pi;
@@ -140,7 +140,7 @@ struct Builder {
         return split;
     }
 
-    // Where the second child begins. Halves where no split is better or the tree would become too deep.
+    // Returns the start of the second child. Halves the range if no split is better or the tree would become too deep.
     std::size_t divide(std::size_t begin, std::size_t end, uint level) {
         const auto first = order.begin() + static_cast<std::ptrdiff_t>(begin);
         const auto last = order.begin() + static_cast<std::ptrdiff_t>(end);
@@ -171,7 +171,7 @@ struct Builder {
         tree.nodes[node] = record_of(all, child | (all.is_two_sided ? LIGHT_TWO_SIDED : 0));
     }
 
-    // Rounded so that the box and both angles hold what they must.
+    // Rounds so that the box and both angles contain all lights.
     static LightNode record_of(const Bound& bound, uint child) {
         constexpr double rounding = 0x1p-20;
         const vec3 center((bound.lo + bound.hi) / 2.0);

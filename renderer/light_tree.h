@@ -9,7 +9,7 @@
 
 namespace twinray::path_tracer {
 
-// A light that is somewhere: a triangle, two that make a quadrilateral, a point, a spot.
+// A light with a position: a triangle, two that make a quadrilateral, a point, a spot.
 struct PlacedLight {
     vec3 lo, hi;             // the box around it
     vec3 axis;               // unit
@@ -26,8 +26,7 @@ struct LightTree {
     std::vector<uint> ways;        // by index of a light, see chance_of_way
 };
 
-// light_count: above all indices. Splits where the orientation-aware surface area heuristic of Conty and Kulla is
-// least.
+// light_count is above all indices. Splits at the least orientation-aware surface area heuristic of Conty and Kulla.
 LightTree build_light_tree(std::span<const PlacedLight> lights, std::size_t light_count);
 
 }  // namespace twinray::path_tracer

@@ -13,7 +13,7 @@
 namespace twinray::path_tracer {
 namespace {
 
-// Nearest texel; wrapping other than repeat matters little for an estimate.
+// Samples the nearest texel; wrapping other than repeat matters little for an estimate.
 float texel_luminance(const Image& image, vec2 uv) {
     if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) return 0;
     const vec2 at = uv - floor(uv);
@@ -28,7 +28,7 @@ float texel_luminance(const Image& image, vec2 uv) {
     return luminance(vec3(channel(0), channel(1), channel(2)));
 }
 
-// Mean of the emission texture over a triangle, estimated; never 0, so that every emissive triangle can be chosen.
+// Estimates the mean of the emission texture over a triangle; never 0, so that every emissive triangle can be chosen.
 float mean_texture(const Scene& scene, const Texture& texture, const Mesh& mesh, const uvec3& triangle) {
     const std::vector<vec2>& uvs = mesh.uv_set(texture.uv_set);
     if (texture.image < 0 || uvs.empty()) return 1;
@@ -46,7 +46,7 @@ float mean_texture(const Scene& scene, const Texture& texture, const Mesh& mesh,
 
 constexpr float flat_cosine = 1 - 0x1p-20f;  // of the angle between two halves of a quadrilateral
 
-// Whether the triangle shares two vertices with the other of the mesh.
+// Returns whether the triangle shares two vertices with the other of the mesh.
 bool have_an_edge(const Mesh& mesh, uint other, const uvec3& triangle) {
     uint shared = 0;
     const uvec3& before = mesh.triangles[other];
@@ -147,7 +147,7 @@ struct Collector {
         return light >= areas.size() && lights.punctual[light - areas.size()].kind == PUNCTUAL_DIRECTIONAL;
     }
 
-    // Suns and other lights have the same share of a table of all.
+    // The suns and the other lights have equal shares of a table of all.
     void share_by_kind() {
         double of_suns = 0, of_placed = 0;
         for (std::size_t i = 0; i < weights.size(); ++i) (is_sun(i) ? of_suns : of_placed) += weights[i];
@@ -155,7 +155,7 @@ struct Collector {
             if (const double of_kind = is_sun(i) ? of_suns : of_placed; of_kind > 0) weights[i] /= of_kind;
     }
 
-    // One part of the table. Its weights become chances.
+    // Makes one part of the table. Its weights become chances.
     void make_part(std::size_t first, std::size_t count) {
         const std::span part = std::span(weights).subspan(first, count);
         std::ranges::copy(make_alias_table(part), lights.table.begin() + static_cast<std::ptrdiff_t>(first));

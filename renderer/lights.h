@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Lights of a scene, and how one is chosen.
+// The lights of a scene, and how one is chosen.
 #pragma once
 
 #include <vector>
@@ -11,8 +11,8 @@
 
 namespace twinray::path_tracer {
 
-// How a light is chosen. The environment, the suns and the lights that are somewhere have the same share each. A sun is
-// chosen by its power, another light in a tree by the place that is lit, or, without a tree, by its power, too.
+// How a light is chosen. The environment, the suns and the lights with a position have the same share each. A sun is
+// chosen by its power, another light in a tree by the lit point, or, without a tree, also by its power.
 enum class LightChoice { table, tree };
 
 // The emissive triangles and punctual lights of a scene.
@@ -21,7 +21,7 @@ struct LocalLights {
     std::vector<std::vector<float>> densities;  // per instance, then triangle: see SurfaceInstance; empty if dark
     std::vector<std::vector<uint>> ways;        // likewise
     std::vector<PunctualLight> punctual;
-    // By the index of a light: emitters, then punctual lights, the suns last. In parts, of which each chooses by power:
+    // Indexed by light: emitters, then punctual lights, the suns last. It has parts, each of which chooses by power:
     // one for each leaf of the tree, and one of `table_count` lights from `table_first` on, chosen with `table_chance`.
     std::vector<AliasEntry> table;
     uint table_first = 0, table_count = 0;
@@ -31,18 +31,18 @@ struct LocalLights {
     bool has_suns = false, has_placed = false;
 
     bool empty() const { return emitters.empty() && punctual.empty(); }
-    // Kinds of lights that have a share beside the environment.
+    // Returns the number of kinds of lights that have a share beside the environment.
     uint kind_count() const { return uint{has_suns} + uint{has_placed}; }
 };
 
 using LocalLightSet = TWINRAY_MULTI_TYPE_SET(LocalLightsView, LOCAL_LIGHTS);
 
-// The lights in device memory. Their number may change; who was there keeps the key.
+// The lights in device memory. Their number may change; a light keeps its key.
 class LightSet {
   public:
     explicit LightSet(Context& context) : set_(context, "local lights") {}
 
-    // Replaces what was put before. Returns the keys by index.
+    // Replaces the previous lights. Returns the keys by index.
     std::vector<SetKey> put(const LocalLights& lights);
     LocalLightsView view() const { return set_.view(); }
     std::uint64_t buffer_bytes() const { return set_.buffer_bytes(); }
@@ -52,11 +52,11 @@ class LightSet {
     std::vector<SetKey> emitters_, punctual_;  // all that there ever were at once
 };
 
-// By the tree where that can gain anything: two lights or more are somewhere.
+// Builds a tree if that can gain anything: if two lights or more have a position.
 LocalLights collect_lights(const Scene& scene);
 LocalLights collect_lights(const Scene& scene, LightChoice by);
 
-// Whether the scene brings light to see by: a punctual light, or a surface brighter than the radiance 1 that glTF
+// Returns whether the scene has light to see by: a punctual light, or a surface brighter than the radiance 1 that glTF
 // allows without KHR_materials_emissive_strength, which is the glow of a label or a screen rather than a lamp.
 bool has_lamps(const Scene& scene);
 

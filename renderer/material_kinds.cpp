@@ -15,7 +15,7 @@ constexpr std::pair<uint, uint> needs_of_layers[] = {{LAYER_SPECULAR, PT_HAS_SPE
                                                      {LAYER_ANISOTROPY, PT_HAS_ANISOTROPY},
                                                      {LAYER_VOLUME, PT_HAS_VOLUME}};
 
-// By material: whether an instance of a mesh that `counts` shows it.
+// Returns by material whether an instance of a mesh that `counts` shows it.
 template <class Counts>
 std::vector<bool> materials_shown(const Scene& scene, const Counts& counts) {
     std::vector<bool> used(scene.materials.size());
@@ -28,7 +28,7 @@ std::vector<bool> materials_shown(const Scene& scene, const Counts& counts) {
     return used;
 }
 
-// What every kind needs: each kernel samples all lights, of which some may have textures or be transparent.
+// The needs of every kind: each kernel samples all lights, some of which may have textures or be transparent.
 uint needs_of_lights(const Scene& scene, const std::vector<bool>& used, const std::vector<bool>& colored) {
     uint needs = 0;
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
@@ -60,7 +60,7 @@ uint index_of(std::vector<uint>& kinds, uint needs) {
     return static_cast<uint>(std::find(kinds.begin(), kinds.end(), needs) - kinds.begin());
 }
 
-// The two kinds whose union has the fewest needs that one of them lacks.
+// Returns the two kinds whose union has the fewest needs that one of them lacks.
 std::pair<std::size_t, std::size_t> closest(const std::vector<uint>& kinds) {
     std::pair<std::size_t, std::size_t> best{0, 1};
     for (std::size_t i = 0; i < kinds.size(); ++i)

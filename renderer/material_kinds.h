@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Which kernels a scene's materials need: materials that need the same are of one kind, which is shaded by a kernel of
-// its own.
+// The kernels that a scene's materials need: materials with the same needs are of one kind, which has a kernel of its
+// own for shading.
 #pragma once
 
 #include <twinray/scene.h>
@@ -9,22 +9,22 @@
 
 namespace twinray::path_tracer {
 
-// Each kind costs a pipeline and 4 bytes a ray in flight.
+// Each kind costs a pipeline and 4 bytes per ray in flight.
 constexpr std::size_t most_material_kinds = 4;
 
-// By material: whether an instance shows it.
+// Returns by material whether an instance shows it.
 std::vector<bool> used_materials(const Scene& scene);
 
-// What materials can need of the kernel that shades them.
+// The features of a shading kernel that materials can need.
 constexpr uint material_needs[] = {PT_HAS_ALPHA, PT_HAS_TEXTURES,   PT_HAS_GLASS,  PT_HAS_SPECULAR, PT_HAS_COAT,
                                    PT_HAS_SHEEN, PT_HAS_ANISOTROPY, PT_HAS_VOLUME, PT_HAS_COLORS,   PT_HAS_SECOND_UVS};
 
-// Whether it is somewhere a smooth wall without thickness, which light passes straight on.
+// Returns whether it is somewhere a smooth wall without thickness, which light passes straight on.
 bool may_be_pane(const Material& material);
-// Whether it is somewhere glass that is no such wall.
+// Returns whether it is somewhere glass that is no such wall.
 bool may_be_other_glass(const Material& material);
 
-// One bit for each of material_needs: 1 << PT_HAS_ALPHA and the like. All but colors, which are of meshes.
+// One bit for each of material_needs: 1 << PT_HAS_ALPHA and the like. Colors are not among them: they belong to meshes.
 uint needs_of(const Material& material);
 
 struct MaterialKinds {
@@ -32,11 +32,11 @@ struct MaterialKinds {
     std::vector<uint> of;     // by material: its kind, 0 where nothing uses it
     uint all_needs() const;   // of any kind
 };
-// Kinds of the materials that triangles use; where a light has a texture, all kinds have the need for it. Where there
-// would be more than most_material_kinds, those become one that differ least.
+// The kinds of the materials that triangles use; if a light has a texture, all kinds have the need for it. Beyond
+// most_material_kinds, those become one that differ least.
 MaterialKinds kinds_of(const Scene& scene);
 
-// "textures, glass": for people.
+// Returns "textures, glass", for people.
 std::string name_of_needs(uint needs);
 
 }  // namespace twinray::path_tracer

@@ -14,7 +14,7 @@ namespace {
 
 class Stopwatch {
   public:
-    // Milliseconds since the last time.
+    // Returns the milliseconds since the last call.
     double lap() {
         const auto now = std::chrono::steady_clock::now();
         return std::chrono::duration<double, std::milli>(now - std::exchange(start_, now)).count();
@@ -108,7 +108,7 @@ bool MovingScene::edit_accel(const std::vector<Instance>& before) {
         const Deformer::Output moved = deformer_.output(i);
         accel_.update_vertices(handles_[deformed_[i]], moved.positions.ref<float>(), moved.vertex_count);
     }
-    // From device memory, where a transform may be singular: its instance is then not seen.
+    // The transforms come from device memory, where one may be singular: its instance is then not seen.
     std::vector<Transform> transforms;
     for (const Instance& instance : scene_.instances) transforms.push_back(instance.transform);
     Commands commands(context_, "path tracer transforms");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A scene on the device that is posed anew for each picture.
+// A scene on the device that is posed again for each picture.
 #pragma once
 
 #include <twinray/abstract_accel.h>
@@ -9,7 +9,7 @@
 
 namespace twinray::path_tracer {
 
-// What one pose took, in milliseconds.
+// The times of one pose, in milliseconds.
 struct MotionTimes {
     double host = 0;          // lights, records
     double vertices = 0;      // skins and morph targets on the device
@@ -18,19 +18,19 @@ struct MotionTimes {
 };
 
 // Brings poses of a scene's rig to the device: vertices by a Deformer, instances by their transforms, the accelerator
-// by a refit, and lights with densities that fit where they are. All the while views stay valid.
+// by a refit, and lights with the densities of their positions. Views stay valid all the while.
 class MovingScene {
   public:
-    // The scene has a rig, and the accelerator holds it as push_scene pushes it. All three must outlive this.
+    // The scene has a rig, and the accelerator holds the scene as from push_scene. All three must outlive this.
     MovingScene(Context& context, Scene& scene, DeviceScene& device_scene, AbstractAccel& accel);
 
-    // Waits for it to be done. The scene's instances, cameras and lights move, too, and of its meshes those that emit.
+    // Waits until it is done. Also moves the scene's instances, cameras and lights, and those of its meshes that emit.
     MotionTimes move_to(const Pose& pose);
 
   private:
     void move_emitters(const Pose& pose);
     void move_vertices(const Pose& pose);
-    // False where nothing moved.
+    // Returns false if nothing moved.
     bool edit_accel(const std::vector<Instance>& before);
 
     Context& context_;

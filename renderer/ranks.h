@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The processes that mpirun started, where the program was built with MPI; else this one alone.
+// The processes that mpirun started, if the program was built with MPI; else this one alone.
 #pragma once
 
 #include <span>
@@ -20,9 +20,9 @@ class Ranks {
     uint count() const { return count_; }
     uint local_index() const { return local_index_; }  // among those on this machine
 
-    // Rank 0 gets what the others have, in their order; the others keep theirs. Waits for all.
+    // Rank 0 gets the films and statistics of the others, in their order; the others keep theirs. Waits for all.
     void gather(Film& film, RenderStats& stats) const;
-    // Ends without the others, of which one is lost: from now on nothing waits for them.
+    // Ends without the others, one of which is lost: from now on nothing waits for them.
     void abandon() { is_abandoned_ = true; }
 
   private:

@@ -19,7 +19,7 @@ namespace {
 // Bounds the memory of a wave, about 220 bytes a ray, and 4 more for each kind of material.
 constexpr std::uint64_t max_batch_size = 1 << 19;
 
-// needs: what the materials need that the kernel shades (needs_of).
+// needs: those of the materials that the kernel shades (needs_of).
 std::vector<SpecializationConstant> constants_of(const SceneFeatures& features, uint needs, uint strategy,
                                                  bool has_aovs) {
     std::vector<SpecializationConstant> constants = {{PT_HAS_ENVIRONMENT, features.environment},
@@ -67,7 +67,7 @@ WaveBuffers::WaveBuffers(Context& context, const DeviceScene& scene, Ref<Radianc
         paths_.emplace_back(context, "paths", capacity);
         if (scene.features().some(PT_HAS_VOLUME)) media_.push_back(array_of<uint>(context, "media of paths", capacity));
         if (scene.features().light_tree) facings_.push_back(array_of<uint>(context, "facings of paths", capacity));
-        // Shadow rays take a second round only behind what they pass.
+        // Shadow rays take a second round only behind surfaces that they pass.
         if (turn == 1 && !scene.features().passes_shadows()) break;
         shadow_rays_.push_back(array_of<Ray>(context, "shadow rays", capacity));
         shadows_.emplace_back(context, "shadows", capacity);
@@ -219,7 +219,7 @@ void Renderer::add_block(AbstractAccel& accel, uint number, WaveObserver* observ
 
 void Renderer::trace_block(const Tracing& tracing, uint number) {
     const uint batch = waves_.capacity();
-    // In blocks of one all samples are of the same sequence; else each block's is one of its own.
+    // With blocks of one, all samples belong to the same sequence; else each block has its own.
     const uint first_sample = settings_.block_size > 1 ? 0 : number;
     for (uint sample = first_sample; sample < first_sample + settings_.block_size; ++sample)
         for (uint first = 0; first < pixel_count_; first += batch)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A picture by path tracing in waves of rays, with the error that is left in it.
+// Renders a picture by path tracing in waves of rays, with an estimate of its error.
 #pragma once
 
 #include <cstddef>
@@ -24,8 +24,8 @@ struct RenderSettings {
     uint height = 480;
     std::optional<Crop> crop = {};  // what is rendered of it; none: all
     uint samples = 16;              // per pixel
-    // Samples that are added to the film as one. Above 1 each block has random numbers of its own, so that blocks do
-    // not depend on each other; else all samples of a pixel are of one Sobol sequence, which are spread more evenly.
+    // The samples that are added to the film as one. Above 1 each block has random numbers of its own, so that blocks
+    // are independent; else all samples of a pixel are of one Sobol sequence, which are spread more evenly.
     uint block_size = 1;
     uint max_depth = 8;  // scatterings of a path; 0 = only what emits is seen
     uint seed = 1;
@@ -48,13 +48,13 @@ struct RenderStats {
 // Camera rays of a pixel that Renderer::first_surfaces follows.
 constexpr uint samples_of_first_surfaces = 16;
 
-// Sees every batch of rays that is traced.
+// Observes every batch of rays that is traced.
 class WaveObserver {
   public:
     virtual ~WaveObserver() = default;
-    // What was recorded before writes the hits of `desc`. pixels: which the rays are of.
+    // Earlier commands write the hits of `desc`. pixels: those of the rays.
     virtual void record(Commands& commands, const TraceDesc& desc, Uints pixels) = 0;
-    // Everything recorded so far has run.
+    // Called when everything recorded so far has run.
     virtual void collect() = 0;
 };
 
@@ -63,11 +63,11 @@ Buffer array_of(Context& context, const char* name, std::uint64_t count) {
     return Buffer(context, {.name = name, .bytes = count * sizeof(T)});
 }
 
-// The arrays of waves on the device. Path rays take turns between two sets of arrays, of which the other one is what
-// the next wave is appended to; so do shadow rays where they may pass surfaces, else theirs is one.
+// The arrays of waves on the device. Path rays alternate between two sets of arrays; the next wave is appended to the
+// other one. So do shadow rays if they may pass surfaces, else they have one set.
 class WaveBuffers {
   public:
-    // They hold up to `capacity` rays of each sort, none appended. The scene and the sums must outlive it.
+    // They hold up to `capacity` rays of each sort, none appended yet. The scene and the sums must outlive it.
     WaveBuffers(Context& context, const DeviceScene& scene, Ref<Radiance> sums, FilmWindow window, uint capacity);
 
     // For Kernels, by the turns of paths and of shadows, 0 or 1.
@@ -76,23 +76,23 @@ class WaveBuffers {
     }
     Ref<Ray> rays(uint turn) const { return rays_[turn].ref<Ray>(); }
     Ref<Ray> shadow_rays(uint turn) const { return shadow_rays_[turn].ref<Ray>(); }
-    // The pixels that rays are of.
+    // Returns the pixels of the rays.
     Uints pixels(uint turn) const { return paths_[turn].view().pixel; }
     Uints shadow_pixels(uint turn) const { return shadows_[turn].view().pixel; }
     Ref<Hit> hits() const { return hits_.ref<Hit>(); }
     const Buffer& counters() const { return counters_; }
-    // Groups of a queue's rays, for an indirect dispatch.
+    // Returns the groups of a queue's rays, for an indirect dispatch.
     const Buffer& kinds() const { return *kinds_; }
     static std::uint64_t groups_offset(uint kind) { return kind * sizeof(KindQueue) + offsetof(KindQueue, groups_x); }
     uint kind_count() const { return kind_count_; }
     uint capacity() const { return capacity_; }
     std::uint64_t bytes() const;
 
-    // Kernels note first surfaces there from now on; null: they do not. Records into a pass.
+    // From now on, kernels note first surfaces there; null: they do not. Records into a pass.
     void set_first_surfaces(Commands& commands, Ref<FirstSurface> first_surfaces) const;
     // Records into a pass: no ray is appended or queued, nothing is dropped.
     void clear_counters(Commands& commands) const;
-    // Likewise, and keeps the numbers of what was dropped.
+    // The same, but keeps the numbers of dropped contributions.
     void clear_appended(Commands& commands) const;
 
   private:
@@ -112,33 +112,33 @@ class WaveBuffers {
     Buffer data_;
 };
 
-// A wavefront path tracer: the rays of one sample of many pixels advance together, one bounce a wave, through
-// AbstractAccel::trace, so both accelerators and both hardware paths are shaded by the same kernels. A block's sum is
-// added up in a fixed order, and blocks add up to the same bits in any: the same input gives the same bits.
+// A wavefront path tracer: the rays of one sample of many pixels advance together, one bounce per wave, through
+// AbstractAccel::trace, so that the same kernels shade both accelerators and both hardware paths. A block's sum is
+// added up in a fixed order, and blocks add up to the same bits in any order: the same input gives the same bits.
 class Renderer {
   public:
     // The scene must outlive the renderer.
     Renderer(Context& context, const DeviceScene& scene, const RenderSettings& settings);
 
-    // An empty film for the settings.
+    // Makes an empty film for the settings.
     Film make_film(Configuration configuration = {}) const;
-    // What start() begins next is seen so, with other random numbers.
+    // The next start() uses this camera, with other random numbers.
     void set_frame(const CameraRays& camera, uint seed) { settings_.camera = camera, settings_.seed = seed; }
-    // Goes on from a film that make_film made.
+    // Continues a film that make_film made.
     void start(const Film& film);
-    // The pixels of the film that the next blocks are of, by index, in the order in which they are traced.
+    // Sets the film's pixels of the next blocks, by index, in the order in which they are traced.
     void set_pixels(std::span<const uint> pixels);
-    // Samples number * block_size and those after it. The accelerator must hold the scene as push_scene pushes it.
+    // Adds samples number * block_size and those after it. The accelerator must hold the scene as from push_scene.
     void add_block(AbstractAccel& accel, uint number, WaveObserver* observer = nullptr);
-    // What the film has by now.
+    // Reads the film as it is now.
     void read(Film& film);
     const RenderStats& stats() const { return stats_; }  // since start()
 
-    // What the camera rays of the first samples see, per pixel of the film. No part of stats().
+    // Returns the surfaces that the camera rays of the first samples see, per pixel of the film. No part of stats().
     std::vector<FirstSurface> first_surfaces(AbstractAccel& accel);
-    // Of rays, paths, sums and film.
+    // The memory of rays, paths, sums and film.
     std::uint64_t device_bytes() const;
-    // Most rays in one trace.
+    // Returns the most rays in one trace.
     std::uint64_t batch_size() const { return waves_.capacity(); }
     std::uint64_t film_size() const { return film_size_; }
 
@@ -189,10 +189,10 @@ class Renderer {
     RenderStats stats_;
 };
 
-// All pixels in strips of eight rows, column by column: 64 neighbours in the order lie in a block of 8 x 8.
+// Returns all pixels in strips of eight rows, column by column: 64 neighbours in the order are in a block of 8 x 8.
 std::vector<uint> pixel_order(uint width, uint height);
 
-// All samples of the settings, from the first one on. One step of progress per block.
+// Renders all samples of the settings, from the first one on. One step of progress per block.
 HdrImage render_picture(Renderer& renderer, const RenderSettings& settings, AbstractAccel& accel, bool quiet,
                         WaveObserver* observer = nullptr);
 

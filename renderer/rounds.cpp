@@ -10,7 +10,7 @@
 namespace twinray::path_tracer {
 namespace {
 
-// Of the variances of a square of pixels around each, as far as it lies in the film.
+// The means of the variances in a square of pixels around each, as far as it is in the film.
 std::vector<double> means_around(const std::vector<double>& variances, uint width, uint height) {
     constexpr uint reach = 2;
     std::vector<double> means;
@@ -27,8 +27,8 @@ std::vector<double> means_around(const std::vector<double>& variances, uint widt
     return means;
 }
 
-// Those that lack blocks, and as many blocks as they lack on average; but no more than an eighth of what there is,
-// since what they need is known better after each round.
+// Returns the pixels that lack blocks, and as many blocks as they lack on average; but no more than an eighth of the
+// present number, since the need is known better after each round.
 Round lacking_round(const Film& film, uint end, double target) {
     const std::vector<double> needed = blocks_needed(film, target);
     const uint done = film.blocks.end();

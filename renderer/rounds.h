@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which samples come next, decided from what a film holds alone: a run that was killed and resumed decides the same.
+// Chooses the next samples only from the contents of a film: a run that was killed and resumed decides the same.
 #pragma once
 
 #include <optional>
@@ -8,18 +8,18 @@
 
 namespace twinray::path_tracer {
 
-// Samples of a block where pixels get as many as they need, and the blocks that every pixel gets before that is known.
+// Samples of a block if pixels get as many as they need, and the blocks that every pixel gets before that is known.
 constexpr uint adaptive_block_size = 8;
 constexpr uint pilot_blocks = 4;
 
-// Whichever comes first.
+// Rendering stops at whichever comes first.
 struct StoppingRules {
     uint samples = 16;                   // of each pixel
     std::optional<double> seconds = {};  // of this run
     std::optional<double> error = {};    // Film::error(); pixels then get as many samples as they need
 };
 
-// Every count-th block from `index` on.
+// Takes every count-th block from `index` on.
 struct Shard {
     uint index = 0;
     uint count = 1;
@@ -32,17 +32,17 @@ struct Round {
     std::vector<uint> pixels = {};  // by index in the film; none: all, as in all rounds before
 };
 
-// Nothing where the shard has all its samples, or the film the error that is asked for. Without a target error only
-// film.blocks is looked at.
+// Returns nothing if the shard has all its samples, or the film the requested error. Without a target error only
+// film.blocks is read.
 std::optional<Round> next_round(const Film& film, const StoppingRules& rules, const Shard& shard);
 
-// How many blocks each pixel should have, so that the film has the target error with as few as possible: as many as its
-// standard deviation asks for (Neyman's optimal allocation, 1934). Deviations are taken over 5 x 5 pixels, and none
-// counts for less than a quarter of their mean: a few blocks of one pixel tell little, one that by chance has missed
-// all bright paths would be left alone, and the picture be too dark.
+// Returns the blocks that each pixel should have, so that the film has the target error with as few as possible: as
+// many as its standard deviation needs (Neyman's optimal allocation, 1934). Deviations are taken over 5 x 5 pixels, and
+// none counts for less than a quarter of their mean: a few blocks of one pixel tell little; a pixel that by chance has
+// missed all bright paths would be left alone, and the picture be too dark.
 std::vector<double> blocks_needed(const Film& film, double target);
 
-// How much of the work is done, from 0 to 1. error: as it is now; infinite where not known.
+// Returns the finished part of the work, from 0 to 1. error: the present one; infinite if unknown.
 double fraction_done(const BlockSet& blocks, uint block_size, const StoppingRules& rules, const Shard& shard,
                      double seconds, double error);
 

@@ -96,7 +96,7 @@ void DeviceScene::upload_all(Commands& commands, const Scene& scene, const Local
     upload_lights(commands, lights);
 }
 
-// Where all lights have gone out, kernels that look for them find a key that names nothing.
+// If all lights have gone out, kernels that look for them find a key that names nothing.
 void DeviceScene::upload_lights(Commands& commands, const LocalLights& lights) {
     const auto some_of = []<class T>(const std::vector<T>& values) {
         return values.empty() ? std::vector<T>(1) : values;
@@ -181,7 +181,7 @@ Ref<SurfaceInstance> DeviceScene::upload_instances(Commands& commands, const Sce
     return upload_moving(commands, "surface instances", records);
 }
 
-// In buffers, which are filtered in float32 everywhere: a picture does not depend on the device's samplers.
+// Uses buffers, which are filtered in float32 everywhere: a picture does not depend on the device's samplers.
 void DeviceScene::upload_textures(const Scene& scene, const TextureList& list) {
     if (list.textures.empty() || !features_.some(PT_HAS_TEXTURES)) return;
     textures_.emplace(context_, "textures", TextureStorage::buffers);

@@ -16,7 +16,7 @@
 
 namespace twinray::path_tracer {
 
-// What a scene needs of the kernels; the rest is compiled out.
+// The kernels' features that a scene needs; the rest is compiled out.
 struct SceneFeatures {
     MaterialKinds kinds;
     bool environment = false;
@@ -25,9 +25,9 @@ struct SceneFeatures {
     bool panes = false;
     bool deep_textures = false;  // of 16 bits a channel
 
-    // Whether some material needs it; need: PT_HAS_ALPHA and the like.
+    // Returns whether some material needs it; need: PT_HAS_ALPHA and the like.
     bool some(uint need) const { return kinds.all_needs() >> need & 1; }
-    // Whether shadow rays pass any surface.
+    // Returns whether shadow rays pass any surface.
     bool passes_shadows() const { return panes || some(PT_HAS_ALPHA); }
     bool has_layers() const {
         return some(PT_HAS_SPECULAR) || some(PT_HAS_COAT) || some(PT_HAS_SHEEN) || some(PT_HAS_ANISOTROPY) ||
@@ -35,7 +35,7 @@ struct SceneFeatures {
     }
 };
 SceneFeatures features_of(const Scene& scene, const LocalLights& lights, const EnvironmentMap* environment);
-// One kind of material that has all there is, under an environment: to measure what leaving out saves.
+// Has one kind of material with everything, under an environment: to measure what leaving out saves.
 SceneFeatures all_features(const Scene& scene);
 
 // A scene in device memory as the kernels read it. Instances keep their index.
@@ -45,14 +45,14 @@ class DeviceScene {
     // submissions see it.
     DeviceScene(Context& context, const Scene& scene, const LocalLights& lights, const EnvironmentMap* environment,
                 SceneFeatures features);
-    // With what the scene needs.
+    // Uses the features that the scene needs.
     DeviceScene(Context& context, const Scene& scene, const LocalLights& lights, const EnvironmentMap* environment)
         : DeviceScene(context, scene, lights, environment, features_of(scene, lights, environment)) {}
 
-    // Takes over where instances and lights of the scene are now. Waits for the device. Throws Error where there are
-    // lights now and were none when this was made: kernels lack what finds them.
+    // Takes over the current positions of the scene's instances and lights. Waits for the device. Throws Error if there
+    // are lights now and were none when this was made: the kernels cannot find them.
     void move(const Scene& scene, const LocalLights& lights);
-    // Of a mesh, for kernels that move them.
+    // The vertices of a mesh, for kernels that move them.
     Ref<SurfaceVertex> vertices(std::size_t mesh) const { return meshes_[mesh].vertices; }
 
     Ref<SceneData> data() const { return data_.ref<SceneData>(); }

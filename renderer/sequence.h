@@ -10,7 +10,7 @@
 
 namespace twinray::path_tracer {
 
-// Of --frames; none: one picture of the scene at rest.
+// Options of --frames; none: one picture of the scene at rest.
 struct SequenceOptions {
     std::optional<uint> frames = {};
     std::optional<double> fps = {};
@@ -22,7 +22,7 @@ struct SequenceOptions {
     bool plays_animation() const { return is_wanted() && (!turntable || !animation.empty()); }
 };
 
-// What moves, and when.
+// The moving parts and their times.
 struct Sequence {
     std::optional<std::size_t> animation = {};  // of the scene's rig; none: nothing moves
     TimeRange range = {};

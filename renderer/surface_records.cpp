@@ -6,7 +6,7 @@
 namespace twinray::path_tracer {
 namespace {
 
-// Of the first map that needs tangents.
+// The set of the first map that needs tangents.
 uint tangent_uv_set(const Material& material) {
     for (const Texture* map :
          {&material.normal_texture, &material.clearcoat_normal_texture, &material.anisotropy_texture})

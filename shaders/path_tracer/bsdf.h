@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// All that a surface scatters: a base below sheen below a coat. Needs the headers of the parts.
+// The whole scattering of a surface: a base below sheen below a coat. Needs the headers of the parts.
 #ifndef TWINRAY_PATH_TRACER_BSDF_H
 #define TWINRAY_PATH_TRACER_BSDF_H
 
@@ -17,14 +17,14 @@ FUNC BsdfChoice choose_base(Bsdf bsdf, vec3 wo, float lobe, vec2 u)
 
 FUNC bool is_layered(Bsdf bsdf) { return has_layer(bsdf, LAYER_COAT | LAYER_SHEEN); }
 
-// Whether sampling lights can find anything.
+// Returns whether sampling lights can find anything.
 FUNC bool scatters(Bsdf bsdf)
 {
     if (has_layer(bsdf, LAYER_SHEEN) || (has_layer(bsdf, LAYER_COAT) && !has_smooth_coat(bsdf))) return true;
     return !is_smooth(bsdf) || (!bsdf.is_glass && largest(bsdf.diffuse) > 0.0f);
 }
 
-// About what the base reflects or passes of the light from wo.
+// The approximate fraction of the light from wo that the base reflects or passes.
 FUNC float base_albedo(Bsdf bsdf, float cosine)
 {
     if (bsdf.is_glass) return 1.0f;
@@ -58,7 +58,7 @@ FUNC LayerChances layer_chances(Bsdf bsdf, vec3 wo)
     return chances;
 }
 
-// What the layers let through to the base and out again.
+// The fraction that the layers let through to the base and out again.
 FUNC float under_layers(Bsdf bsdf, vec3 wo, vec3 wi)
 {
     float passed_on = 1.0f;
@@ -87,7 +87,7 @@ FUNC BsdfValue evaluate(Bsdf bsdf, vec3 wo, vec3 wi)
     return value;
 }
 
-// Calls choose_base() once, for all: drivers inline it.
+// Calls choose_base() only once, because drivers inline it.
 FUNC BsdfChoice choose(Bsdf bsdf, vec3 wo, float lobe, vec2 u)
 {
     float chance = 1.0f; // of the base
@@ -97,7 +97,7 @@ FUNC BsdfChoice choose(Bsdf bsdf, vec3 wo, float lobe, vec2 u)
         if (has_layer(bsdf, LAYER_COAT) && lobe < chances.coat)
         {
             vec3 wi = sample_coat(bsdf, wo, u);
-            // Below the coat or what bears it nothing is reflected; a mirror direction there would pass the surface.
+            // Below the coat or its base nothing is reflected; a mirror direction there would pass through the surface.
             bool is_above = wi.z > 0.0f && dot(wi, bsdf.coat_normal) > 0.0f;
             if (!has_smooth_coat(bsdf)) return is_above ? open_choice(wi) : final_choice(wi, vec3(0.0f));
             wi = is_above ? wi : vec3(-wo.x, -wo.y, wo.z);
@@ -113,7 +113,7 @@ FUNC BsdfChoice choose(Bsdf bsdf, vec3 wo, float lobe, vec2 u)
     return base;
 }
 
-// What passes a pane of the light from wo: what choose() lets pass, on average.
+// The fraction of the light from wo that passes a pane: the fraction that choose() lets pass, on average.
 FUNC vec3 passed_by_pane(Bsdf bsdf, vec3 wo)
 {
     return bsdf.diffuse * ((1.0f - fresnel_dielectric(wo.z, bsdf.eta)) * under_layers(bsdf, wo, -wo));

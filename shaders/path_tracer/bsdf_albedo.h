@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// What the interface of an opaque surface reflects of the light from a direction, and what that leaves to the diffuse
-// part below. Needs bsdf_record.h.
+// The light from a direction that the interface of an opaque surface reflects, and the rest for the diffuse part below.
+// Needs bsdf_record.h.
 #ifndef TWINRAY_PATH_TRACER_BSDF_ALBEDO_H
 #define TWINRAY_PATH_TRACER_BSDF_ALBEDO_H
 
-// Of a grain: the roughness of an even surface that reflects no less of the light from w. That is the one in the plane
-// of w, and across the grain down to less than half of it, as what tilts microfacets out of the plane makes more of
+// For a grain: the roughness of an even surface that reflects no less of the light from w. That is the one in the plane
+// of w, and across the grain down to less than half of it, because tilts of microfacets out of the plane make more of
 // them grazing: fitted, and a test holds it against samples.
 FUNC float alpha_towards(Bsdf bsdf, vec3 w)
 {
@@ -32,7 +32,7 @@ FUNC vec2 mirror_albedo(Bsdf bsdf, vec3 w)
     return vec2(1.0f - lost, schlick_weight(w.z + most * near * near));
 }
 
-// Their means over all directions by the cosine, the second at most 0.0015 too low; of a grain, at most.
+// Their means over all directions by the cosine, the second at most 0.0015 too low; for a grain, upper bounds.
 FUNC vec2 mean_mirror_albedo(Bsdf bsdf)
 {
     if (is_smooth(bsdf)) return vec2(1.0f, 1.0f / 21.0f);
@@ -43,21 +43,21 @@ FUNC vec2 mean_mirror_albedo(Bsdf bsdf)
     return vec2(1.0f - 0.53333f * alpha * r, 1.0f / (21.0f + r * (-2.6f + r * (98.0f + r * (-274.0f + r * 711.0f)))));
 }
 
-// Where the interface is colored, what it keeps of its strongest color is kept of all, else the diffuse part would have
-// the complement (as KHR_materials_specular says).
+// If the interface is colored, the share of its strongest color is kept of all, else the diffuse part would have the
+// complement (as KHR_materials_specular says).
 FUNC vec3 left_by_reflection(Bsdf bsdf, vec2 mirror)
 {
     vec3 reflected = bsdf.f0 * mirror.x + (vec3(bsdf.f90) - bsdf.f0) * mirror.y;
     return vec3(1.0f) - (has_layer(bsdf, LAYER_SPECULAR) ? vec3(largest(reflected)) : reflected);
 }
 
-// Kelemen and Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF Model with Importance Sampling", 2001:
-// over all wi it comes to what the reflection leaves of the light from wo, and it is the same the other way.
+// Kelemen and Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF Model with Importance Sampling", 2001: its
+// integral over all wi is the light from wo that the reflection leaves, and it is symmetric.
 FUNC vec3 under_interface(Bsdf bsdf, vec3 wo, vec3 wi)
 {
     vec3 from = left_by_reflection(bsdf, mirror_albedo(bsdf, wo));
     vec3 to = left_by_reflection(bsdf, mirror_albedo(bsdf, wi));
-    // Where nothing is left: 0, not 0 / 0.
+    // If nothing is left: 0, not 0 / 0.
     return from * to / max(left_by_reflection(bsdf, mean_mirror_albedo(bsdf)), vec3(HALF_ULP));
 }
 #endif

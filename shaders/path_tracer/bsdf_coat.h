@@ -1,12 +1,13 @@
-// SPDX-License-Identifier: MIT KHR_materials_clearcoat: a dielectric film of index 1.5 with a normal and a roughness of
-// its own. What lies below is dimmed by 1 - coat * Fresnel at the normal, as the extension says, of wo or wi, whichever
-// is less, so that it stays reciprocal. Needs bsdf_record.h.
+// SPDX-License-Identifier: MIT
+// KHR_materials_clearcoat: a dielectric film of index 1.5 with a normal and a roughness of its own. The surface below
+// is dimmed by 1 - coat * Fresnel at the normal, as the extension says, of wo or wi, whichever is less, so that it
+// stays reciprocal. Needs bsdf_record.h.
 #ifndef TWINRAY_PATH_TRACER_BSDF_COAT_H
 #define TWINRAY_PATH_TRACER_BSDF_COAT_H
 
 FUNC float coat_fresnel(float cosine) { return 0.04f + 0.96f * schlick_weight(cosine); }
 
-// What the coat keeps of the light from or to a direction.
+// The fraction of the light from or to a direction that the coat keeps.
 FUNC float kept_by_coat(Bsdf bsdf, vec3 w) { return bsdf.coat * coat_fresnel(dot(w, bsdf.coat_normal)); }
 
 FUNC float under_coat(Bsdf bsdf, vec3 wo, vec3 wi)
@@ -33,7 +34,7 @@ FUNC BsdfValue evaluate_coat(Bsdf bsdf, vec3 wo, vec3 wi)
     return value;
 }
 
-// Smooth: the mirror direction.
+// If it is smooth, this is the mirror direction.
 FUNC vec3 sample_coat(Bsdf bsdf, vec3 wo, vec2 u)
 {
     if (has_smooth_coat(bsdf)) return bsdf.coat_normal * (2.0f * dot(wo, bsdf.coat_normal)) - wo;

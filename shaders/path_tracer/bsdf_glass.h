@@ -12,7 +12,7 @@ FUNC vec3 refracted(vec3 wo, vec3 h, float eta)
     return h * (cosine / eta - cosine_t) - wo / eta;
 }
 
-// KHR_materials_transmission: the lobe of what passes is that of what is reflected, mirrored at the wall.
+// KHR_materials_transmission: the lobe of transmitted light is that of reflected light, mirrored at the wall.
 FUNC BsdfValue evaluate_thin(Bsdf bsdf, vec3 wo, vec3 wi)
 {
     if (is_smooth(bsdf) || wi.z == 0.0f) return no_value();

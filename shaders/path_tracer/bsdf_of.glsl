@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The BSDF of a surface, but for what set_layers adds.
+// The BSDF of a surface, without the layers from set_layers.
 #ifndef TWINRAY_PATH_TRACER_BSDF_OF_GLSL
 #define TWINRAY_PATH_TRACER_BSDF_OF_GLSL
 
@@ -15,7 +15,7 @@ Bsdf glass_of(SceneData scene, Surface surface, vec3 color, float roughness, boo
     return bsdf;
 }
 
-// As x and y.
+// Returns them as x and y.
 vec2 roughness_and_metallic(SceneData scene, Surface surface, uint flags)
 {
     float metallic = AT(scene.materials, surface.material).metallic;
@@ -39,7 +39,7 @@ float glass_part(SceneData scene, Surface surface, uint flags, float metallic)
     return transmission * (1.0 - metallic);
 }
 
-// Where a material transmits in part, `choice` decides which part is met.
+// If a material transmits in part, `choice` decides which part is met.
 Bsdf bsdf_of(SceneData scene, Surface surface, uint flags, vec3 color, bool is_front, float choice)
 {
     vec2 factors = roughness_and_metallic(scene, surface, flags);

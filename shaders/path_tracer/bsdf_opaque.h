@@ -3,7 +3,7 @@
 #ifndef TWINRAY_PATH_TRACER_BSDF_OPAQUE_H
 #define TWINRAY_PATH_TRACER_BSDF_OPAQUE_H
 
-// glTF 2.0, appendix B. An index of refraction of 1 is no interface at all, so nothing reflects, at grazing neither.
+// glTF 2.0, appendix B. An index of refraction of 1 is no interface at all: nothing reflects, not even at grazing.
 FUNC Bsdf opaque_of(vec3 color, float metallic, float roughness, float ior)
 {
     float root = (ior - 1.0f) / (ior + 1.0f);

@@ -1,6 +1,7 @@
-// SPDX-License-Identifier: MIT What a surface scatters like, at one point: a base, which is opaque or glass, and the
-// layers over it. Directions are in a local frame with z along the shading normal and wo.z > 0. Needs microfacet.h,
-// LAYER_ of scene.h, and LAYERS, those of them that the scene has.
+// SPDX-License-Identifier: MIT
+// The scattering of a surface at one point: a base, which is opaque or glass, and the layers over it. Directions are in
+// a local frame with z along the shading normal and wo.z > 0. Needs microfacet.h, LAYER_ of scene.h, and LAYERS, those
+// of them that the scene has.
 #ifndef TWINRAY_PATH_TRACER_BSDF_RECORD_H
 #define TWINRAY_PATH_TRACER_BSDF_RECORD_H
 
@@ -29,8 +30,8 @@ struct BsdfSample
     float pdf;   // by solid angle; 0: a mirror direction, which no other strategy finds
 };
 
-// A direction that a part has chosen. Either it is a mirror direction, or none, with its weight, or of what evaluate()
-// tells.
+// A direction that a part has chosen. It is a mirror direction, or none, with its weight; or one that evaluate()
+// evaluates.
 struct BsdfChoice
 {
     vec3 wi;
@@ -94,7 +95,7 @@ FUNC Bsdf plain_bsdf()
 
 FUNC bool has_layer(Bsdf bsdf, uint layer) { return (LAYERS & layer) != 0u && (bsdf.layers & layer) != 0u; }
 
-// Walls thinner than anything: light passes them as if reflected and then mirrored, so nothing bends.
+// Infinitely thin walls: light passes them as if reflected and then mirrored, so that nothing bends.
 FUNC bool is_thin(Bsdf bsdf) { return bsdf.is_glass && !has_layer(bsdf, LAYER_VOLUME); }
 
 FUNC bool is_smooth(Bsdf bsdf)
@@ -102,7 +103,7 @@ FUNC bool is_smooth(Bsdf bsdf)
     return bsdf.alpha < SMOOTH_ALPHA || (bsdf.is_glass && bsdf.eta == 1.0f && !is_thin(bsdf));
 }
 
-// What passes it goes straight on.
+// Passing light goes straight on.
 FUNC bool is_pane(Bsdf bsdf) { return is_thin(bsdf) && is_smooth(bsdf); }
 
 // Microfacets of the base, with or without a grain.
@@ -125,7 +126,7 @@ FUNC float facet_lambda(Bsdf bsdf, vec3 w)
     return ggx_lambda(w, bsdf.alpha);
 }
 
-// With the density of the microfacet normals that wo sees (Heitz, "Sampling the GGX Distribution of Visible Normals",
+// Uses the density of the microfacet normals that wo sees (Heitz, "Sampling the GGX Distribution of Visible Normals",
 // 2018).
 FUNC vec3 sample_facet(Bsdf bsdf, vec3 wo, vec2 u)
 {
@@ -139,11 +140,11 @@ FUNC float facet_pdf(Bsdf bsdf, vec3 wo, vec3 h)
     return facet_density(bsdf, h) * max(dot(wo, h), 0.0f) / ((1.0f + facet_lambda(bsdf, wo)) * wo.z);
 }
 
-// What a random number that chose the second of two things is among those that do.
+// Maps a random number that chose the second of two things to its place among those that do.
 FUNC float remapped(float lobe, float chance) { return clamp((lobe - chance) / (1.0f - chance), 0.0f, 0.99999994f); }
 
-// Chance of sampling the first of two things of these albedos; neither is starved, for the shares at other angles
-// differ.
+// The chance of sampling the first of two things of these albedos; each keeps a minimum, because the shares at other
+// angles differ.
 FUNC float chance_of(float first, float second)
 {
     if (first <= 0.0f) return 0.0f;

@@ -1,13 +1,14 @@
-// SPDX-License-Identifier: MIT KHR_materials_sheen: fibres that stand up from a surface. Distribution and shadowing by
-// Estevez and Kulla, "Production Friendly Microfacet Sheen BRDF", 2017. Their lobe reflects more than it gets at low
-// roughness and grazing angles; where it does, it is scaled down on both sides, so that it stays reciprocal. Needs
-// bsdf_record.h and sheen_table.h.
+// SPDX-License-Identifier: MIT
+// KHR_materials_sheen: fibres that stand up from a surface. Distribution and shadowing by Estevez and Kulla,
+// "Production Friendly Microfacet Sheen BRDF", 2017. Their lobe reflects more than it gets at low roughness and grazing
+// angles; where it does, it is scaled down on both sides, so that it stays reciprocal. Needs bsdf_record.h and
+// sheen_table.h.
 #ifndef TWINRAY_PATH_TRACER_BSDF_SHEEN_H
 #define TWINRAY_PATH_TRACER_BSDF_SHEEN_H
 
 const float SHEEN_LEAST_ROUGHNESS = 0.1f; // where the table begins; below, the lobe is a rim that no picture resolves
 
-// Of normals: sin^(1 / alpha).
+// The density of normals: sin^(1 / alpha).
 FUNC float charlie_density(vec3 h, float alpha)
 {
     float sine2 = min(h.x * h.x + h.y * h.y, 1.0f);
@@ -46,20 +47,20 @@ FUNC float sheen_albedo(float cosine, float roughness)
     return mix(low, high, y - float(j)) / SHEEN_UNIT;
 }
 
-// What the sheen keeps of the light from or to a direction, at most.
+// The most that the sheen keeps of the light from or to a direction.
 FUNC float kept_by_sheen(Bsdf bsdf, float cosine)
 {
     return largest(bsdf.sheen) * min(sheen_albedo(cosine, bsdf.sheen_roughness), 1.0f);
 }
 
-// The extension's albedo scaling of what lies below.
+// The extension's albedo scaling of the surface below.
 FUNC float under_sheen(Bsdf bsdf, vec3 wo, vec3 wi)
 {
     if (wi.z <= 0.0f) return 1.0f - kept_by_sheen(bsdf, wo.z);
     return 1.0f - max(kept_by_sheen(bsdf, wo.z), kept_by_sheen(bsdf, wi.z));
 }
 
-// Sampled uniformly over the hemisphere.
+// Directions are sampled uniformly over the hemisphere.
 FUNC BsdfValue evaluate_sheen(Bsdf bsdf, vec3 wo, vec3 wi)
 {
     BsdfValue value = no_value();

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Where camera rays start and which part of the picture they stand for. Needs ray.h, sampling.h and wave.h.
+// The start of camera rays, and the part of the picture that they belong to. Needs ray.h, sampling.h and wave.h.
 #ifndef TWINRAY_PATH_TRACER_CAMERA_H
 #define TWINRAY_PATH_TRACER_CAMERA_H
 
 // Rays leave origin + x right + y up (orthographic) or in direction forward + x right + y up, x and y in [-1, 1].
-// `forward` is as long as 1.
+// `forward` has length 1.
 struct CameraRays
 {
     vec3 origin;
@@ -31,9 +31,9 @@ const uint FILTER_BOX = 0u;      // the pixel itself
 const uint FILTER_TRIANGLE = 1u; // one pixel to each side
 const uint FILTER_GAUSSIAN = 2u; // standard deviation half a pixel, never cut off
 
-// Where a sample of a pixel lies, from the pixel's centre, in pixels. Its density is the reconstruction filter, so that
-// every sample has weight 1 and no pixel shares samples with its neighbours (Ernst, Stamminger and Greiner, "Filter
-// Importance Sampling", 2006). The gaussian is Box and Muller's.
+// The position of a sample of a pixel, from the pixel's centre, in pixels. Its density is the reconstruction filter, so
+// that every sample has weight 1 and no pixel shares samples with its neighbours (Ernst, Stamminger and Greiner,
+// "Filter Importance Sampling", 2006). The gaussian is Box and Muller's.
 FUNC vec2 filter_offset(uint filter_kind, vec2 u)
 {
     if (filter_kind == FILTER_BOX) return u - 0.5f;
@@ -42,8 +42,8 @@ FUNC vec2 filter_offset(uint filter_kind, vec2 u)
     return vec2(u.x < 0.5f ? root.x - 1.0f : 1.0f - root.x, u.y < 0.5f ? root.y - 1.0f : 1.0f - root.y);
 }
 
-// Through `at`, in [-1, 1], and the point u of the lens. Rays through one point of the picture meet on the focal plane
-// (Cook, Porter and Carpenter, "Distributed Ray Tracing", 1984).
+// The ray goes through `at`, in [-1, 1], and the point u of the lens. Rays through one point of the picture meet on the
+// focal plane (Cook, Porter and Carpenter, "Distributed Ray Tracing", 1984).
 FUNC Ray camera_ray(CameraRays camera, vec2 at, vec2 u)
 {
     bool is_orthographic = camera.orthographic != 0u;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What some vertices have beyond their records.
+// The attributes of some vertices beyond their records.
 #ifndef TWINRAY_PATH_TRACER_EXTRAS_GLSL
 #define TWINRAY_PATH_TRACER_EXTRAS_GLSL
 
-// The first texture coordinates stand in where a mesh has no others.
+// The first texture coordinates replace others that a mesh lacks.
 vec2 second_uv_of(VertexExtras extras, uint vertex, vec2 first)
 {
     return is_absent(extras.second_uvs) ? first : AT(extras.second_uvs, vertex);

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What each pixel has gathered. Sums are such that neither the order nor the grouping of what is added changes a bit
-// of them: each number is cut into digits of 40 bits at fixed positions, and the digits of two positions are added as
-// integers, those of the position that the largest number reaches and of the next below. What is smaller than both,
-// less than 2^-40 of the largest number, is left out, whenever it comes. (Demmel and Nguyen, "Parallel
-// Reproducible Summation", 2015; integers, because devices need not round float64 correctly or have it at all.) Needs
-// wave.h.
+// The sums of each pixel. Neither the order nor the grouping of the summands changes a bit of them: each number is cut
+// into digits of 40 bits at fixed positions, and the digits of two positions are added as integers, those of the
+// position that the largest number reaches and of the next below. Smaller parts, less than 2^-40 of the largest number,
+// are left out, whenever they come. (Demmel and Nguyen, "Parallel Reproducible Summation", 2015; integers, because
+// devices need not round float64 correctly or have it at all.) Needs wave.h.
 #ifndef TWINRAY_PATH_TRACER_FILM_H
 #define TWINRAY_PATH_TRACER_FILM_H
 #include "twinray/glsl/word64.h"
@@ -52,7 +51,7 @@ FUNC uvec2 film_digit(uvec2 mantissa, uint shift, uint position)
     return uvec2(bits.x, bits.y & ((1u << (FILM_DIGIT_BITS - 32u)) - 1u));
 }
 
-// What lies below the positions is left out; a sum whose position is not lower already stays.
+// Bits below the positions are left out; a sum whose position is not lower already stays.
 FUNC void film_raise(INOUT(uvec2) high, INOUT(uvec2) low, uint from, uint to)
 {
     if (to <= from) return;
@@ -70,7 +69,7 @@ FUNC void film_raise_all(INOUT(FilmPixel) pixel, uint color_position, uint squar
     pixel.positions = max(old_color, color_position) | (max(old_square, square_position) << 16u);
 }
 
-// To the digits of a sum, whose position is high enough.
+// Adds to the digits of a sum, whose position is high enough.
 FUNC void film_add_color(INOUT(uvec2) high, INOUT(uvec2) low, float value, uint position)
 {
     uint shift = film_shift(value);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One camera ray per pixel, through a random point of what its filter covers and of the lens.
+// Makes one camera ray per pixel, through a random point of its filter's area and of the lens.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Everything that kernels which look at surfaces need, in order.
+// All headers of kernels that read surfaces, in order.
 #ifndef TWINRAY_PATH_TRACER_INCLUDES_GLSL
 #define TWINRAY_PATH_TRACER_INCLUDES_GLSL
 #include "twinray/glsl/spawn.glsl"

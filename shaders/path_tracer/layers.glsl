@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a material has beyond the plain surface: factors times textures, and what they make of a BSDF.
+// The layers of a material beyond the plain surface: factors times textures, and their effect on a BSDF.
 #ifndef TWINRAY_PATH_TRACER_LAYERS_GLSL
 #define TWINRAY_PATH_TRACER_LAYERS_GLSL
 
@@ -85,7 +85,7 @@ void set_coat(inout Bsdf bsdf, SceneData scene, Surface surface, vec3 normal, ve
     bsdf.coat_normal = to_local(frame_about(normal), facing(coat_normal, surface, wo));
 }
 
-// normal: for shading, on the side of wo. The layers over a volume lie on its outside.
+// normal: for shading, on the side of wo. The layers over a volume are on its outside.
 void set_layers(inout Bsdf bsdf, SceneData scene, Surface surface, vec3 normal, vec3 wo, bool is_front)
 {
     uint layers = LAYERS & AT(scene.layered, surface.material).layers;
@@ -95,7 +95,7 @@ void set_layers(inout Bsdf bsdf, SceneData scene, Surface surface, vec3 normal, 
     if ((layers & LAYER_COAT) != 0u) set_coat(bsdf, scene, surface, normal, wo);
 }
 
-// Beer and Lambert: what is left after a way through a volume.
+// Beer and Lambert: the remaining light after a way through a volume.
 vec3 transmittance(SceneData scene, uint medium, float distance)
 {
     return exp(AT(scene.layered, medium - 1u).extinction * -max(distance, 0.0));

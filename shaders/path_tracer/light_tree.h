@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A tree of the lights that are somewhere: at each node one child is chosen by how much of its light may arrive at a
+// A tree of the lights with a position: at each node one child is chosen by how much of its light may arrive at a
 // point. After Conty and Kulla, "Importance Sampling of Many Lights with Adaptive Tree Splitting", 2018.
 #ifndef TWINRAY_PATH_TRACER_LIGHT_TREE_H
 #define TWINRAY_PATH_TRACER_LIGHT_TREE_H
@@ -23,9 +23,9 @@ struct LightNode
 };
 BUFFER_OF(LightNode, 4);
 
-const float FACING_ERROR = 1.220703125e-4f; // 2^-13: what a packed normal is off by at most, as a cosine
+const float FACING_ERROR = 1.220703125e-4f; // 2^-13: the largest error of a packed normal, as a cosine
 
-// Where the light is wanted. A path remembers all but the position, in 32 bits (see packed_facing).
+// The point that is to be lit. A path remembers all but the position, in 32 bits (see packed_facing).
 struct LightReceiver
 {
     vec3 position;
@@ -33,7 +33,7 @@ struct LightReceiver
     bool has_two_sides; // light from behind counts, too: the surface transmits
 };
 
-// cos and sin of max(a - b, 0), for angles from 0 to pi. By components: x cos, y sin.
+// cos and sin of max(a - b, 0), for angles from 0 to pi. Components: x cos, y sin.
 FUNC vec2 angle_beyond(vec2 a, vec2 b)
 {
     if (a.x > b.x) return vec2(1.0f, 0.0f);
@@ -41,14 +41,14 @@ FUNC vec2 angle_beyond(vec2 a, vec2 b)
 }
 FUNC vec2 angle_of(float cosine) { return vec2(cosine, sqrt(max(1.0f - cosine * cosine, 0.0f))); }
 
-// Whether all of the node's box is behind the surface.
+// Returns whether all of the node's box is behind the surface.
 FUNC bool is_behind(LightNode node, LightReceiver at, vec3 way, float distance)
 {
     if (at.has_two_sides) return false;
     return dot(at.normal, way) + dot(abs(at.normal), node.half_size) + FACING_ERROR * distance <= 0.0f;
 }
 
-// An estimate of the light of a node that arrives, never 0 where some may. Angles are taken as small as they can be for
+// An estimate of the light of a node that arrives, never 0 if some may. Angles are taken as small as they can be for
 // any light of the node: within the sphere around its box, and within its cone.
 FUNC float light_importance(LightNode node, LightReceiver at)
 {
@@ -81,7 +81,7 @@ FUNC float chance_of_first(LightNode first, LightNode second, LightReceiver at)
     return a / (a + b);
 }
 
-// A unit vector on the octahedron, 16 bits a coordinate, and in the last bit whether there are two sides.
+// A unit vector on the octahedron, 16 bits per coordinate, with the number of sides in the last bit.
 FUNC uint packed_facing(vec3 normal, bool has_two_sides)
 {
     vec3 n = normal / (abs(normal.x) + abs(normal.y) + abs(normal.z));
@@ -106,7 +106,7 @@ FUNC LightReceiver receiver_of(vec3 position, uint facing)
     return at;
 }
 
-// A leaf that was chosen, and with what probability; 0: none can light the receiver.
+// A chosen leaf and its probability; 0: none can light the receiver.
 struct ChosenLeaf
 {
     uint first; // its lights
@@ -115,7 +115,7 @@ struct ChosenLeaf
     float rest; // in [0, 1): of the random number that chose it
 };
 
-// u in [0, 1): what is left of it at each level decides the next.
+// u in [0, 1): its remainder at each level decides the next.
 FUNC ChosenLeaf choose_leaf(REF(LightNode) tree, LightReceiver at, float u)
 {
     float chance = 1.0f;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Light found by sampling it: the environment, emissive triangles, punctual lights.
+// Samples light: the environment, emissive triangles, punctual lights.
 #ifndef TWINRAY_PATH_TRACER_LIGHTS_GLSL
 #define TWINRAY_PATH_TRACER_LIGHTS_GLSL
 #include "shaders/path_tracer/light_tree.h"
@@ -14,7 +14,7 @@ struct LightSample
     bool has_target;
 };
 
-// Of `count` lights from the first on. The fraction of word * count decides between the two entries of a column.
+// Chooses one of `count` lights from the first on. The fraction of word * count decides between a column's two entries.
 uint sample_alias(REF(AliasEntry) table, uint first, uint count, uint word)
 {
     uint column, fraction;
@@ -45,7 +45,7 @@ vec3 environment_pixel(Environment env, int x, int y)
     return AT(env.pixels, uint(clamp(y, 0, int(env.height) - 1)) * env.width + min(column, env.width - 1u)).rgb;
 }
 
-// As seen, filtered. As light, the map is constant in each pixel, which is how it is sampled: near a sun a filtered
+// The map as seen, filtered. As light, it is constant in each pixel, which is how it is sampled: near a sun a filtered
 // value could exceed the density of its own pixel a hundred times, and such samples are bright dots. at: in pixels.
 vec3 environment_seen(Environment env, vec2 at)
 {
@@ -90,7 +90,7 @@ LightSample sample_environment(Environment env, vec2 u)
     return light;
 }
 
-// chance: of the environment's place and the tree, which the densities of lights leave out.
+// chance: that of the environment's place and the tree, which the densities of lights leave out.
 LightSample sample_local(SceneData scene, Emitter emitter, float chance, vec3 from, vec2 u)
 {
     Placement placement = load_placement(scene.instances, emitter.instance);

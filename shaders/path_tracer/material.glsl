@@ -57,7 +57,7 @@ vec3 mapped_normal(SceneData scene, Surface surface, TextureSlot slot, float sca
     return normalize(surface.tangent * (mapped.x / t) + surface.bitangent * (mapped.y / b) + surface.normal * mapped.z);
 }
 
-// Turned to the viewer, and bent until the viewer can see it, since no BSDF is defined below the horizon.
+// Turns the normal to the viewer, and bends it until the viewer can see it, since no BSDF is defined below the horizon.
 vec3 facing(vec3 normal, Surface surface, vec3 wo)
 {
     bool is_front = dot(surface.point.normal, wo) >= 0.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Moved vertices, array by array, into the records of a mesh.
+// Writes moved vertices, array by array, into the records of a mesh.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the kernel that brings moved vertices into a mesh's records takes. Needs scene.h.
+// The arguments of the kernel that writes moved vertices into a mesh's records. Needs scene.h.
 #ifndef TWINRAY_PATH_TRACER_MOVE_VERTICES_H
 #define TWINRAY_PATH_TRACER_MOVE_VERTICES_H
 

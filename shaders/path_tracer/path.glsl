@@ -7,7 +7,7 @@
 
 WaveData wave; // kernels fill it in first
 
-// As PathQueue has them.
+// The fields of PathQueue.
 struct PathState
 {
     vec3 throughput;

@@ -7,7 +7,7 @@
 #include "twinray/glsl/textures.h"
 #include "twinray/glsl/transform.h"
 
-// Ids of the specialisation constants: what a scene lacks is compiled out.
+// Ids of the specialisation constants: features that a scene lacks are compiled out.
 const uint PT_HAS_ALPHA = 0u;        // some material is masked or blended: rays may pass surfaces
 const uint PT_HAS_TEXTURES = 1u;
 const uint PT_HAS_GLASS = 2u;        // some material transmits
@@ -28,7 +28,7 @@ const uint PT_HAS_COLORS = 15u;      // vertices have colors
 const uint PT_HAS_SECOND_UVS = 16u;  // some texture takes the second texture coordinates
 // some material of the scene is a smooth wall without thickness: shadow rays pass it
 const uint PT_HAS_PANES = 17u;
-const uint PT_HAS_LIGHT_TREE = 18u;  // two lights or more are somewhere: which is asked depends on the place
+const uint PT_HAS_LIGHT_TREE = 18u;  // two lights or more have a position: the point decides which is chosen
 
 const uint STRATEGY_MIS = 0u;    // both of the following, weighted by the power heuristic
 const uint STRATEGY_LIGHTS = 1u; // sample lights only
@@ -51,7 +51,7 @@ struct SurfaceTriangle
 };
 BUFFER_OF(SurfaceTriangle, 16);
 
-// By Hit::instance_index.
+// Indexed by Hit::instance_index.
 struct SurfaceInstance
 {
     Rows object_to_world;
@@ -64,7 +64,7 @@ struct SurfaceInstance
 };
 BUFFER_OF(SurfaceInstance, 8);
 
-// Attributes of vertices beyond SurfaceVertex, absent where the mesh has none. By Hit::instance_index.
+// Attributes of vertices beyond SurfaceVertex, absent if the mesh has none. Indexed by Hit::instance_index.
 struct VertexExtras
 {
     Vec2s second_uvs;
@@ -116,7 +116,7 @@ struct SurfaceMaterial
 };
 BUFFER_OF(SurfaceMaterial, 4);
 
-// What a material may have beyond the plain metallic-roughness surface.
+// The layers of a material beyond the plain metallic-roughness surface.
 const uint LAYER_SPECULAR = 1u;   // a weight or color of the dielectric reflection; in a Bsdf: a color
 const uint LAYER_COAT = 2u;
 const uint LAYER_SHEEN = 4u;
@@ -133,7 +133,7 @@ const uint LAYERED_SHEEN_COLOR = 32u;
 const uint LAYERED_SHEEN_ROUGHNESS = 64u;
 const uint LAYERED_ANISOTROPY = 128u;
 
-// By the index of the material.
+// Indexed by material.
 struct LayeredMaterial
 {
     uint layers;   // LAYER_ bits
@@ -175,7 +175,7 @@ struct Emitter
 };
 BUFFER_OF(Emitter, 4);
 
-// Custom indices of instances stand for materials in place of the mesh's; 0: for none.
+// Custom indices of instances name materials that replace the mesh's; 0: none does.
 FUNC uint material_of(uint custom_index, uint of_triangle)
 {
     return custom_index != 0u ? custom_index - 1u : of_triangle;
@@ -199,11 +199,11 @@ struct PunctualLight
 };
 BUFFER_OF(PunctualLight, 4);
 
-// Lights that the scene has somewhere, in contrast to the environment.
+// The scene's lights with a position, in contrast to the environment.
 #define LOCAL_LIGHTS(X, P) X(P, 0, Emitter, emitters) X(P, 1, PunctualLight, punctual)
 TWINRAY_SET_VIEW(LocalLightsView, LOCAL_LIGHTS)
 
-// Of a pixel of the environment, or summed over the samples of a pixel of the picture.
+// The radiance of a pixel of the environment, or the sum over the samples of a pixel of the picture.
 struct Radiance
 {
     vec3 rgb;

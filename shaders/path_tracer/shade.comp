@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What rays of a wave met, all or those of one queue: adds the light they found, sends shadow rays to lights and the
-// paths onwards.
+// Shades the hits of a wave's rays, all or those of one queue: adds the light they found, sends shadow rays to lights
+// and continues the paths.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/path_tracer/includes.glsl"
@@ -8,11 +8,11 @@
 layout(local_size_x = PATH_GROUP) in;
 layout(push_constant, scalar) uniform Push { ShadeArgs args; };
 
-// Where shadow rays to a point of a light end, of their way: 16 roundings before it. The point is clear of its
-// triangle, but its way from here is rounded, and a ray that went all of it could meet a light that is small for its
-// distance.
+// The end of shadow rays to a point of a light, as a fraction of their way: 16 roundings before it. The point is clear
+// of its triangle, but its way from here is rounded, and a ray that went all of it could meet a light that is small for
+// its distance.
 const float SHADOW_END = 1.0 - 9.5367431640625e-07;
-const uint ROULETTE_DEPTH = 3u; // scatterings that no path is spared
+const uint ROULETTE_DEPTH = 3u; // scatterings before which no path is ended
 
 // The pairs of random dimensions of a vertex; pair 0 of a path is its position in the pixel.
 const uint PAIR_PART = 0u;    // whether a transparent surface is met, and which part of its material
@@ -22,7 +22,7 @@ const uint PAIR_SCATTER = 3u; // direction
 const uint PAIR_LOBE = 4u;    // of the BSDF, and Russian roulette
 const uint PAIR_COUNT = 5u;
 
-// A vertex of a path as its functions share it.
+// A vertex of a path, shared by the functions below.
 struct Vertex
 {
     PathState path;
@@ -52,8 +52,8 @@ void add_emission(Vertex vertex, Ray ray, Hit hit, uint flags)
     add(vertex.path.pixel, vertex.path.throughput * radiance * found_weight(vertex.path.pdf, other));
 }
 
-// The same ray behind a surface that is transparent here, or a pane. Shadow rays pass these, too, so that the light
-// that the ray finds still counts as found by its last scattering.
+// Continues the same ray behind a surface that is transparent here, or a pane. Shadow rays also pass these, so that the
+// light that the ray finds still counts as found by its last scattering.
 void pass(Vertex vertex, Ray ray)
 {
     vertex.path.progress = with_surface_met(vertex.path.progress);
@@ -65,7 +65,7 @@ bool is_above(Vertex vertex, vec3 direction)
     return (dot(vertex.surface.point.normal, direction) > 0.0) == vertex.is_front;
 }
 
-// That a ray in the local direction wi starts in; 0: none.
+// The medium in which a ray in the local direction wi starts; 0: none.
 uint medium_towards(Vertex vertex, vec3 wi)
 {
     if (!HAS_MEDIA) return 0u;
@@ -132,8 +132,8 @@ void scatter(Vertex vertex, Ray met_by)
     if (path.progress >> 16u >= args.max_depth) return;
     if (path.progress >> 16u >= ROULETTE_DEPTH)
     {
-        // Never less than the throughput: what survives would weigh more and more, and where little is absorbed the
-        // mean would be that of few paths of great weight. Paths that lose nothing end at max_depth.
+        // It is never less than the throughput: surviving paths would weigh more and more, and if little is absorbed
+        // the mean would be that of few paths of great weight. Paths that lose nothing end at max_depth.
         float survival = min(largest(path.throughput), 1.0);
         if (lobe_and_roulette.y >= survival) return;
         path.throughput /= survival;

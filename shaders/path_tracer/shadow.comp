@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: MIT Adds what shadow rays carry where nothing blocks them. With transparent surfaces or
-// panes in the scene a shadow ray looks for its closest hit, is dimmed by it and goes on in the next round, until
-// nothing is left of it or it is through.
+// SPDX-License-Identifier: MIT
+// Adds the light of shadow rays that nothing blocks. With transparent surfaces or panes in the scene a shadow ray looks
+// for its closest hit, is dimmed by it and goes on in the next round, until nothing is left of it or it is through.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/path_tracer/includes.glsl"
@@ -9,7 +9,7 @@ layout(push_constant, scalar) uniform Push { ShadowArgs args; };
 
 WaveData wave;
 
-// What glass lets pass straight on: that of a pane.
+// The light that glass lets pass straight on: that of a pane.
 vec3 passed_as_glass(SceneData scene, Ray ray, Surface surface, uint flags, vec3 color)
 {
     vec2 factors = roughness_and_metallic(scene, surface, flags);

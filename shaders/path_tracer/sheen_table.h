@@ -1,7 +1,8 @@
-// SPDX-License-Identifier: MIT Directional albedo of white sheen as glTF has it (Charlie's distribution, Estevez and
-// Kulla's shadowing), by quadrature of 500 x 500 directions, raised so that linear interpolation between the nodes is
-// never too low; it is at most 0.083 too high. A line is a roughness, 0.1 + 0.9 (j / 9)^2, an entry of it a cosine, (i
-// / 11)^2; at cosine 0, the greatest near it.
+// SPDX-License-Identifier: MIT
+// Directional albedo of white sheen as glTF has it (Charlie's distribution, Estevez and Kulla's shadowing), by
+// quadrature of 500 x 500 directions, raised so that linear interpolation between the nodes is never too low; it is at
+// most 0.083 too high. A line is a roughness, 0.1 + 0.9 (j / 9)^2, an entry of it a cosine, (i / 11)^2; at cosine 0,
+// the greatest near it.
 #ifndef TWINRAY_PATH_TRACER_SHEEN_TABLE_H
 #define TWINRAY_PATH_TRACER_SHEEN_TABLE_H
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Queues the rays of a wave by the kind of material that they met, so that each kernel that shades them has the code of
-// one kind alone and its neighbouring invocations do the same. Rays that met nothing end here.
+// Queues the rays of a wave by the kind of their hit's material, so that each shading kernel only has the code of one
+// kind and its neighbouring invocations do the same. Rays without a hit end here.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/path_tracer/includes.glsl"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a ray met, rebuilt from the ids of the hit and the ray alone: an accelerator's own t, u and v are rounded in its
-// own way and never used, so the same ids give the same picture, bit for bit.
+// The surface that a ray hit, computed only from the ids of the hit and the ray: an accelerator's own t, u and v are
+// rounded in its own way and never used, so that the same ids give the same picture, bit for bit.
 #ifndef TWINRAY_PATH_TRACER_SURFACE_GLSL
 #define TWINRAY_PATH_TRACER_SURFACE_GLSL
 
@@ -114,7 +114,7 @@ vec3 interpolated_normal(TriangleData data, SurfacePoint point, Placement placem
     return dot(normal, point.normal) < 0.0 ? -normal : normal;
 }
 
-// Tangents of the file where they are any, else by the derivatives of uv. glTF's bitangent points to smaller v (up in
+// Uses the file's tangents if there are any, else the derivatives of uv. glTF's bitangent points to smaller v (up in
 // the picture).
 void set_tangents(inout Surface surface, TriangleData data, uint flags, vec2 at)
 {
@@ -166,7 +166,7 @@ Surface surface_of(SceneData scene, Ray ray, Hit hit)
     return surface;
 }
 
-// The ray as it goes on behind a surface that it met. Its t_min grows with each, so that every ray gets through.
+// The ray continues behind a surface that it hit. Its t_min grows with each, so that every ray gets through.
 Ray behind(Ray ray, Surface surface)
 {
     ray.t_min = passing_t(surface.point, surface.placement, ray, max(surface.t, ray.t_min));

@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: MIT
-// A wave: rays in flight, what each carries, and what the kernels that move it take. Needs ray.h, scene.h and soa.h.
+// A wave: rays in flight, their data, and the arguments of the kernels that move it. Needs ray.h, scene.h and soa.h.
 #ifndef TWINRAY_PATH_TRACER_WAVE_H
 #define TWINRAY_PATH_TRACER_WAVE_H
 
 const uint PATH_GROUP = 64u;
 
-// What the path of a ray carries. throughput: of light along it. pdf: density by solid angle with which the ray was
-// sampled; 0: it could not have been found as light. pixel: of the film. progress: low half: surfaces met, modulo 2^16,
-// which number the random dimensions; high half: scatterings of them.
+// The state of a ray's path. throughput: of light along it. pdf: density by solid angle with which the ray was sampled;
+// 0: it could not have been found as light. pixel: of the film. progress: low half: surfaces met, modulo 2^16, which
+// number the random dimensions; high half: scatterings of them.
 #define PATH_FIELDS(X, P) X(P, 0, vec3, throughput) X(P, 1, float, pdf) X(P, 2, uint, pixel) X(P, 3, uint, progress)
 TWINRAY_SOA_VIEW(PathQueue, PATH_FIELDS)
 
 FUNC uint with_surface_met(uint progress) { return (progress & 0xffff0000u) | ((progress + 1u) & 0xffffu); }
 
-// What a shadow ray adds to its pixel if nothing blocks it.
+// The contribution of a shadow ray to its pixel if nothing blocks it.
 #define SHADOW_FIELDS(X, P) X(P, 0, vec3, contribution) X(P, 1, uint, pixel)
 TWINRAY_SOA_VIEW(ShadowQueue, SHADOW_FIELDS)
 
-// The rays of a wave that met materials of one kind. The last three are what an indirect dispatch reads.
+// The rays of a wave that hit materials of one kind. The last three are read by an indirect dispatch.
 struct KindQueue
 {
     uint count;
@@ -35,8 +35,8 @@ struct Counters
 };
 BUFFER_OF(Counters, 4);
 
-// Where the pixels of a film lie in the whole picture. Random numbers belong to pixels of the whole picture, so that a
-// part of it is the same when it is rendered alone.
+// The position of the pixels of a film in the whole picture. Random numbers belong to pixels of the whole picture, so
+// that a part of it is the same when it is rendered alone.
 struct FilmWindow
 {
     uint width;         // of the film
@@ -48,7 +48,7 @@ FUNC uint picture_index(FilmWindow window, uint pixel)
     return window.first + pixel + (pixel / window.width) * (window.picture_width - window.width);
 }
 
-// What the camera rays of a pixel see first, summed over them.
+// The first surfaces that the camera rays of a pixel see, summed over the rays.
 struct FirstSurface
 {
     vec3 albedo;    // base color
@@ -60,7 +60,7 @@ struct FirstSurface
 };
 BUFFER_OF(FirstSurface, 8);
 
-// Where the arrays of a wave lie. A wave of shadow rays has the same, with its rays in shadow_rays.
+// The addresses of the arrays of a wave. A wave of shadow rays has the same, with its rays in shadow_rays.
 struct WaveData
 {
     REF(SceneData) scene;
