@@ -53,7 +53,7 @@ std::string rest_of(std::istream& in) {
     return rest;
 }
 
-// "" and a failed stream for one that does nothing.
+// Returns "" and a failed stream for a key without a function.
 std::string key_of(std::istream& in) {
     constexpr std::string_view flight = "WASDQE";
     std::string name = rest_of(in);
@@ -62,7 +62,7 @@ std::string key_of(std::istream& in) {
     return {};
 }
 
-// Whole numbers, which a stream would take below 0, too.
+// Reads whole numbers, for which a stream would also accept negative ones.
 bool read_count(std::istream& in, unsigned& count) {
     long long number = -1;
     if (!(in >> number) || number < 0 || number > 1'000'000) return false;
@@ -70,7 +70,7 @@ bool read_count(std::istream& in, unsigned& count) {
     return true;
 }
 
-// Nothing: not one of ours.
+// Returns nothing if it is not one of these.
 std::optional<Event> event_of(const std::string& line) {
     std::istringstream in(line);
     std::string what;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a user does, as data and as lines of text, so that it can be recorded and played.
+// A user's actions, as data and as lines of text, so that they can be recorded and played.
 #pragma once
 
 #include <filesystem>
@@ -40,7 +40,7 @@ struct Resized {
 struct Dropped {
     std::filesystem::path file;
 };
-// So many frames pass.
+// The given number of frames passes.
 struct Frames {
     unsigned count;
 };
@@ -55,7 +55,7 @@ using Event = std::variant<KeyDown, KeyUp, ButtonDown, ButtonUp, Moved, DoubleCl
 // "key F2", "keyup A", "down left 320 200 [shift]", "up left", "move 330 210", "double 320 200", "scroll 1",
 // "resize 800 600", "drop FILE", "frames 10", "shot FILE", "close"
 std::string text_of(const Event& event);
-// Lines that are empty or begin with # are left out. Throws Error naming the file, the line and what is wrong with it.
+// Skips lines that are empty or begin with #. Throws Error naming the file, the line and what is wrong with it.
 std::vector<Event> read_events(const std::filesystem::path& file);
 
 }  // namespace twinray::viewer

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The frames of a Viewer, and what analyses say of each face in them.
+// The frames of a Viewer, and the results of analyses for each face in them.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -25,7 +25,7 @@ constexpr std::uint64_t rays_of_row = 1u << 18u;  // of view factors
 
 constexpr Rgb ours = {213, 94, 0}, of_driver = {204, 121, 167}, harmless = {0, 114, 178}, pick_color = {213, 94, 0};
 
-// Whether samples of one are none of the other.
+// Returns whether samples of one do not fit the other.
 bool is_another_picture(const State& a, const State& b) {
     return a.orbit != b.orbit || a.layer != b.layer || a.shown != b.shown || a.width != b.width ||
            a.height != b.height || a.seconds != b.seconds || a.has_all_features != b.has_all_features;
@@ -65,14 +65,14 @@ std::string range_text(const ValueScale& scale) {
     return out.str();
 }
 
-// Towards the sun, of a day whose sun rises at 6 along +x and stands highest at 12; z is up where `up` says so.
+// The direction to the sun, on a day when it rises at 6 along +x and is highest at 12; z is up if `up` says so.
 dvec3 sun_at(double hour, UpAxis up) {
     const double turn = std::numbers::pi * (hour - 6) / 12;
     const double east = std::cos(turn), height = std::sin(turn), north = -0.3;
     return up == UpAxis::y ? dvec3(east, height, -north) : dvec3(east, north, height);
 }
 
-// How much of what is turned to the sun is lit, from 0 to 1.
+// Returns the lit fraction of the area that is turned to the sun, from 0 to 1.
 Values light_on(Stage& stage, double hour, UpAxis up) {
     const dvec3 sun = sun_at(hour, up);
     const Illumination lit = illuminate(stage.software(), stage.faces(),
@@ -82,7 +82,7 @@ Values light_on(Stage& stage, double hour, UpAxis up) {
     return values;
 }
 
-// View factors from a face to all others.
+// Returns view factors from a face to all others.
 Values factors_from(Stage& stage, std::size_t face) {
     const Faces& faces = stage.faces();
     const ViewFactorOptions options{.sides = Sides::both, .rays = rays_of_row};
@@ -95,7 +95,7 @@ Values factors_from(Stage& stage, std::size_t face) {
     return values;
 }
 
-// The worst class of contact, by its number in PairClass; and where triangles cross.
+// Returns the worst class of contact, by its number in PairClass; and the segments where triangles cross.
 Values contacts_of(Stage& stage, std::vector<Stroke>& segments) {
     const std::vector<std::size_t> first = first_faces(stage.scene());
     Values values{.numbers = std::vector<double>(count_triangles(stage.scene()), NAN), .scale = {}, .what = "contact"};
@@ -138,7 +138,7 @@ const Raster& Viewer::frame(bool may_be_coarse) {
         fail("view: the device has no hardware accelerator: ", stage_->why_no_hardware());
     const bool is_new = is_stale_ || state_ != shown_ || is_coarse_ || is_playing_;
     const bool has_moved = state_.orbit != shown_.orbit || is_playing_;
-    // Before the first sample of another picture.
+    // It comes before the first sample of another picture.
     const bool wants_preview = traces_paths() && (is_stale_ || is_another_picture(state_, shown_));
     if (!is_new && !traces_paths()) return raster_;
     const uint grain = may_be_coarse && has_moved ? grain_ : 1;
@@ -155,7 +155,7 @@ const Raster& Viewer::frame(bool may_be_coarse) {
     return raster_;
 }
 
-// At the level that is asked for, or the highest that the accelerator has.
+// Traces at the requested level, or the highest that the accelerator has.
 std::vector<Hit> Viewer::hits_of(AbstractAccel& accel, std::span<const Ray> rays) {
     const Stopwatch start;
     std::vector<Hit> hits = accel.closest_hits(rays, {.level = std::min(state_.level, accel.options().level)});
@@ -230,7 +230,7 @@ Raster Viewer::shaded(Shown shown, const Traced& traced, bool is_moving) {
     });
 }
 
-// Grey where both say the same; else by who is wrong.
+// Grey if both agree; else coloured by the one that is wrong.
 Raster Viewer::difference(const Traced& software, const Traced& hardware, uint grain) {
     const Scene& scene = stage_->scene();
     Raster raster = by_pixel(software, [&](std::size_t i) {
@@ -258,7 +258,7 @@ Raster Viewer::difference(const Traced& software, const Traced& hardware, uint g
     return raster;
 }
 
-// On the plane through the camera's centre that faces it.
+// Measures on the plane through the camera's centre that faces it.
 Values Viewer::distances_of(const Traced& traced) {
     const dvec3 forward = directions_of(state_.orbit).forward;
     std::vector<dvec3> points;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What each key does: one table, which the program and its sheet of keys read.
+// The function of each key: one table, which the program and its sheet of keys read.
 #pragma once
 
 #include <span>
@@ -48,10 +48,10 @@ struct Key {
     Layer layer = Layer::eyelight;  // of Action::layer
 };
 std::span<const Key> all_keys();
-// Null: the key does nothing.
+// Returns null if the key does nothing.
 const Key* find_key(std::string_view name);
 
-// What the state is that a key changes, for the sheet: "on", "sw", ...; empty where there is none.
+// The state that a key changes, for the sheet: "on", "sw", ...; empty if there is none.
 std::string state_of(const Key& key, const State& state);
 
 }  // namespace twinray::viewer

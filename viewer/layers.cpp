@@ -28,7 +28,7 @@ Rgb base_color(const Scene& scene, const Hit& hit) {
 
 std::uint8_t byte_of(double share) { return static_cast<std::uint8_t>(std::lround(255 * std::clamp(share, 0.0, 1.0))); }
 
-// Along the ray, from where it enters the sphere around the scene to where it leaves it.
+// Measures along the ray, from where it enters the sphere around the scene to where it leaves it.
 Rgb depth_color(const Ray& ray, const Hit& hit, const Bounds& bounds) {
     const dvec3 middle = (dvec3(bounds.lo) + dvec3(bounds.hi)) * 0.5;
     const double radius = 0.5 * length(dvec3(bounds.hi) - dvec3(bounds.lo));

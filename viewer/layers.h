@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// From rays and their hits to colours.
+// Turns rays and their hits into colours.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,7 @@ namespace twinray::viewer {
 
 inline constexpr Rgb background = {238, 240, 243};
 
-// The rays of a picture's pixels, row 0 on top, and what they hit.
+// The rays of a picture's pixels, row 0 on top, and their hits.
 struct Traced {
     uint width = 0, height = 0;
     std::vector<Ray> rays;
@@ -31,18 +31,18 @@ struct Values {
     std::string what;  // "steps a ray"
 };
 
-// For layers of hits alone, from occlusion to depth, and eyelight.
+// Works only for layers of hits, from occlusion to depth, and eyelight.
 Rgb color_of(Layer layer, const Scene& scene, const Ray& ray, const Hit& hit, const Bounds& bounds);
-// A face's colour, lit from the camera.
+// Returns a face's colour, lit from the camera.
 Rgb lit(const Scene& scene, const Ray& ray, const Hit& hit, Rgb color);
 
-// Of distinct numbers, told apart as far as three channels can.
+// Colours for distinct numbers, as different as three channels allow.
 Rgb color_of_number(std::uint64_t number);
 
-// What two accelerators say of a ray: whether they name the same, bit for bit but for t, u and v.
+// Returns whether two accelerators agree about a ray: they name the same, bit for bit but for t, u and v.
 bool agree(const Hit& a, const Hit& b);
 
-// Each pixel of `coarse` as a square; the last of a row or column may be cut.
+// Shows each pixel of `coarse` as a square; the last of a row or column may be cut.
 Raster enlarged(const Raster& coarse, uint width, uint height, uint grain);
 
 }  // namespace twinray::viewer

@@ -16,7 +16,7 @@ constexpr double pi = std::numbers::pi;
 constexpr double steepest = 0.4999 * pi;  // of the elevation: above, the azimuth means nothing
 constexpr double least_distance = 1e-30, most_distance = 1e30;
 
-// x to the right, y up, z towards the eye at azimuth 0, in the axes of the world.
+// Returns x to the right, y up, z towards the eye at azimuth 0, in the axes of the world.
 dvec3 in_world(UpAxis up, double x, double y, double z) { return up == UpAxis::y ? dvec3(x, y, z) : dvec3(x, -z, y); }
 dvec3 out_of_world(UpAxis up, const dvec3& v) { return up == UpAxis::y ? v : dvec3(v.x, v.z, -v.y); }
 
@@ -33,7 +33,7 @@ Orbit with_backward(Orbit orbit, const dvec3& backward) {
     return orbit;
 }
 
-// Of the picture, at the centre.
+// The height of the picture, at the centre.
 double height_at_center(const Orbit& orbit) { return 2 * orbit.distance * std::tan(orbit.vertical_fov / 2); }
 
 }  // namespace

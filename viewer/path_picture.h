@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The scene path traced, a sample of each pixel after the other.
+// Path traces the scene, one sample of each pixel after the other.
 #pragma once
 
 #include <cmath>
@@ -15,20 +15,20 @@ namespace twinray::viewer {
 
 class PathPicture {
   public:
-    // Compiles and uploads what the scene needs, as it is now: `version` tells it from how it is later. It must outlive
-    // this. has_all_features: compiles what any scene may need, to see what leaving out saves.
+    // Compiles and uploads what the scene needs in its present state: `version` distinguishes it from later ones. The
+    // scene must outlive this. has_all_features: compiles what any scene may need, to see what leaving out saves.
     PathPicture(Context& context, const Scene& scene, std::uint64_t version, bool has_all_features);
     bool is_of(std::uint64_t version, bool has_all_features) const {
         return version_ == version && has_all_features_ == has_all_features;
     }
 
-    // Begins anew where what is seen differs from what was.
+    // Starts again if the view differs from the last one.
     void look(const Orbit& orbit, uint width, uint height);
     void add_sample(AbstractAccel& accel);
     uint samples() const { return samples_; }
     double seconds() const;  // that the samples took
     std::uint64_t rays() const;
-    // Of the picture, relative, at most: see Film::error(). Of the last power of two of samples; infinite before two.
+    // Bounds the relative error (see Film::error()) at the last power of two of samples; infinite before two.
     double error() const { return error_; }
     Raster picture(float exposure) const;
 

@@ -17,7 +17,7 @@ std::string lacking_for(const DeviceProperties& device) {
     return missing.empty() ? "" : missing.front();
 }
 
-// By mesh: push_scene makes one handle for each that has instances, in their order.
+// Indexed by mesh: push_scene makes one handle for each that has instances, in their order.
 std::vector<AccelHandle> by_mesh(const Scene& scene, const std::vector<AccelHandle>& handles) {
     std::vector<AccelHandle> found(scene.meshes.size());
     std::size_t next = 0;

@@ -35,7 +35,7 @@ class Stage {
     double build_seconds() const { return build_seconds_; }  // of both, with uploads
 
     double refit_seconds() const { return refit_seconds_; }  // of the last pose, on both; 0: there was none
-    // Whether an animation moves it, and how long the first one lasts.
+    // Tells whether an animation moves it, and how long the first one lasts.
     double animation_seconds() const;
     // Poses the scene; both accelerators follow.
     void set_time(double seconds);

@@ -13,7 +13,7 @@
 
 namespace twinray::viewer {
 
-// What the colour of a pixel tells.
+// The meaning of a pixel's colour.
 enum class Layer : std::uint8_t {
     path,        // the picture, path traced
     eyelight,    // base colours, lit from the camera

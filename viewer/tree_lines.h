@@ -20,7 +20,7 @@ struct Box {
 std::vector<Box> boxes_at(const Scene& scene, const reference::Scene& cpu_reference, int depth,
                           std::size_t most = 20000);
 
-// What the colour of a box tells.
+// The meaning of a box's colour.
 enum class BoxColor : std::uint8_t {
     kind,  // blue of instances, orange of triangles
     area,  // Box::share, from 1e-4 to 1, on a logarithmic scale

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The viewer without its window: events in, frames out. What it shows is its State; the window only brings events and
-// shows frames, so that every state can be made, and tested, without a display.
+// The viewer without its window: events in, frames out. It shows its State; the window only brings events and shows
+// frames, so that every state can be made, and tested, without a display.
 #pragma once
 
 #include <functional>
@@ -21,8 +21,8 @@ namespace twinray::viewer {
 struct ViewerDesc {
     std::filesystem::path file;
     State state;
-    // Where the camera stands and what it looks at, in the file's coordinates; none: as the scene's first camera, or so
-    // that all is seen. The rest is state.orbit's.
+    // The camera's position and the point that it looks at, in the file's coordinates; none: the scene's first camera,
+    // or a view of all. The rest is in state.orbit.
     std::optional<std::array<dvec3, 2>> camera;
     std::function<void(const std::string&)> say;  // what keys tell, as the camera's options
     std::string version;                          // of twinray
@@ -53,9 +53,9 @@ class Viewer {
     // The next frame: coarse while the camera moves, then whole, then better and better.
     const Raster& frame(bool may_be_coarse);
     const Raster& last() const { return raster_; }
-    // Whether another frame would be better than the last.
+    // Returns whether another frame would be better than the last.
     bool is_refining() const;
-    // Whether frames at rest are samples of Layer::path.
+    // Returns whether frames at rest are samples of Layer::path.
     bool traces_paths() const { return state_.layer == Layer::path && state_.shown != Shown::difference; }
     bool is_closed() const { return is_closed_; }
 
@@ -70,7 +70,7 @@ class Viewer {
     const std::string& explanation();  // of the picked ray; made when it is asked for
     // Lines about device, trees, times and what is shown.
     std::vector<std::string> figures() const;
-    // What colours of values mean; empty: they are none.
+    // The meaning of colours of values; empty: they have none.
     const Values& values() const { return values_; }
     // A sentence for the user, of what just happened; empty: nothing did.
     const std::string& message() const { return message_; }

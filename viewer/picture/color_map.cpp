@@ -7,7 +7,7 @@
 namespace twinray {
 namespace {
 
-// Every 17th of the 256 published colours of viridis; what is between them is within 7 of 255 of a straight line.
+// Every 17th of the 256 published colours of viridis; those in between are within 7 of 255 of a straight line.
 constexpr std::array<Rgb, 16> viridis = {{{68, 1, 84},
                                           {72, 26, 108},
                                           {71, 47, 125},
@@ -25,7 +25,7 @@ constexpr std::array<Rgb, 16> viridis = {{{68, 1, 84},
                                           {210, 226, 27},
                                           {253, 231, 37}}};
 
-// Sixteenths of the published map of Moreland; as near.
+// Sixteenths of the published map of Moreland; those in between are as near.
 constexpr std::array<Rgb, 17> cool_to_warm = {{{59, 76, 192},
                                                {78, 104, 216},
                                                {98, 130, 234},

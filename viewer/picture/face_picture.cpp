@@ -21,7 +21,7 @@ class Shader {
     Shader(const Scene& scene, std::span<const Rgb> colors)
         : scene_(scene), colors_(colors), first_faces_(first_faces(scene)) {}
 
-    // Linear.
+    // Returns a linear colour.
     vec3 operator()(const Ray& ray, const Hit& hit) const {
         if (hit.hit == 0) return linear_of(background);
         const dvec3 normal = front_normal(scene_, hit), direction(ray.direction);

@@ -11,7 +11,7 @@
 
 namespace twinray {
 
-// Of faces of which nothing is said.
+// The colour of faces without a value.
 inline constexpr Rgb plain_color = {205, 208, 213};
 
 // The number of each instance's first face; faces are counted by instance, then by triangle.
@@ -33,9 +33,9 @@ struct FacePicture {
     ImagePlane plane;
 };
 
-// Light comes from where the camera is, and faces turned away from it are darker, down to half. Pixels that differ from
-// one beside them get more rays. `colors`: of each face. Throws Error unless
-// push_scene() has filled the accelerator from a scene of as many instances, and for a wrong number of colours.
+// Light comes from the camera, and faces turned away from it are darker, down to half. Pixels that differ from a
+// neighbour get more rays. `colors`: one per face. Throws Error unless push_scene() has filled the accelerator from a
+// scene of as many instances, and for a wrong number of colours.
 FacePicture draw_faces(AbstractAccel& accel, const Scene& scene, std::span<const Rgb> colors,
                        const FacePictureDesc& desc);
 

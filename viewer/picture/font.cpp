@@ -81,8 +81,8 @@ bool has_ink(char glyph, int x, int y) {
     return sheet[static_cast<std::size_t>(row)][column] == '#';
 }
 
-// One of the four pixels of (x, y) in twice the size, with diagonals rounded (Scale2x, Mazzoleni 2001): a corner takes
-// the value of the two neighbours beside it where these agree and those across do not.
+// Returns one of the four pixels of (x, y) in twice the size, with diagonals rounded (Scale2x, Mazzoleni 2001): a
+// corner takes the value of the two neighbours beside it if these agree and those across do not.
 bool has_ink_twice(char glyph, int x, int y, int right, int down) {
     const bool here = has_ink(glyph, x, y);
     const bool beside = has_ink(glyph, x + (right ? 1 : -1), y), across = has_ink(glyph, x + (right ? -1 : 1), y);

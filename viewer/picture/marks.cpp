@@ -21,7 +21,7 @@ std::optional<Placed> place(const FacePicture& picture, dvec3 position) {
     return Placed{(projected->point * vec2(1, -1) + 1.0f) * 0.5f * size, projected->depth};
 }
 
-// How far a pixel reaches at this depth, in world space.
+// Returns the size of a pixel at this depth, in world space.
 float pixel_size(const FacePicture& picture, float depth) {
     const float at_one = 2 * length(picture.plane.right) / static_cast<float>(picture.raster.width);
     return picture.plane.is_orthographic ? at_one : at_one * depth;
@@ -35,14 +35,14 @@ struct Stretch {
     float behind;
 };
 
-// Where the stretch is nearest to `at`, from 0 to 1.
+// The position on the stretch that is nearest to `at`, from 0 to 1.
 float nearest(const Stretch& stretch, vec2 at) {
     const vec2 way = stretch.to.at - stretch.from.at;
     const float square = dot(way, way);
     return square > 0 ? std::clamp(dot(at - stretch.from.at, way) / square, 0.0f, 1.0f) : 0;
 }
 
-// Along a line in perspective it is the inverse of depth that is linear in the picture.
+// Along a line in perspective the inverse of depth is linear in the picture.
 float depth_at(const FacePicture& picture, const Stretch& stretch, float place) {
     const float a = stretch.from.depth, b = stretch.to.depth;
     return picture.plane.is_orthographic ? mix(a, b, place) : 1 / mix(1 / a, 1 / b, place);
@@ -75,7 +75,7 @@ bool overlap(const Rect& a, const Rect& b) {
     return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
 }
 
-// Beside a point: on its right where there is room, else on its left, and off the others, if need be above or below.
+// Places a label beside a point: to the right if there is room, else to the left, and off the others, above or below.
 Rect label_box(const Raster& raster, const Placed& at, int text_wide, std::span<const Rect> taken) {
     constexpr int away = 8, most_steps = 16;
     const int dot = static_cast<int>(at.at.x), width = text_wide + 2 * label_border,

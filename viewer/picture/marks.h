@@ -14,7 +14,7 @@ struct Dot {
     dvec3 position;    // in world space
     float radius = 2;  // pixels
     Rgb color = ink;
-    float behind = 0;  // how much of it is seen where something is in front of it: from 0 to 1
+    float behind = 0;  // how much of it is seen behind an obstacle: from 0 to 1
 };
 
 struct Stroke {
@@ -28,17 +28,17 @@ struct Stroke {
 struct Note {
     dvec3 position;      // in world space
     std::string label;   // beside it in a .png; may be empty
-    std::string detail;  // told by an .html where the pointer rests on it
+    std::string detail;  // shown by an .html when the pointer rests on it
 };
 
-// What lies in a surface is seen, what is behind one is not, or fainter: marks are as thick as they are wide, and twice
-// that towards the camera, so that they stick out of slanted surfaces, too. Marks behind the camera, and lines that
+// Marks in a surface are seen; those behind one are not, or fainter. Marks are as thick as they are wide, and twice
+// that towards the camera, so that they also stick out of slanted surfaces. Marks behind the camera, and lines that
 // begin or end there, are left out.
 void draw_dots(FacePicture& picture, std::span<const Dot> dots);
 void draw_strokes(FacePicture& picture, std::span<const Stroke> strokes);
-// Where a point is seen, in pixels from the upper left corner; none: behind the camera.
+// The position at which a point is seen, in pixels from the upper left corner; none: behind the camera.
 std::optional<vec2> place_of(const FacePicture& picture, dvec3 position);
-// On a light ground, whatever is in front.
+// Draws on a light ground, over everything else.
 void draw_labels(FacePicture& picture, std::span<const Note> notes);
 
 }  // namespace twinray

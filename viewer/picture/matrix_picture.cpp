@@ -13,7 +13,7 @@ constexpr uint most_pixels = 900;
 constexpr std::size_t most_ticks = 8;
 constexpr int axis_tick = 6, label_gap = 6;
 
-// Means over the entries of a pixel, row 0 first; 0 where there are none.
+// Returns means over the entries of a pixel, row 0 first; 0 if there are none.
 std::vector<double> means_of(std::size_t size, std::span<const MatrixEntry> entries, uint entries_a_pixel) {
     const std::size_t side = (size + entries_a_pixel - 1) / entries_a_pixel;
     const auto extent = [&](std::size_t place) {
@@ -37,7 +37,7 @@ Raster colored(const std::vector<double>& means, const ValueScale& scale, const 
     return raster;
 }
 
-// Numbers of rows to the left, of columns below.
+// Adds numbers of rows to the left, of columns below.
 Raster with_numbers(const Raster& matrix, std::size_t size, const MatrixLayout& layout) {
     const std::vector<Tick> ticks = ValueScale::linear(0, static_cast<double>(size)).ticks(most_ticks);
     const int side = static_cast<int>(layout.pixels);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What stands around a picture: a title above, what colours mean beside.
+// The surroundings of a picture: a title above, the meaning of colours beside.
 #pragma once
 
 #include <optional>
@@ -22,16 +22,16 @@ struct Legend {
 };
 
 struct Page {
-    std::string title, subtitle;  // a line each; what does not fit is cut off
+    std::string title, subtitle;  // one line each; the end is cut off if it does not fit
     Legend legend;
 };
 
-// Where the picture's upper left pixel lies in compose()'s.
+// The position of the picture's upper left pixel in compose()'s.
 struct PagePlace {
     int x = 0, y = 0;
 };
 PagePlace place_in(const Page& page);
-// The picture with its title and its legend, on white.
+// Returns the picture with its title and its legend, on white.
 Raster compose(const Raster& picture, const Page& page);
 
 }  // namespace twinray

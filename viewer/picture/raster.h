@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Pictures in memory, and drawing into them.
+// Pictures in memory, and drawing in them.
 #pragma once
 
 #include <string_view>
@@ -11,7 +11,7 @@ namespace twinray {
 
 inline constexpr Rgb paper = {255, 255, 255}, ink = {30, 30, 30}, faint_ink = {110, 110, 110};
 
-// Row 0 on top. What is drawn outside is cut off.
+// Row 0 is on top. Drawings are clipped to it.
 struct Raster {
     uint width = 0, height = 0;
     std::vector<Rgb> pixels;
@@ -28,12 +28,12 @@ struct Rect {
     int width = 0, height = 0;
 };
 
-// Mixes `color` over what is there, in linear light.
+// Mixes `color` over the present one, in linear light.
 void blend(Rgb& under, Rgb color, float opacity);
 void fill(Raster& raster, Rect rect, Rgb color);
-// One pixel wide, inside the rectangle.
+// Draws it one pixel wide, inside the rectangle.
 void outline(Raster& raster, Rect rect, Rgb color);
-// The upper left corner of `part` comes to lie at (x, y).
+// Puts the upper left corner of `part` at (x, y).
 void paste(Raster& raster, const Raster& part, int x, int y);
 
 }  // namespace twinray

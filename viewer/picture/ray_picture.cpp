@@ -32,7 +32,7 @@ Rgb color_of_normal(const dvec3& normal) {
 
 double distance_of(const Ray& ray, const Hit& hit) { return double(hit.t) * length(dvec3(ray.direction)); }
 
-// Where the stroke of a ray that meets nothing ends: of a scene of this size.
+// The end of the stroke of a ray that meets nothing, in a scene of this size.
 double miss_end(const Ray& ray, double scene_size) {
     const double speed = length(dvec3(ray.direction));
     return speed > 0 ? std::min(double(ray.t_max), scene_size / speed) : 0;
@@ -106,8 +106,8 @@ class HitColors {
     ValueScale scale_;
 };
 
-// Along the rays, but from the left and from above, so that strokes are not seen as points; none where they share no
-// direction.
+// Returns a direction along the rays, but from the left and from above, so that strokes are not seen as points; none if
+// they share no direction.
 std::optional<vec3> direction_along(std::span<const Ray> rays) {
     dvec3 sum(0);
     std::size_t count = 0;
@@ -119,7 +119,7 @@ std::optional<vec3> direction_along(std::span<const Ray> rays) {
     return vec3(along + 0.6 * normalize(cross(along, up)) - 0.35 * up);
 }
 
-// The field's usual order: ray, distance, what was hit.
+// Uses the field's usual order: ray, distance, hit object.
 std::string detail_of(const Scene& scene, std::size_t index, const Ray& ray, const Hit& hit) {
     return text("ray ", index, ": t ", hit.t, ", distance ", distance_of(ray, hit), ", instance ", hit.instance_index,
                 ", triangle ", hit.primitive_index, ", u ", hit.u, ", v ", hit.v,

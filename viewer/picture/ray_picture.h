@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rays up to what they meet, as marks in a picture of the scene.
+// Shows rays up to their hits, as marks in a picture of the scene.
 #pragma once
 
 #include <span>
@@ -10,7 +10,7 @@
 
 namespace twinray {
 
-// What the colour of a hit tells.
+// The meaning of a hit's colour.
 enum class HitColor : std::uint8_t { distance, instance, facing, normal };
 
 struct RayPictureDesc {
@@ -19,10 +19,10 @@ struct RayPictureDesc {
     bool has_labels = false;       // "3: 12.5" beside the hit of ray 3
 };
 
-// The scene's faces grey, with a stroke from each ray's origin to its hit, a dot there in the hit's colour, and a grey
-// stroke for a ray that misses, as long as the scene is large or as its t_max allows. Marks behind faces are seen
-// through them, fainter. Where rays share a direction, the picture is taken from the side that they come from, slightly
-// aslant. Throws Error for hits of another number, or that name what the scene does not have.
+// Shows the scene's faces grey, with a stroke from each ray's origin to its hit, a dot there in the hit's colour, and a
+// grey stroke for a ray that misses, as long as the scene is large or as its t_max allows. Marks behind faces are seen
+// through them, fainter. If rays share a direction, the picture is taken from the side that they come from, slightly
+// aslant. Throws Error for another number of hits, or for hits that name what the scene does not have.
 ScenePicture picture_of_rays(const PictureOptions& options, const Scene& scene, std::span<const Ray> rays,
                              std::span<const Hit> hits, const RayPictureDesc& desc = {});
 

@@ -14,7 +14,7 @@
 namespace twinray {
 namespace {
 
-// What is to be seen beside the scene.
+// The points beside the scene that must be seen.
 std::vector<dvec3> points_of(const ScenePicture& picture) {
     std::vector<dvec3> points;
     for (const Dot& dot : picture.dots) points.push_back(dot.position);
@@ -22,7 +22,7 @@ std::vector<dvec3> points_of(const ScenePicture& picture) {
     return points;
 }
 
-// Straight up or down, up is -z in the picture, as in frame_scene().
+// If it looks straight up or down, up is -z in the picture, as in frame_scene().
 vec3 up_of(vec3 way) { return way.x == 0 && way.z == 0 ? vec3(0, 0, -1) : vec3(0, 1, 0); }
 
 Camera camera_of(const PictureOptions& options, const Scene& scene, const ScenePicture& picture) {
@@ -88,9 +88,9 @@ std::string escaped(const std::string& words) {
     return safe;
 }
 
-// A page that tells what its points are: one file, without scripts. `whole`: `faces` composed with `page`. Each note
-// with a detail is a spot that tells it where the pointer rests, and a row of a table below. Throws Error naming the
-// file.
+// Writes a page that explains its points: one file, without scripts. `whole`: `faces` composed with `page`. Each note
+// with a detail is a spot that shows it when the pointer rests there, and a row of a table below. Throws Error naming
+// the file.
 void write_html(const std::filesystem::path& file, const Raster& whole, const Page& page, const FacePicture& faces,
                 std::span<const Note> notes) {
     const PagePlace corner = place_in(page);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The scene in colours with what stands around it, as a picture or as a scene.
+// Shows the scene in colours with its title and legend, as a picture or as a scene.
 #pragma once
 
 #include <filesystem>
@@ -16,7 +16,7 @@ enum class ColorScale : std::uint8_t { linear, log };
 struct PictureOptions {
     std::vector<std::filesystem::path> files;  // .png, .html or .glb
     std::vector<float> view;                   // empty: the scene's first camera, else one that shows the whole scene
-    // Where the camera stands, then what it looks at, in the file's coordinates; instead of `view`.
+    // The camera's position, then the point that it looks at, in the file's coordinates; replaces `view`.
     std::vector<double> camera;
     std::vector<uint> size = {1000, 800};   // width and height in pixels, without title and legend
     std::optional<ColorScale> color_scale;  // of values; none: as fits them
@@ -30,13 +30,13 @@ struct ScenePicture {
     std::vector<Dot> dots;
     std::vector<Stroke> strokes;
     std::vector<Note> notes;
-    bool frames_marks = false;           // the camera that is chosen sees all marks, whatever camera the scene has
+    bool frames_marks = false;           // the chosen camera sees all marks, whatever camera the scene has
     std::optional<vec3> direction = {};  // in which it looks then; none: as suits the scene
 };
-// Colours of values, NaN: there is none; the scale goes into the legend, which is called `what`.
+// Shows colours of values, NaN: there is none; the scale goes into the legend, which is called `what`.
 ScenePicture picture_of_values(const PictureOptions& options, std::span<const double> values, const std::string& what,
                                ColorScale usual_scale = ColorScale::linear);
-// The accelerator is filled from the scene. Throws Error naming a file that cannot be written.
+// The accelerator holds the scene. Throws Error naming a file that cannot be written.
 void write_pictures(const PictureOptions& options, AbstractAccel& accel, const Scene& scene,
                     const ScenePicture& picture);
 

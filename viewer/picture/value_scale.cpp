@@ -38,7 +38,7 @@ std::string label_of(double value, double step) {
     const int places = static_cast<int>(-std::floor(std::log10(step)));
     if (value == 0) return "0";
     if (largest < 1e6 && places <= 4) return printed("%.*f", std::max(places, 0), value);
-    // As many digits as tell it from its neighbours.
+    // The digits must distinguish it from its neighbours.
     const int digits = static_cast<int>(std::floor(std::log10(largest))) + places;
     return short_exponent(printed("%.*e", std::clamp(digits, 0, 16), value));
 }
