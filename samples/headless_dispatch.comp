@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How much of the sky each cell of a horizontal grid sees: the part of cosine-weighted rays that meet nothing.
+// Computes the sky view of each cell of a horizontal grid: the fraction of cosine-weighted rays that hit nothing.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/query.glsl"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A kernel of one's own that traces: the sky view factor on a grid above the ground, by both accelerators.
+// A tracing kernel of the application: the sky view factor on a grid above the ground, by both accelerators.
 #include <algorithm>
 #include <fstream>
 #include <iostream>

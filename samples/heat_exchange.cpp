@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Heat that two grey spheres exchange by radiation, one inside the other, beside the formula.
+// The heat that two grey spheres exchange by radiation, one inside the other, compared with the formula.
 #include <twinray/analysis.h>
 
 #include <cmath>

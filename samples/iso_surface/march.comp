@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Triangles of a surface f = 0, a cell of a grid an invocation: each cell is cut into six tetrahedra about its
+// Makes triangles of a surface f = 0, one cell of a grid per invocation: each cell is cut into six tetrahedra about its
 // diagonal, and each of those by a plane (marching tetrahedra: Doi, Koide 1991).
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -39,7 +39,7 @@ Corner corner_at(uvec3 place)
     return Corner(position, field(position));
 }
 
-// Where f = 0 between two corners. Neighbours give them in the same order, so that they agree to the last bit.
+// The point with f = 0 between two corners. Neighbours give them in the same order, so that they agree to the last bit.
 vec3 crossing(Corner a, Corner b) { return mix(a.position, b.position, a.value / (a.value - b.value)); }
 
 void add_triangle(vec3 a, vec3 b, vec3 c)

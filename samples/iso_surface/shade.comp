@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A pixel an invocation: what the camera sees, its normal, the sun with its shadow.
+// Shades one pixel per invocation: the visible surface, its normal, the sun with its shadow.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/query.glsl"

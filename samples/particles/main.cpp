@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Balls that move, refit and change colour on the GPU: the host submits all frames, reads the last picture alone, and
-// tells how long it took, as text and as a line of JSON.
+// Balls that move, refit and change colour on the GPU: the host submits all frames, reads only the last picture, and
+// reports the time, as text and as a line of JSON.
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -28,7 +28,7 @@ struct Options : samples::DeviceOptions {
     PictureSize size;
 };
 
-// The options, or the exit status of a run that is over: help was shown (0) or the usage is wrong (2).
+// The options, or the exit status of a finished run: help was shown (0) or the usage is wrong (2).
 struct ParsedOptions {
     Options options;
     std::optional<int> exit_status;

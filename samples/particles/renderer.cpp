@@ -15,7 +15,7 @@ const vec3 eye(0.03f, 0.02f, 4.2f), lamp(0.7f, 0.55f, 3);
 constexpr float lamp_power = 32, ambient = 0.3f;
 const vec3 background(0.02f);
 
-// Through the centres of a grid in each pixel; those of a pixel follow each other.
+// Rays go through the centres of a grid in each pixel; those of a pixel follow each other.
 std::vector<Ray> camera_rays(const PictureSize& size) {
     Camera camera;
     camera.camera_to_world = Transform::translation(eye);

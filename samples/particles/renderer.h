@@ -17,11 +17,11 @@ class Renderer {
   public:
     Renderer(Simulation& simulation, const PictureSize& size);
 
-    // Records and submits the picture of what the simulation has become. Waits for nothing.
+    // Records and submits the picture of the simulation's current state. Does not wait.
     void draw();
-    // The last one drawn; waits for it.
+    // Returns the last picture; waits for it.
     HdrImage picture() const;
-    // GPU times of the last draw(), for which it waits.
+    // Returns GPU times of the last draw(), for which it waits.
     std::vector<PassTiming> timings() const { return last_->timings(); }
 
   private:

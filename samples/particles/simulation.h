@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Balls in a box with an open front: the host makes them, a kernel does the rest.
+// Balls in a box with an open front: the host makes them, a kernel moves them.
 #pragma once
 
 #include <cmath>
@@ -27,7 +27,7 @@ struct Motions {
     std::vector<vec3> positions, velocities;
     std::vector<float> radii;
 };
-// Random, the same for the same seed; the more particles, the smaller.
+// Makes random particles, the same for the same seed; the more there are, the smaller they are.
 Motions make_particles(uint count, uint seed);
 
 constexpr float seconds_per_frame = 1.0f / 60, gravity = 3, bounce = 0.9f, max_speed = 3;
@@ -37,7 +37,7 @@ class Simulation {
     // Pushes walls and balls into the accelerator, which is empty, and syncs it.
     Simulation(AbstractAccel& accel, const Motions& start);
 
-    // Records and submits one frame: moves the balls, colours them, refits the accelerator. Waits for nothing.
+    // Records and submits one frame: moves the balls, colours them, refits the accelerator. Does not wait.
     void step();
 
     AbstractAccel& accel() { return accel_; }
@@ -47,9 +47,9 @@ class Simulation {
     const std::vector<SetKey>& keys() const { return keys_; }  // by instance
     const ParticleArrays& particles() const { return particles_; }
     AccelHandle balls() const { return balls_; }
-    // Of all instances, the walls first.
+    // The records of all instances, the walls first.
     Ref<InstanceRecord> instances() const { return accel_.instance_buffer(walls_handle_).records; }
-    // GPU times of the last step(), for which it waits.
+    // Returns GPU times of the last step(), for which it waits.
     std::vector<PassTiming> timings() const;
 
   private:

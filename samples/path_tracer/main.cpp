@@ -23,7 +23,7 @@ using samples::fail;
 using samples::text;
 namespace {
 
-// 128 + the signal, as shells have it, where one came.
+// Returns 128 + the signal, as shells do, if one came.
 int render(const Options& options, Ranks& ranks) {
     const Session session = make_session(options, ranks);
     const auto accel = make_accel(*session.context, session.scene, session.accel);
@@ -91,7 +91,7 @@ class FrameRenderer {
             motion_ = std::make_unique<MovingScene>(*session_.context, session_.scene, *session_.device_scene, *accel_);
     }
 
-    // The signal that ended it, or 0.
+    // Returns the signal that ended it, or 0.
     int render(uint frame) {
         FrameNote note{frame + 1, sequence_.frames, sequence_.time_of(frame), build_ms_};
         if (motion_) note.times = motion_->move_to(pose_at(*session_.scene.rig, *sequence_.animation, note.seconds));
@@ -100,7 +100,7 @@ class FrameRenderer {
         options_.output = frame_file(pattern_, frame);
         const Rendering rendering = render_film(options_, session_, *accel_, ranks_);
         report_render(options_, session_, *accel_, rendering, &note);
-        // One for all: else they would flicker.
+        // One exposure serves all frames: otherwise they would flicker.
         if (!options_.exposure)
             options_.exposure = exposure_of({}, rendering.film.configuration, rendering.film.mean());
         return rendering.signal;
@@ -138,8 +138,8 @@ class FrameRenderer {
     std::optional<Configuration> base_;
 };
 
-// --frames: picture after picture of a scene that moves, or is gone round. Returns the exit status: 128 + the signal
-// that ended it early, else 0.
+// Renders --frames: picture after picture of a scene that moves, or that the camera circles. Returns the exit status:
+// 128 + the signal that ended it early, else 0.
 int render_frames(const Options& options, Ranks& ranks) {
     check(options, ranks);
     FrameRenderer renderer(options, ranks);
@@ -160,8 +160,8 @@ Film merged(const std::vector<std::filesystem::path>& files) {
     return film;
 }
 
-// Films of one picture become one film or picture, the same in any order. Returns the exit status. Throws Error naming
-// the files that do not belong together.
+// Merges films of one picture into one film or picture, the same in any order. Returns the exit status. Throws Error
+// naming the files that do not belong together.
 int merge_films(const MergeOptions& options) {
     check_folder(options.output);
     const Film film = merged(options.films);
@@ -200,7 +200,7 @@ std::vector<std::string> command_line(const Options& options) {
 }
 
 // Becomes `twinray view` with this scene, camera and device: the command beside this program, else the one in PATH.
-// Throws Error where there is none.
+// Throws Error if there is none.
 [[noreturn]] void view(const Options& options) {
     if (options.scene.string().starts_with("builtin:")) fail("--view: '", options.scene.string(), "' is no file");
     if ((options.width == 0) != (options.height == 0)) fail("--view: --width and --height go together");

@@ -24,7 +24,7 @@ CLI::Option* add_output(CLI::App& app, std::filesystem::path& output) {
         ->check(CLI::Validator(check_output, "FILE.png|.exr|.film"));
 }
 
-// What pictures of films take, wherever they come from.
+// Adds the options for pictures made from films, of any origin.
 void add_finish(CLI::App& app, std::optional<float>& exposure, std::filesystem::path& reference) {
     app.add_option("--exposure", exposure, "stops, for .png; default: 0 under the default sky, else automatic")
         ->check(CLI::Range(-100.0f, 100.0f));
@@ -138,7 +138,7 @@ void add_merge(CLI::App& app, MergeOptions& options) {
     app.add_flag("--quiet", options.quiet, "errors only");
 }
 
-// After the options that they exclude.
+// It comes after the options that they exclude.
 void add_sequence(CLI::App& app, SequenceOptions& options) {
     constexpr uint most_frames = 1'000'000;
     CLI::Option* frames = app.add_option("--frames", options.frames,

@@ -9,7 +9,7 @@
 namespace twinray::path_tracer {
 namespace {
 
-// Bytes of any number, in blocks that fit into the int of a count.
+// Sends any number of bytes, in blocks that fit into the int of a count.
 template <class Move>
 void in_pieces(std::span<std::byte> bytes, const Move& move) {
     constexpr std::size_t most = 1 << 30;
@@ -27,7 +27,7 @@ void receive(std::span<std::byte> bytes, int from) {
     });
 }
 
-// What is sent first. The pixels and the words of the block set follow.
+// The first message. The pixels and the words of the block set follow.
 struct Summary {
     std::uint64_t path_rays, shadow_rays, non_finite, words;
 };
@@ -39,7 +39,7 @@ std::span<std::byte> bytes_of(std::vector<T>& values) {
 
 }  // namespace
 
-// What neither mpirun nor srun has started needs none of it.
+// A process that neither mpirun nor srun has started needs none of it.
 Ranks::Ranks(int& argc, char**& argv) {
     if (!std::getenv("OMPI_COMM_WORLD_SIZE") && !std::getenv("PMIX_RANK") && !std::getenv("PMI_SIZE")) return;
     MPI_Init(&argc, &argv);

@@ -27,11 +27,11 @@ using samples::fail;
 using samples::text;
 namespace {
 
-// The error that is shown is estimated so often, and less often where estimates take long.
+// The shown error is estimated at these intervals, and less often if estimates take long.
 constexpr double seconds_between_estimates = 2, share_of_estimates = 0.05;
 constexpr double seconds_between_displays = 1;
 
-// Says when something that is done every so often is due.
+// Tells when a repeated action is due.
 class Timer {
   public:
     explicit Timer(std::optional<double> interval) : interval_(interval) {}
@@ -45,7 +45,7 @@ class Timer {
     Clock::time_point start_ = Clock::now();
 };
 
-// In thousandths of the work that is left for this run.
+// Shows thousandths of the remaining work of this run.
 class RoundProgress {
   public:
     RoundProgress(const std::string& name, double fraction, bool quiet)
@@ -89,7 +89,7 @@ class Interrupts {
     Interrupts(const Interrupts&) = delete;
     Interrupts& operator=(const Interrupts&) = delete;
 
-    // The number of the signal; 0: none came.
+    // Returns the number of the signal; 0: none came.
     int signal() const { return noted; }
 };
 
@@ -107,7 +107,7 @@ Address address_of(const std::string& server) {
     return {server.substr(0, colon), server.substr(colon + 1)};
 }
 
-// -1: nobody listens there.
+// Returns -1 if nobody listens there.
 int connected_socket(const Address& address) {
     addrinfo hints{}, *found = nullptr;
     hints.ai_socktype = SOCK_STREAM;
@@ -116,7 +116,7 @@ int connected_socket(const Address& address) {
     for (const addrinfo* one = all.get(); one; one = one->ai_next) {
         const int result = socket(one->ai_family, one->ai_socktype, one->ai_protocol);
         if (result < 0) continue;
-        // A viewer that does not read for so long counts as gone.
+        // A viewer that does not read for this long counts as gone.
         const timeval patience{.tv_sec = 2, .tv_usec = 0};
         setsockopt(result, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
         if (connect(result, one->ai_addr, one->ai_addrlen) == 0) return result;
@@ -125,7 +125,7 @@ int connected_socket(const Address& address) {
     return -1;
 }
 
-// Little-endian, as the protocol is and the machines that this runs on are.
+// Values are little-endian, like the protocol and the machines that this runs on.
 template <class T>
 void put(std::string& payload, const T& value) {
     payload.append(reinterpret_cast<const char*>(&value), sizeof value);
@@ -140,11 +140,11 @@ std::string header(char kind, const std::string& name) {
     return payload;
 }
 
-// A picture in a viewer that shows what comes over a TCP connection, as tev does: its protocol's packets CreateImage
-// and, for each channel, UpdateImage (github.com/Tom94/tev), as pbrt-v4 sends them.
+// Shows a picture in a viewer that takes it over a TCP connection, such as tev: its protocol's packets CreateImage and,
+// for each channel, UpdateImage (github.com/Tom94/tev), as pbrt-v4 sends them.
 class Display {
   public:
-    // server: HOST:PORT, or HOST alone for port 14158. Throws Error where nobody listens there.
+    // server: HOST:PORT, or only HOST for port 14158. Throws Error if nobody listens there.
     Display(const std::string& server, const std::string& name, uint width, uint height)
         : name_(name), socket_(connected_socket(address_of(server))) {
         if (socket_ < 0) fail("--display-server ", server, ": nobody listens there; it must be HOST or HOST:PORT");
@@ -161,7 +161,7 @@ class Display {
     Display(const Display&) = delete;
     Display& operator=(const Display&) = delete;
 
-    // False from when the viewer has gone on.
+    // Returns false once the viewer is gone.
     bool show(const HdrImage& picture) {
         for (std::size_t channel = 0; channel < channels.size(); ++channel) {
             std::string payload = header(update_image, name_);
@@ -194,7 +194,7 @@ std::filesystem::path film_file(const std::filesystem::path& output) {
     return is_film_file(output) ? output : std::filesystem::path(output.string() + ".film");
 }
 
-// Nothing to resume from is no error: an array of jobs may start them all with --resume.
+// A missing checkpoint is no error: an array of jobs may start them all with --resume.
 Film first_film(const Options& options, const Session& session, const std::filesystem::path& file) {
     Film film = session.renderer->make_film(session.configuration);
     if (!options.resume) return film;
@@ -253,7 +253,7 @@ class FilmRenderer {
                              time_.elapsed(), error_);
     }
 
-    // A round that would end further beyond the time than it began before is not begun; the first is.
+    // A round that would end further beyond the time than it began before is not begun; the first always is.
     bool is_out_of_time() const {
         return session_.rules.seconds && last_round_ > 0 &&
                time_.elapsed() + last_round_ / 2 >= *session_.rules.seconds;
@@ -271,7 +271,7 @@ class FilmRenderer {
         last_round_ = time_.elapsed() - start;
     }
 
-    // The first one comes at once.
+    // The first one is due at once.
     bool is_preview_due() const { return options_.preview_seconds && (!has_preview_ || preview_.is_due()); }
 
     void read() {
@@ -302,7 +302,7 @@ class FilmRenderer {
         }
     }
 
-    // A viewer sees this rank's part. One that has been closed is no reason to stop.
+    // A viewer sees this rank's part. If it has been closed, the rendering continues.
     void show() {
         if (display_ && !display_->show(result_.film.mean())) {
             if (!options_.quiet) std::fprintf(stderr, "path_tracer: the display server has gone\n");
@@ -323,14 +323,14 @@ class FilmRenderer {
         if (!is_film_file(options_.output)) write_picture_of(options_.output, result_.film, options_.exposure, layers);
     }
 
-    // The signal may come from mpirun, because a rank is lost: each saves its own, and none waits for the others.
+    // The signal may come from mpirun, because a rank is lost: each rank saves its film, and none waits for others.
     void stop() {
         ranks_.abandon();
         if (options_.checkpoint_seconds) save_film(file_, result_.film);
         if (ranks_.index() == 0) write_output(layers());
     }
 
-    // A checkpoint is of no use beside a finished picture.
+    // A checkpoint has no use beside a finished picture.
     void finish() {
         const bool has_checkpoint = options_.checkpoint_seconds &&
                                     (options_.resume || checkpoint_.elapsed() < time_.elapsed() || ranks_.count() > 1);

@@ -111,7 +111,7 @@ std::string film_text(const Film& film) {
     return out.str();
 }
 
-// A line with how the picture differs from the reference, which goes into the record, too; empty without.
+// Returns a line with the picture's difference from the reference, which also goes into the record; empty without one.
 std::string reference_text(const std::filesystem::path& file, const Film& film, nlohmann::json* record) {
     if (file.empty()) return {};
     const PictureError error = error_against(film.mean(), load_reference(file, film.width, film.height));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the program tells about a run.
+// Reports about a run.
 #pragma once
 
 #include <map>
@@ -13,7 +13,7 @@
 
 namespace twinray::path_tracer {
 
-// Of a sequence.
+// Notes on a frame of a sequence.
 struct FrameNote {
     uint number = 1, count = 1;
     double seconds = 0;                     // of the animation
@@ -21,20 +21,20 @@ struct FrameNote {
     std::optional<MotionTimes> times = {};  // none: nothing moves but the camera
 };
 
-// The device's time of the accelerator's last build or refit.
+// Returns the device's time of the accelerator's last build or refit.
 double build_ms(const AbstractAccel& accel);
 
-// One line per render, unless quiet, and warnings about what was dropped. Appends the JSON record that the options
-// ask for.
+// Prints one line per render, unless quiet, and warnings about dropped contributions. Appends the JSON record that the
+// options request.
 void report_render(const Options& options, const Session& session, const AbstractAccel& accel,
                    const Rendering& rendering, const FrameNote* frame = nullptr);
 
 void say_interrupted(const Rendering& rendering, const std::filesystem::path& checkpoint);
 
-// One line, unless quiet.
+// Prints one line, unless quiet.
 void report_merge(const MergeOptions& options, const Film& film);
 
-// What one cross-check found.
+// The result of one cross-check.
 struct CrossCheck {
     std::string hardware_path;
     std::uint64_t path_rays = 0, shadow_rays = 0;

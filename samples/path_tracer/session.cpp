@@ -68,7 +68,7 @@ float aspect_of(const RenderSettings& settings) {
     return static_cast<float>(settings.width) / static_cast<float>(settings.height);
 }
 
-// As pbrt-v4 rounds.
+// Rounds as pbrt-v4 does.
 Crop crop_of(const std::vector<float>& window, uint width, uint height) {
     const auto edge = [](float fraction, uint side) {
         return static_cast<uint>(std::ceil(fraction * static_cast<float>(side)));
@@ -126,7 +126,7 @@ StoppingRules make_rules(const Options& options) {
             options.target_error};
 }
 
-// What each of many ranks renders, or the options ask for.
+// The part of the picture that each of many ranks renders, or that the options ask for.
 Shard make_shard(const Options& options, const Ranks& ranks) {
     if (ranks.count() > 1) {
         if (!options.shard.empty() || options.target_error || !options.cross_check.empty())

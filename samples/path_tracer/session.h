@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The command line of the sample, and what it asks for, made: scene, lights, camera, device and accelerators.
+// The command line of the sample, and the objects that it describes: scene, lights, camera, device and accelerators.
 #pragma once
 
 #include <filesystem>
@@ -59,7 +59,7 @@ struct MergeOptions {
     bool quiet = false;
 };
 
-// The options, or the exit status of a run that is over: help was shown (0) or the usage is wrong (2).
+// The options, or the exit status of a finished run: help was shown (0) or the usage is wrong (2).
 struct ParsedOptions {
     Options options;
     std::optional<MergeOptions> merge;  // set: this was asked for
@@ -84,19 +84,19 @@ struct Session {
     std::unique_ptr<Renderer> renderer;
 };
 
-// Before the work, not after it. Throws Error where there is no folder for the file.
+// Call it before the work, not after it. Throws Error if there is no folder for the file.
 void check_folder(const std::filesystem::path& file);
 
 // Throws Error naming the file, the option and the limit.
 Session make_session(const Options& options, const Ranks& ranks);
 
-// The camera that the options choose; one that frames the scene where is_framing().
+// Returns the camera that the options choose; one that frames the scene if is_framing().
 Camera camera_of(const Options& options, const Scene& scene, const RenderSettings& settings);
 bool is_framing(const Options& options, const Scene& scene);
-// With the lens of the options.
+// Uses the lens of the options.
 CameraRays rays_of(const Options& options, const Camera& camera, const RenderSettings& settings);
 
-// Holds the scene, built.
+// Returns an accelerator that holds the scene, built.
 std::unique_ptr<AbstractAccel> make_accel(Context& context, const Scene& scene, const AccelChoice& choice);
 
 // "compute", "ray query" or "ray tracing pipeline".

@@ -10,14 +10,14 @@
 
 namespace twinray::samples {
 
-// The whole file. Throws Error naming it when it is not there or cannot be read.
+// Reads the whole file. Throws Error naming it if it does not exist or cannot be read.
 std::vector<std::byte> read_file(const std::filesystem::path& file);
 
 // Writes the parts, one after the other, whole or not at all: under another name in the same folder, renamed at the
-// end. Throws Error naming the file; what was there before is then still there.
+// end. Throws Error naming the file; an existing file is then unchanged.
 void write_file(const std::filesystem::path& file, std::span<const std::span<const std::byte>> parts);
 
-// The CRC-32 of zlib, PNG and gzip. `start`: of what comes before.
+// The CRC-32 of zlib, PNG and gzip. `start`: that of the bytes before.
 std::uint32_t crc32_of(std::span<const std::byte> bytes, std::uint32_t start = 0);
 
 // The extension with its dot, in lower case.

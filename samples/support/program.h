@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the samples with a command line have in common: options of the device, a context by them, an accelerator.
+// The common part of the samples with a command line: options of the device, a context and an accelerator for them.
 #pragma once
 
 #include <filesystem>
@@ -26,7 +26,7 @@ struct DeviceOptions {
 // --accel, --device, --validation, --quiet.
 void add_device_options(CLI::App& app, DeviceOptions& options, const std::string& validation_help);
 
-// The exit status of a run that is over: help was shown (0) or the usage is wrong (2). `program`: its name, for the
+// Returns the exit status of a finished run: help was shown (0) or the usage is wrong (2). `program`: its name, for the
 // message.
 std::optional<int> parse(CLI::App& app, int argc, char** argv, const std::string& program);
 
@@ -42,7 +42,7 @@ void append_line(const std::filesystem::path& file, const std::string& line);
 void report_warnings(const std::vector<std::string>& warnings, const std::filesystem::path& scene,
                      const std::string& program, bool is_strict, bool is_quiet);
 
-// main() of a program: what it throws goes to stderr after the program's name, and the exit status is then 1.
+// Runs main() of a program: an exception's text goes to stderr after the program's name, and the exit status is then 1.
 template <class Run>
 int run_program(const char* program, const Run& run) {
     try {

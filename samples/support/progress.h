@@ -9,7 +9,7 @@
 
 namespace twinray::samples {
 
-// A bar with the remaining time on stderr. Silent when stderr is not a terminal, when `quiet`, and during the first
+// A bar with the remaining time on stderr. It is silent if stderr is not a terminal, if `quiet`, and during the first
 // second, so that short work leaves no trace.
 class Progress {
   public:

@@ -25,7 +25,7 @@ void note_candidate(uint shot, uint position, bool is_box, rayQueryEXT query)
                        rayQueryGetIntersectionPrimitiveIndexEXT(query, false));
 }
 
-// Where nothing farther is met any more.
+// The end of the ray behind which nothing is found any more.
 float end_of(rayQueryEXT query, Ray ray)
 {
     bool has_hit = rayQueryGetIntersectionTypeEXT(query, true) != gl_RayQueryCommittedIntersectionNoneEXT;

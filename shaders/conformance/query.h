@@ -32,7 +32,7 @@ struct Columns
     vec3 c3;
 };
 
-// What was committed, and how many candidates came up on the way. A miss has zeros but for the candidates.
+// The committed hit, and the number of candidates on the way. A miss has zeros but for the candidates.
 struct Answer
 {
     uint kind; // ANSWER_...

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: MIT Particles in a box: how they move, and the colour that their speed gives them. Read by
-// kernels and by their serial references.
+// SPDX-License-Identifier: MIT
+// Particles in a box: their motion, and the colour of their speed. Read by kernels and by their serial references.
 #ifndef TWINRAY_PARTICLES_PARTICLES_H
 #define TWINRAY_PARTICLES_PARTICLES_H
 #include "twinray/glsl/instance.h"
@@ -52,7 +52,7 @@ FUNC vec3 heat_color(float t)
     return vec3(1.0f, 0.3f + 0.7f * s, 0.1f + 0.9f * s);
 }
 
-// Of particle i: the colour of its speed, and a surface of its own.
+// Makes particle i's material: the colour of its speed, and a surface of its own.
 FUNC HeatMaterial heat_material(uint i, vec3 velocity, float max_speed)
 {
     HeatMaterial material;

@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: MIT What is seen: a lamp, walls and particles. A frame traces the rays of the camera, shades
-// what they met, traces a shadow ray for each, and adds up.
+// SPDX-License-Identifier: MIT
+// The picture shows a lamp, walls and particles. A frame traces the rays of the camera, shades their hits, traces a
+// shadow ray for each, and adds up.
 #ifndef TWINRAY_PARTICLES_PICTURE_H
 #define TWINRAY_PARTICLES_PICTURE_H
 #include "shaders/particles/particles.h"
@@ -24,7 +25,7 @@ struct PictureScene
 };
 BUFFER_OF(PictureScene, 8);
 
-// Of a ray: what arrives anyway, and what arrives if the lamp is not hidden.
+// The light of a ray: the part that arrives anyway, and the part that arrives if the lamp is not hidden.
 struct Light
 {
     vec3 indirect;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How often each ray crosses the triangles of a scene whose instances are all non-opaque: every hit is offered, counted
-// and refused, so that nothing ends the ray. A closest hit would hide that an edge is hit twice.
+// Counts how often each ray crosses the triangles of a scene whose instances are all non-opaque: every hit is offered,
+// counted and refused, so that nothing ends the ray. A closest hit would hide that an edge is hit twice.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define TWINRAY_PROGRAM
@@ -17,8 +17,7 @@ layout(push_constant, scalar) uniform Push
 uint crossings = 0u; // of this invocation's ray
 
 #ifdef TWINRAY_HW
-// A driver may offer the same triangle more than once, which is no second crossing. As many as there is room for are
-// told apart.
+// A driver may offer the same triangle more than once, which is no second crossing. As many as fit here are told apart.
 uvec2 met[16];
 
 bool is_met_again(Candidate candidate)
@@ -35,7 +34,7 @@ bool is_met_again(Candidate candidate) { return false; } // SwTlas meets a trian
 
 bool intersect_primitive(Candidate candidate, Ray ray_local, inout float t, inout vec2 uv) { return false; }
 
-// Filters may not write (see program.h): this kernel asks how often it is called.
+// Filters must not write (see program.h): this kernel counts the calls.
 bool accept_hit(Candidate candidate, float t, vec2 uv)
 {
     if (!is_met_again(candidate)) crossings++;

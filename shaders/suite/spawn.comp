@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rays that leave points of triangles, by twinray/glsl/spawn.glsl or by what it is compared with.
+// Makes rays that leave points of triangles, by twinray/glsl/spawn.glsl or by another method for comparison.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/spawn.glsl"

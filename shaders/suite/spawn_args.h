@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What the kernel spawn.comp is told and answers; read by C++ and GLSL.
+// The arguments and results of the kernel spawn.comp; read by C++ and GLSL.
 #ifndef TWINRAY_SUITE_SPAWN_ARGS_H
 #define TWINRAY_SUITE_SPAWN_ARGS_H
 
-// A ray that is to leave a point of a triangle.
+// A ray that must leave a point of a triangle.
 struct SpawnItem
 {
     vec3 direction;
@@ -21,7 +21,7 @@ struct SpawnPrice
 };
 BUFFER_OF(SpawnPrice, 8);
 
-// How it is kept from meeting its own triangle. The rays of method m begin at m * count.
+// The method that keeps it from hitting its own triangle. The rays of method m begin at m * count.
 const uint SPAWN_BOUND = 0u;   // twinray/glsl/spawn.glsl
 const uint SPAWN_NONE = 1u;    // not at all
 const uint SPAWN_T_MIN = 2u;   // t_min = 1e-4

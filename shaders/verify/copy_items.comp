@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Copies between device addresses whose buffers are not known.
+// Copies between device addresses whose buffers are unknown.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"
@@ -11,7 +11,7 @@ void main()
 {
     uint item = global_index();
     if (item >= args.count) return;
-    // 2^32 rays have more words than 32 bits count.
+    // 2^32 rays have more words than 32 bits can count.
     Uints from = Uints(address_at(args.from.address, item, args.words_per_item * 4u));
     Uints to = Uints(address_at(args.to.address, item, args.words_per_item * 4u));
     for (uint word = 0u; word < args.words_per_item; word = word + 1u) AT(to, word) = AT(from, word);

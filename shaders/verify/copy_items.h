@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What shaders/verify/copy_items.comp takes.
+// The arguments of shaders/verify/copy_items.comp.
 #ifndef TWINRAY_VERIFY_COPY_ITEMS_H
 #define TWINRAY_VERIFY_COPY_ITEMS_H
 

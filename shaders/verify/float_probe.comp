@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The arithmetic that the robust levels rest on, as this device does it.
+// Performs the arithmetic that the robust levels rely on, on this device.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

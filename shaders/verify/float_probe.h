@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the probe of a device's float arithmetic takes and gives.
+// The arguments and results of the probe of a device's float arithmetic.
 #ifndef TWINRAY_VERIFY_FLOAT_PROBE_H
 #define TWINRAY_VERIFY_FLOAT_PROBE_H
 
@@ -11,7 +11,7 @@ struct FloatCase
 };
 BUFFER_OF(FloatCase, 4);
 
-// What the device makes of a case.
+// The device's results for a case.
 struct FloatAnswer
 {
     float product;
@@ -20,8 +20,8 @@ struct FloatAnswer
     float square_root;         // of |a|
     float inverse_square_root; // of |a|
     float precise_residual;    // a b - product, `precise`: 0 unless contracted all the same
-    float plain_residual;      // the same, as the compiler likes
-    float fma_residual;        // by fma(): the rounding error of the product where it is fused
+    float plain_residual;      // the same, as the compiler chooses
+    float fma_residual;        // by fma(): the rounding error of the product if it is fused
     float error_free;          // by product_error
     float minimum;
     float maximum;
@@ -37,7 +37,7 @@ struct FloatProbeArgs
     uint reserved;
 };
 
-// Of devices with float64.
+// For devices with float64.
 struct Float64Args
 {
     REF(FloatCase) cases;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The same for float64, a module of its own: not every device has it.
+// The same for float64, in a module of its own: not every device has it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_explicit_arithmetic_types_float64 : require

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Tutorial 1: one triangle, one ray, then a batch of them; what a hit holds, any hits and masks.
+// Tutorial 1: one triangle, one ray, then a batch of rays; the fields of a hit, any hits and masks.
 // [headers]
 #include <cmath>
 #include <filesystem>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Solutions of the exercises of tutorial 1. Exits with 1 unless each gives what is known.
+// Solutions of the exercises of tutorial 1. Exits with 1 unless each gives the known result.
 #include <cmath>
 #include <iostream>
 #include <numbers>
@@ -14,7 +14,7 @@ using namespace twinray;
 namespace {
 
 // [culling]
-// How many of two rays, one from each side of a triangle, hit where backs are culled.
+// Returns how many of two rays, one from each side of a triangle, hit it if backs are culled.
 int fronts_hit(Context& context) {
     SwTlas accel(context);
     accel.push(make_quad(vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0)));  // its front looks to +z
@@ -47,7 +47,7 @@ double outline_of_sphere(Context& context, float radius) {
 // [/area]
 
 // [all]
-// Where a ray enters and leaves spheres that stand in a row.
+// Returns the distances at which a ray enters and leaves spheres in a row.
 std::vector<float> distances_through_spheres(Context& context) {
     SwTlas accel(context);
     const Transform places[] = {Transform::translation({0, 0, -3}), Transform::translation({0, 0, -6})};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Solutions of the exercises of tutorial 2. Exits with 1 unless each gives what is known; writes a picture by all
-// three.
+// Solutions of the exercises of tutorial 2. Exits with 1 unless each gives the known result; writes a picture of all
+// three together.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,7 +12,7 @@
 namespace {
 
 // [glass]
-// Rays that meet the ball in the middle pass through it, as if it were glass, and go on where they leave it.
+// Rays that hit the ball in the middle pass through it, as if it were glass, and continue where they leave it.
 void pass_through_glass(AbstractAccel& accel, std::vector<Ray>& rays) {
     const float index = 1.5f;
     for (int crossing = 0; crossing < 2; ++crossing) {  // into the ball, out of the ball
@@ -23,7 +23,7 @@ void pass_through_glass(AbstractAccel& accel, std::vector<Ray>& rays) {
             const bool enters = dot(direction, surfaces[i].point.normal) < 0;
             const float ratio = enters ? 1 / index : index;
             const vec3 normal = enters ? surfaces[i].normal : -surfaces[i].normal;
-            // Snell: what is along the surface is scaled by the ratio; what is left of length 1 goes through it.
+            // Snell: the part along the surface is scaled by the ratio; the rest of length 1 goes through it.
             const vec3 along = (direction - normal * dot(direction, normal)) * ratio;
             const float through = 1 - dot(along, along);
             const vec3 refracted = along - normal * std::sqrt(std::max(0.0f, through));
@@ -36,7 +36,7 @@ void pass_through_glass(AbstractAccel& accel, std::vector<Ray>& rays) {
 // [light]
 enum class Middle { mirror, glass };
 
-// The loop of the tutorial: what one ray a pixel brings.
+// The loop of the tutorial: returns the light of one ray per pixel.
 std::vector<vec3> light_of(AbstractAccel& accel, std::vector<Ray> rays, vec3 to_sun, Middle middle) {
     std::vector<vec3> picture(rays.size(), vec3(0));
     std::vector<Path> paths = paths_of(rays);
@@ -49,7 +49,7 @@ std::vector<vec3> light_of(AbstractAccel& accel, std::vector<Ray> rays, vec3 to_
 // [/light]
 
 // [several]
-// The mean of side x side pictures, each of rays through another place of the pixels.
+// Returns the mean of side x side pictures, each with rays through another place of the pixels.
 std::vector<vec3> several_rays(AbstractAccel& accel, uint width, uint height, uint side) {
     std::vector<vec3> mean(width * height, vec3(0));
     for (uint i = 0; i < side * side; ++i) {
@@ -78,8 +78,8 @@ vec3 point_of_sun(uint i, uint n) {
 // [/sun]
 
 // [hidden]
-// How much of the sun the red ball hides from a place on the floor: where the ray to the middle of the sun passes the
-// middle of the ball at a distance.
+// Returns the fraction of the sun that the red ball hides from a place on the floor, where the ray to the middle of the
+// sun passes the middle of the ball at `distance`.
 double hidden_part(AbstractAccel& accel, float distance) {
     const vec3 ball(-2.1f, 1, 0), aside = normalize(cross(sun, vec3(0, 1, 0)));
     const vec3 place = ball - sun * (ball.y / sun.y) + aside * distance;
@@ -93,8 +93,8 @@ double hidden_part(AbstractAccel& accel, float distance) {
 // [/hidden]
 
 // [focus]
-// Where rays along the axis of the glass ball cross it behind the ball, from its middle. A ball of radius R whose
-// refractive index is n has its focus at n R / (2 (n - 1)) (for rays near the axis).
+// Returns the distance from the middle of the glass ball at which rays along its axis cross it behind the ball. A ball
+// of radius R whose refractive index is n has its focus at n R / (2 (n - 1)) (for rays near the axis).
 double focus_of_glass(AbstractAccel& accel) {
     const vec3 ball(0, 1, -0.6f);
     std::vector<Ray> rays;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The ray tracer of tutorial 2, but for its main: a scene, a camera and one bounce of all rays.
+// The ray tracer of tutorial 2, without its main: a scene, a camera and one bounce of all rays.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 using namespace twinray;
 
 // [scene]
-// A floor and three balls. Their custom indices say which of the looks they have.
+// A floor and three balls. Their custom indices name their looks.
 inline void push_balls(AbstractAccel& accel) {
     accel.push(make_quad({-9, 0, 9}, {18, 0, 0}, {0, 0, -18}), {}, {.custom_index = 0});
     const Transform places[] = {Transform::translation({-2.1f, 1, 0}), Transform::translation({0, 1, -0.6f}),
@@ -74,7 +74,7 @@ inline Ray leave(const Surface& surface, vec3 direction) {
 // [/leave]
 
 // [bounce]
-// Adds to the picture what the rays bring, and gives the rays and paths that are left: those off mirrors.
+// Adds the light of the rays to the picture, and returns the rays and paths that continue: those off mirrors.
 inline void bounce(AbstractAccel& accel, vec3 to_sun, std::vector<Ray>& rays, std::vector<Path>& paths,
                    std::vector<vec3>& picture) {
     const std::vector<Hit> hits = accel.closest_hits(rays);

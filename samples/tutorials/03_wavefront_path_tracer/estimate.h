@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How sure a mean is, and whether pictures are the same.
+// The uncertainty of a mean, and the comparison of pictures.
 #pragma once
 
 #include <cmath>
@@ -20,7 +20,7 @@ struct Estimate {
     double mean, error;  // the standard error of the mean
 };
 
-// Of 32 pictures of one path a pixel: the less their means differ, the surer is the mean of all.
+// The mean over 32 pictures of one path per pixel: the less their means differ, the surer is the mean of all.
 inline Estimate mean_radiance(const Trace& trace, twinray::uint first_sample) {
     const twinray::uint rounds = 32;
     std::vector<double> means;
@@ -31,13 +31,13 @@ inline Estimate mean_radiance(const Trace& trace, twinray::uint first_sample) {
     return {mean, std::sqrt(squares / (rounds - 1) / rounds)};
 }
 
-// Two that are right differ by more than 4 of them once in 16,000 times.
+// Two correct results differ by more than 4 of them once in 16,000 times.
 inline double standard_errors_between(const Estimate& a, const Estimate& b) {
     return std::abs(a.mean - b.mean) / std::hypot(a.error, b.error);
 }
 // [/estimate]
 
-// In how many pixels two pictures differ by more than rounding may do.
+// Returns in how many pixels two pictures differ by more than rounding may do.
 inline std::size_t differing_pixels(const Picture& a, const Picture& b) {
     std::size_t differing = 0;
     for (std::size_t i = 0; i < a.size(); ++i) differing += !(length(a[i] - b[i]) <= length(a[i]) / 1000);

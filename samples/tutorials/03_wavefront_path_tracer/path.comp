@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A path an invocation, from the camera to its end.
+// Each invocation traces one path from the camera to its end.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/query.glsl"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A path of light and how it goes on where it meets a surface: one text for C++ and for kernels.
+// A path of light and its continuation at a surface: one text for C++ and for kernels.
 #ifndef TUTORIALS_PATH_H
 #define TUTORIALS_PATH_H
 #include "twinray/glsl/random.h"
@@ -16,7 +16,7 @@ struct Look {
     uint kind;
 };
 
-// Masks of instances. What blocks the lamp's light is solid.
+// Masks of instances. Solid ones block the lamp's light.
 const uint SOLID_MASK = 1u;
 const uint LAMP_MASK = 2u;
 
@@ -28,7 +28,7 @@ struct Lamp {
     vec3 radiance;
 };
 
-// Where the picture is seen from: twinray's ImagePlane.
+// The viewpoint of the picture: twinray's ImagePlane.
 struct Eye {
     vec3 origin;
     vec3 right;
@@ -53,7 +53,7 @@ struct Path {
     uint sees_lamp;     // 1: from the eye or off a mirror; the lamp's light was not asked for where it started
 };
 
-// Four random numbers in [0, 1), others for each path, bounce and use.
+// Returns four random numbers in [0, 1), different for each path, bounce and use.
 FUNC vec4 random_of(Path path, uint use) {
     uvec4 words = random_words(uvec4(path.pixel, path.sample_index, path.bounce, use));
     return vec4(unit_float(words.x), unit_float(words.y), unit_float(words.z), unit_float(words.w));
@@ -76,7 +76,7 @@ FUNC Path begin_path(uint pixel, uint sample_index) {
 
 const float EVERYWHERE = 1e30f;  // t_max
 
-// Through a random place of its pixel. Row 0 is on top.
+// The ray goes through a random place of its pixel. Row 0 is on top.
 FUNC Ray camera_ray(Eye eye, Path path, uint width, uint height) {
     vec4 random = random_of(path, FOR_PIXEL);
     float x = 2.0f * (float(path.pixel % width) + random.x) / float(width) - 1.0f;
@@ -111,7 +111,7 @@ FUNC LampLight lamp_light(Lamp lamp, SurfacePoint point, vec3 normal, vec2 rando
     vec3 to_lamp = lamp.corner + lamp.u * random.x + lamp.v * random.y - point.position;
     vec3 lamp_area = cross(lamp.u, lamp.v);  // its length is the area, its direction where the lamp shines
     float squared = dot(to_lamp, to_lamp);
-    // Each a cosine times the distance; the second one times the area, too.
+    // Each is a cosine times the distance; the second one also has the factor of the area.
     float cos_here = max(dot(to_lamp, normal), 0.0f);
     float cos_lamp = max(-dot(to_lamp, lamp_area), 0.0f);
     LampLight found;
@@ -133,7 +133,7 @@ FUNC bool survives(INOUT(Path) path) {
 // [/roulette]
 
 // [scatter]
-// What a path finds at a surface.
+// The results of a path at a surface.
 struct Scattering {
     vec3 seen;       // light that the pixel gets
     LampLight lamp;  // more of it, unless the shadow ray is blocked
@@ -172,7 +172,7 @@ FUNC Scattering scatter(INOUT(Path) path, Ray ray, SurfacePoint point, Look look
 // [/scatter]
 
 // [args]
-// What to trace: of each pixel the paths first_sample, first_sample + 1, ...
+// The paths to trace: for each pixel first_sample, first_sample + 1, ...
 struct Job {
     uint width;
     uint height;
@@ -180,7 +180,7 @@ struct Job {
     uint samples;
 };
 
-// Of the kernel.
+// The kernel's arguments.
 struct PathArgs {
     Address accel;
     REF(Room) room;

@@ -30,7 +30,7 @@ inline twinray::Room make_room(float aspect) {
             .eye = {plane.origin, plane.right, plane.up, plane.forward}};
 }
 
-// Pushes the room; custom indices say how each part looks.
+// Pushes the room; custom indices name the look of each part.
 inline void push_room(twinray::AbstractAccel& accel, const twinray::Room& room) {
     using namespace twinray;
     const auto push = [&](const Mesh& mesh, uint look, const Transform& transform = {}) {

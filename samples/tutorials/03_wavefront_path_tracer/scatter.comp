@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A bounce of a path an invocation. What is to be traced next goes to queues.
+// Each invocation computes one bounce of a path. The next rays go to queues.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/surface.glsl"

@@ -10,7 +10,7 @@
 using Picture = std::vector<twinray::vec3>;
 
 // [queue]
-// Rays that are to be traced, and the paths that they belong to.
+// Rays to be traced, and the paths that they belong to.
 struct Queue {
     std::vector<twinray::Ray> rays;
     std::vector<twinray::Path> paths;
@@ -23,17 +23,17 @@ struct Queue {
 // [/queue]
 
 Queue first_rays(const twinray::Room& room, const twinray::Job& job);
-// Traces the rays and adds to the picture what they find. Gives those of the paths that go on.
+// Traces the rays and adds their light to the picture. Returns those of the paths that go on.
 Queue bounce(twinray::AbstractAccel& accel, const twinray::Room& room, const Queue& queue, Picture& picture);
-// A job by batches. The accelerator keeps surfaces.
+// Traces a job by batches. The accelerator keeps surfaces.
 Picture trace_by_batches(twinray::AbstractAccel& accel, const twinray::Room& room, const twinray::Job& job);
 
-// Of radiances of paths, all of a sample in a row.
+// Takes radiances of paths, all of a sample in a row.
 Picture mean_of_samples(const std::vector<twinray::vec3>& radiances, std::size_t pixels);
-// The room in device memory, for kernels.
+// Uploads the room to device memory, for kernels.
 twinray::Buffer upload(twinray::Context& context, const twinray::Room& room);
 
-// A job by a kernel, a path an invocation.
+// Traces a job by a kernel, one path per invocation.
 class PathKernel {
   public:
     PathKernel(twinray::AbstractAccel& accel, const twinray::Room& room);
@@ -45,7 +45,7 @@ class PathKernel {
     twinray::QueryKernel<twinray::PathArgs> kernel_;
 };
 
-// A job by batches whose queues stay on the device.
+// Traces a job by batches whose queues stay on the device.
 class PathWaves {
   public:
     PathWaves(twinray::AbstractAccel& accel, const twinray::Room& room);

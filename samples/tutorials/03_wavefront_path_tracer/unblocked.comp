@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A shadow ray an invocation: its light counts where nothing is in the way.
+// Each invocation handles one shadow ray: its light counts if nothing is in the way.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Tutorial 3: paths of light, by batches from the host and by a kernel; whether both agree, and how the error falls.
+// Tutorial 3: paths of light, by batches from the host and by a kernel; both must agree, and the error must fall.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -51,7 +51,7 @@ void check_same_paths(AbstractAccel& accel, const Room& room, PathKernel& kernel
 // [/same_paths]
 
 // [error]
-// The error of a pixel, root mean square, of pictures of so many samples: from how much two of them differ.
+// Returns the root mean square error of a pixel of pictures with so many samples, from the difference of two of them.
 double error_of(PathKernel& kernel, uint samples) {
     const Picture a = kernel.trace({64, 64, 0, samples}), b = kernel.trace({64, 64, samples, samples});
     double squares = 0;
@@ -72,7 +72,7 @@ void check_errors(PathKernel& kernel) {
 // [/error]
 
 // [lanes]
-// How many rays each path of a picture takes, but for shadows.
+// Returns how many rays each path of a picture takes, without shadow rays.
 std::vector<uint> lengths_of_paths(AbstractAccel& accel, const Room& room) {
     Picture picture(256 * 256);
     std::vector<uint> lengths(picture.size());
@@ -82,7 +82,7 @@ std::vector<uint> lengths_of_paths(AbstractAccel& accel, const Room& room) {
     return lengths;
 }
 
-// What part of the lanes works, on average, where so many paths start together and wait for the longest of them.
+// The mean fraction of working lanes, if so many paths start together and wait for the longest of them.
 double busy_lanes(std::span<const uint> lengths, std::size_t lanes) {
     double busy = 0, taken = 0;
     for (std::size_t first = 0; first < lengths.size(); first += lanes) {

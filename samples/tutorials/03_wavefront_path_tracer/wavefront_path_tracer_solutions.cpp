@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Solutions of the exercises of tutorial 3. Exits with 1 unless each gives what is known. With --speed: how many paths
-// a second each way traces.
+// Solutions of the exercises of tutorial 3. Exits with 1 unless each gives the known result. With --speed: prints how
+// many paths per second each way traces.
 #include <algorithm>
 #include <chrono>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include "twinray/glsl/program.h"
 #include "cage.h"
 
-// A box stands for a ball about the middle of object space, which is met where a ray enters it.
+// A box stands for a ball about the middle of object space, which is hit where a ray enters it.
 bool intersect_primitive(Candidate candidate, Ray ray_local, inout float t, inout vec2 uv)
 {
     vec3 origin = ray_local.origin, direction = ray_local.direction;
@@ -16,7 +16,7 @@ bool intersect_primitive(Candidate candidate, Ray ray_local, inout float t, inou
     return true;
 }
 
-// Of a triangle of the cage only a frame is there: where the weight of one of its corners is small.
+// A triangle of the cage consists only of a frame: where the weight of one of its corners is small.
 bool accept_hit(Candidate candidate, float t, vec2 uv)
 {
     return min(min(uv.x, uv.y), 1.0 - uv.x - uv.y) < WIRE_WIDTH;

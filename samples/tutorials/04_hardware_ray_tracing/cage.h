@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// A ball in a cage of wire, above a floor, in the sun: what its kernels and C++ share.
+// A ball in a cage of wire, above a floor, in the sun: the common part of its kernels and C++.
 #ifndef TUTORIALS_CAGE_H
 #define TUTORIALS_CAGE_H
 #include "twinray/glsl/rays.h"
 
-// What instances are, by their custom index. The mask of each is 1 << that.
+// The kinds of instances, by their custom index. The mask of each is 1 << that.
 const uint FLOOR = 0u;  // at y = -1
 const uint CAGE = 1u;   // a sphere of radius 1 about (0, 0, 0)
 const uint BALL = 2u;   // another, inside
@@ -31,7 +31,7 @@ FUNC Ray endless_ray(vec3 origin, vec3 direction) {
     return ray;
 }
 
-// `reach`: half of what is seen, as a tangent.
+// `reach`: half of the visible width, as a tangent.
 FUNC Ray camera_ray(uint pixel, uint size, float reach) {
     vec3 forward = vec3(-0.48f, -0.6f, -0.64f), right = vec3(0.8f, 0.0f, -0.6f), up = vec3(-0.36f, 0.8f, -0.48f);
     float x = reach * (float(2u * (pixel % size) + 1u) / float(size) - 1.0f);
@@ -40,15 +40,15 @@ FUNC Ray camera_ray(uint pixel, uint size, float reach) {
 }
 
 // [light]
-// Towards whoever looks.
+// Returns the normal on the side that the ray comes from.
 FUNC vec3 normal_of(Ray ray, Hit hit) {
     if (hit.custom_index == FLOOR) return vec3(0.0f, 1.0f, 0.0f);
     vec3 outward = normalize(ray.origin + ray.direction * hit.t);
     return dot(outward, ray.direction) < 0.0f ? outward : -outward;
 }
 
-// Light leaves the wire beside it, by its thickness. Ball and floor need no such step: the ball is met by rays that
-// enter it alone, the floor is not in the way of light.
+// Light leaves the wire beside it, by its thickness. Ball and floor need no such step: the ball is only hit by rays
+// that enter it, and the floor is not in the way of light.
 FUNC Ray ray_to_sun(Ray ray, Hit hit) {
     vec3 point = ray.origin + ray.direction * hit.t;
     if (hit.custom_index == CAGE) point = point + normal_of(ray, hit) * 0.04f;

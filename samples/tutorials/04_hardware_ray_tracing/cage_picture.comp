@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // [kernel]
-// A pixel an invocation: a ray of the camera, then one to the sun.
+// Each invocation draws one pixel: a ray of the camera, then one to the sun.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define TWINRAY_PROGRAM // closest_hit and any_hit ask the functions of cage.glsl

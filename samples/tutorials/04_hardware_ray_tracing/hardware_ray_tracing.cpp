@@ -16,7 +16,7 @@
 constexpr uint picture_size = 320;
 
 // [ask]
-// From the eye to each vertex of the ball, where up to six triangles meet.
+// Returns rays from the eye to each vertex of the ball, where up to six triangles meet.
 std::vector<Ray> rays_at_vertices(const Mesh& ball) {
     std::vector<Ray> rays;
     for (const vec3& vertex : ball.positions)
@@ -24,7 +24,7 @@ std::vector<Ray> rays_at_vertices(const Mesh& ball) {
     return rays;
 }
 
-// What a way answers, and what float64 says to each of the answers.
+// The answers of a way, and the float64 verdict on each.
 struct Answers {
     std::vector<Hit> hits;
     std::vector<HitClass> classes;
@@ -60,7 +60,7 @@ void print_row(const Way& way, const Answers& answers, const Answers& of_softwar
 }
 
 // [map]
-// For each pixel the ball where SwTlas meets it, coloured by how the way answered the ray at the nearest vertex.
+// Draws for each pixel the ball where SwTlas hits it, coloured by the way's answer to the ray at the nearest vertex.
 std::vector<Rgb> map_of_vertices(const Way& software, const Mesh& ball, const Answers& answers,
                                  const Answers& of_software, uint size) {
     std::vector<Ray> rays;
@@ -93,7 +93,7 @@ std::size_t differing(std::span<const Hit> a, std::span<const Hit> b) {
     return differing;
 }
 
-// The same mesh, the same rays, the same device; only the tree is another one.
+// Uses the same mesh, the same rays, the same device; only the tree is another one.
 std::size_t differing_by_tree(const Way& way, const Mesh& ball, std::span<const Ray> rays) {
     std::unique_ptr<AbstractAccel> one, other;
     if (way.is_software) {
@@ -110,7 +110,7 @@ std::size_t differing_by_tree(const Way& way, const Mesh& ball, std::span<const 
 // [/order]
 
 // [cost]
-// Of some work, until the device has done it: the least of five, since the first also pays for what is done once.
+// Returns the time of some work on the device: the least of five, since the first includes work that is done once.
 template <class Work>
 double least_ms(Context& context, const Work& work) {
     using Clock = std::chrono::steady_clock;
@@ -159,7 +159,7 @@ void print_cost(const Way& way, const Mesh& ball, std::span<const Ray> rays) {
 }
 // [/cost]
 
-// Pictures side by side, with a gap between two; grey where one is empty.
+// Writes pictures side by side, with a gap between two; grey if one is empty.
 void write_strip(const std::filesystem::path& file, std::span<const std::vector<Rgb>> pictures, uint size) {
     const uint gap = 6, width = static_cast<uint>(pictures.size()) * (size + gap) - gap;
     std::vector<Rgb> strip(std::size_t{width} * size, {255, 255, 255});
@@ -183,7 +183,7 @@ std::size_t differing_pixels(std::span<const Rgb> a, std::span<const Rgb> b) {
     return differing;
 }
 
-// By batches and, where kernels can trace, by a kernel, too. Each is compared with `first`, if there is one.
+// Renders by batches and, if kernels can trace, also by a kernel. Each is compared with `first`, if there is one.
 std::vector<Rgb> picture_of_cage(const Way& way, const std::vector<Rgb>& first) {
     const std::unique_ptr<AbstractAccel> accel = way.make_accel();
     push_cage(*accel);

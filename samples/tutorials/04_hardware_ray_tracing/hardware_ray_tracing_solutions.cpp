@@ -10,7 +10,7 @@
 #include "ways.h"
 
 // [exercise1]
-// The part of light that passes a wall of drilled triangles, by rays straight at it.
+// Returns the part of light that passes a wall of drilled triangles, from rays straight at it.
 double light_through(const Way& way) {
     const std::unique_ptr<AbstractAccel> accel = way.make_accel();
     accel->push(make_quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), {}, {.non_opaque = true});
@@ -30,7 +30,7 @@ double light_through(const Way& way) {
 // [/exercise1]
 
 // [exercise2]
-// What is left of the differences from software where float64 computes t anew?
+// The remaining differences from software if float64 recomputes t.
 struct Left {
     std::size_t other_t = 0;  // on the same triangle
     std::uint64_t lost = 0;   // by the driver

@@ -17,9 +17,9 @@ namespace twinray {
 
 using namespace twinray;
 
-// Floor, cage and ball.
+// Pushes floor, cage and ball.
 void push_cage(AbstractAccel& accel);
-// size * size pixels, row 0 on top. The accelerator must be able to serve kernels: Feature::kernel_queries.
+// Returns size * size pixels, row 0 on top. The accelerator must support kernels: Feature::kernel_queries.
 std::vector<Rgb> picture_by_kernel(AbstractAccel& accel, uint size);
-// The same with any accelerator: the host makes rays and looks at hits, the device traces.
+// The same with any accelerator: the host makes rays and reads hits, the device traces.
 std::vector<Rgb> picture_by_batches(AbstractAccel& accel, uint size);

@@ -10,7 +10,7 @@
 
 using namespace twinray;
 
-// A device, as one way of tracing uses it, and the accelerator that it makes there.
+// A device in the configuration of one way of tracing, and its accelerator.
 struct Way {
     std::string name;
     bool is_software = false;
@@ -19,8 +19,8 @@ struct Way {
     std::unique_ptr<AbstractAccel> make_accel(const AccelOptions& options = {}) const;
 };
 
-// SwTlas first, then what the device's driver offers. Prints what it does not.
+// Returns SwTlas first, then the ways that the device's driver offers. Prints those that it does not.
 std::vector<Way> ways_of_device();
 
-// What an accelerator cannot do, and why.
+// Prints what an accelerator cannot do, and why.
 void print_lacking(const Way& way);

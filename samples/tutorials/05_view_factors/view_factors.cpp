@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Tutorial 5: view factors with intervals beside a closed form, and a room lit by radiosity.
+// Tutorial 5: view factors with intervals compared with a closed form, and a room lit by radiosity.
 #include <cmath>
 #include <filesystem>
 #include <iostream>
@@ -91,7 +91,7 @@ std::vector<Panel> room() {
 bool holds(const ViewFactor& factor, double truth) { return factor.low <= truth && truth <= factor.high; }
 
 // [cube]
-// What each wall of a closed cube sends out where all walls emit 1 and reflect half: 1 + 1/2 + 1/4 + ... = 2.
+// Light from each wall of a closed cube if all walls emit 1 and reflect half: 1 + 1/2 + 1/4 + ... = 2.
 std::vector<double> light_in_cube(Context& context) {
     Scene scene;
     scene.materials.resize(1);
@@ -123,7 +123,7 @@ Scene scene_of_panels(const std::vector<Panel>& panels) {
 // [/scene]
 
 // [light]
-// What each face sends out in red, green and blue.
+// Returns the light that each face sends out in red, green and blue.
 std::vector<vec3> light_of_faces(Context& context, const std::vector<Panel>& panels, const Scene& scene) {
     SwTlas accel(context);
     push_scene(accel, scene);
@@ -147,7 +147,7 @@ std::vector<vec3> light_of_faces(Context& context, const std::vector<Panel>& pan
 // [/light]
 
 // [smooth]
-// The light at the vertices of each panel, the mean of the faces around it, so that a picture shows no facets.
+// Returns the light at the vertices of each panel, the mean of the faces around it, so that a picture shows no facets.
 std::vector<std::vector<vec3>> light_of_vertices(const Scene& scene, const std::vector<vec3>& light) {
     std::vector<std::vector<vec3>> result;
     std::size_t face = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Solutions of the exercises of tutorial 5. Exits with 1 unless each gives what is known.
+// Solutions of the exercises of tutorial 5. Exits with 1 unless each gives the known result.
 #include <cmath>
 #include <iostream>
 #include <numbers>
@@ -32,7 +32,7 @@ double floor_to_wall(Context& context) {
 // [/corner]
 
 // [spheres]
-// A sphere of radius 1 within one of radius 2 that looks inwards: what the outer one sees of itself.
+// A sphere of radius 1 within one of radius 2 that looks inwards: returns the view factor of the outer one to itself.
 ViewFactor outer_to_outer(Context& context) {
     Scene scene;
     scene.materials.resize(1);
@@ -48,7 +48,7 @@ ViewFactor outer_to_outer(Context& context) {
 // [/spheres]
 
 // [project]
-// How far the view factors between the faces of a box are from reciprocity, as counted and after project().
+// Returns how far the view factors between the faces of a box are from reciprocity, as counted and after project().
 std::pair<double, double> reciprocity_of_box(Context& context) {
     Scene scene;
     scene.materials.resize(1);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint32_t api_version = VK_API_VERSION_1_2;
 
-// The family of queues that rasterises and computes; -1: none.
+// Returns the family of queues that rasterises and computes; -1: none.
 int universal_family(VkPhysicalDevice device) {
     std::uint32_t count = 0;
     vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
@@ -51,7 +51,7 @@ void Device::create_instance() {
 }
 
 // [choose]
-// The first device that rasterises and on which twinray can run.
+// Chooses the first device that rasterises and on which twinray can run.
 void Device::choose() {
     std::uint32_t count = 0;
     require(vkEnumeratePhysicalDevices(instance_, &count, nullptr), "list the devices");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The renderer's own Vulkan: instance, device, queue. twinray comes in as a guest.
+// The renderer's own Vulkan: instance, device, queue. twinray uses them as a guest.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -10,7 +10,7 @@
 
 namespace renderer {
 
-// off: as on a device that has none. pipelines: as on one that has no ray queries.
+// off: like a device without ray tracing. pipelines: like one without ray queries.
 enum class RayTracing { if_there, pipelines, off };
 
 class Device {
@@ -24,9 +24,9 @@ class Device {
     VkPhysicalDevice physical() const { return physical_; }
     VkQueue queue() const { return queue_; }
     std::uint32_t queue_family() const { return queue_family_; }
-    // What twinray is told.
+    // The description of the device for twinray.
     twinray::AdoptedDevice adopted() const;
-    // Records, submits and waits: for what happens once.
+    // Records, submits and waits, for work that is done once.
     void run_once(const std::function<void(VkCommandBuffer)>& record) const;
 
   private:

@@ -31,7 +31,7 @@ std::size_t differing_pixels(const Picture& a, const Picture& b) {
 // [/exercise1]
 
 // [exercise2]
-// Memory that twinray gets from the renderer: here a Buffer's, each with memory of its own.
+// Memory that twinray gets from the renderer: that of a Buffer, each with memory of its own.
 struct Lender {
     const Device& device;
     std::set<VkBuffer> lent = {};
@@ -83,7 +83,7 @@ void trace_in_lent_memory() {
 }
 
 // [exercise3]
-// What twinray says of a mistake.
+// Prints twinray's error for a mistake.
 template <class Mistake>
 void make(const char* name, const Mistake& mistake) {
     try {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The light of sun and sky on what each pixel sees.
+// Adds the light of sun and sky to the surface that each pixel sees.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

@@ -8,12 +8,12 @@
 
 namespace renderer {
 
-// Shaders reach it by its address. Move-only.
+// A buffer that shaders reach by its address. Move-only.
 class Buffer {
   public:
     enum class Place { device, host };  // host: mapped, coherent
     Buffer() = default;
-    // more_usage: beyond storage, transfer and device address.
+    // more_usage: further usage beyond storage, transfer and device address.
     Buffer(const Device& device, VkDeviceSize bytes, Place place = Place::device, VkBufferUsageFlags more_usage = 0);
     ~Buffer();
     Buffer(Buffer&& other) noexcept { *this = std::move(other); }
@@ -33,10 +33,10 @@ class Buffer {
     void* mapped_ = nullptr;
 };
 
-// In the device's memory; waits until it is there.
+// Returns a buffer in the device's memory with the data; waits for the upload.
 Buffer uploaded(const Device& device, std::span<const std::byte> data);
 
-// What is rendered to. Not copied.
+// A render target. Not copied.
 struct Image {
     Image(const Device& owner, VkFormat format, VkExtent2D size, VkImageUsageFlags usage, VkImageAspectFlags aspect);
     ~Image();

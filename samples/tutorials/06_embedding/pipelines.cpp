@@ -32,7 +32,7 @@ Pipeline::Pipeline(const Device& device, VkPipelineBindPoint point, VkShaderStag
     require(vkCreatePipelineLayout(device.handle(), &info, nullptr, &layout_), "create a pipeline layout");
 }
 
-// No vertex input: the vertex shader reads what it needs by address. Depth is 1 nearby and 0 far away.
+// There is no vertex input: the vertex shader reads its data by address. Depth is 1 nearby and 0 far away.
 Pipeline::Pipeline(const Device& device, const Targets& targets, Spirv vertex, Spirv fragment)
     : Pipeline(device, VK_PIPELINE_BIND_POINT_GRAPHICS, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT) {
     const VkPipelineShaderStageCreateInfo stages[] = {

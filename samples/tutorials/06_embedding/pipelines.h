@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the renderer draws to, and its pipelines. All of them take the same push constants: FrameArgs.
+// The renderer's targets and pipelines. All pipelines take the same push constants: FrameArgs.
 #pragma once
 
 #include <span>
@@ -10,7 +10,7 @@ namespace renderer {
 
 using Spirv = std::span<const std::uint32_t>;
 
-// What all shaders are told, as scene.glsl declares it. Addresses of device memory.
+// The arguments of all shaders, as scene.glsl declares them. Addresses of device memory.
 struct FrameArgs {
     VkDeviceAddress bodies = 0, ids = 0, rays = 0, hits = 0, colors = 0;
     float eye[3] = {}, forward[3] = {}, right[3] = {}, up[3] = {};
@@ -20,7 +20,7 @@ struct FrameArgs {
 };
 static_assert(sizeof(FrameArgs) <= 128);
 
-// For each pixel which triangle of which body is seen there, and the depth that decides it.
+// Stores for each pixel the visible triangle and its body, and the depth that decides it.
 class Targets {
   public:
     Targets(const Device& device, VkExtent2D size);
@@ -31,7 +31,7 @@ class Targets {
     VkExtent2D size() const { return size_; }
     VkRenderPass render_pass() const { return render_pass_; }
     void begin(VkCommandBuffer commands) const;
-    // Ends the render pass; copies what is seen into `ids`, for kernels.
+    // Ends the render pass; copies the visible triangles into `ids`, for kernels.
     void end(VkCommandBuffer commands, const Buffer& ids) const;
 
   private:
@@ -48,9 +48,9 @@ class Targets {
 // A pipeline with its layout.
 class Pipeline {
   public:
-    // Draws triangles.
+    // Makes one that draws triangles.
     Pipeline(const Device& device, const Targets& targets, Spirv vertex, Spirv fragment);
-    // A kernel.
+    // Makes a kernel.
     Pipeline(const Device& device, Spirv compute);
     ~Pipeline();
     Pipeline(const Pipeline&) = delete;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The rays of each pixel: one to the sun, then those to the sky near by.
+// Makes the rays of each pixel: one to the sun, then those to the nearby sky.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"
@@ -12,7 +12,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 const float EVERYWHERE = 1e30, NEAR_BY = 1.5; // t_max
 
 // [point]
-// The same point as the pixel shows, and how far rays must start from it so that they do not meet its own triangle.
+// The point that the pixel shows, and the distance at which rays must start so that they do not hit its own triangle.
 SurfacePoint point_of(Seen seen)
 {
     Placement placement = placement_of(Rows(seen.body.to_world[0], seen.body.to_world[1], seen.body.to_world[2]));

@@ -120,7 +120,7 @@ void Renderer::record(const Frame& frame, const Scene& scene, Shadows* shadows) 
     FrameArgs args = args_of(frame);
     if (shadows) shadows->add_to(args);
 
-    // Frames share the buffers that only the device uses: the one before must be through with them.
+    // Frames share the buffers that only the device uses: the previous frame must be done with them.
     barrier(commands, everything, VK_ACCESS_MEMORY_WRITE_BIT, everything,
             VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT);
     draw(commands, args, scene);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Frames: what each pixel sees, then the light on it. Two of them may be in flight.
+// Renders frames: the visible triangle of each pixel, then the light on it. Two frames may be in flight.
 #pragma once
 
 #include <array>
@@ -21,13 +21,13 @@ class Renderer {
     // Records a frame and submits it; waits only for the frame that has used the same buffers before. Returns the
     // frame's number. shadows: null for none.
     std::uint64_t submit(const Scene& scene, Shadows* shadows);
-    // The last or the last but one. Waits for it.
+    // Returns the picture of the last frame or the one before. Waits for it.
     std::vector<twinray::Rgb> picture(std::uint64_t frame) const;
     VkExtent2D size() const { return targets_.size(); }
 
   private:
     // [frame]
-    // What a frame has for itself, for as long as it is in flight.
+    // The resources of one frame, as long as it is in flight.
     struct Frame {
         VkCommandPool pool = VK_NULL_HANDLE;
         VkCommandBuffer commands = VK_NULL_HANDLE;

@@ -11,7 +11,7 @@ namespace {
 enum : std::size_t { ground, box, ball };
 constexpr int ball_count = 12;
 
-// As a loader of files would.
+// Uploads like a loader of files would.
 Model upload(const Device& device, const twinray::Mesh& mesh) {
     std::vector<Vertex> vertices;
     for (std::size_t i = 0; i < mesh.positions.size(); ++i) vertices.push_back({mesh.positions[i], mesh.normals[i]});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the renderer's shaders share: the scene by address, and what a pixel sees of it.
+// The common part of the renderer's shaders: the scene by address, and the surface that a pixel sees.
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_buffer_reference2 : require
 #extension GL_EXT_buffer_reference_uvec2 : require
@@ -47,7 +47,7 @@ vec3 view_direction(uvec2 pixel)
     return args.forward + args.right * (2.0 * at.x - 1.0) + args.up * (1.0 - 2.0 * at.y);
 }
 
-// What a pixel sees.
+// The surface that a pixel sees.
 struct Seen
 {
     Body body;
@@ -65,7 +65,7 @@ bool look(uvec2 pixel, out Seen seen)
     seen.a = VertexList(seen.body.vertices).items[corners.x];
     seen.b = VertexList(seen.body.vertices).items[corners.y];
     seen.c = VertexList(seen.body.vertices).items[corners.z];
-    // Where the line of sight meets the triangle's plane, moved into the triangle.
+    // The point at which the line of sight meets the triangle's plane, moved into the triangle.
     vec3 a = transformed(seen.body, vec4(seen.a.position, 1.0));
     vec3 edge1 = transformed(seen.body, vec4(seen.b.position - seen.a.position, 0.0));
     vec3 edge2 = transformed(seen.body, vec4(seen.c.position - seen.a.position, 0.0));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the renderer shows: models in device memory, and things that are copies of them.
+// The contents of the scene: models in device memory, and things that are copies of them.
 #pragma once
 
 #include <vector>
@@ -37,7 +37,7 @@ struct Scene {
     std::vector<Thing> things;
 };
 
-// What shaders see of a thing, as scene.glsl declares it.
+// The data of an object that shaders see, as scene.glsl declares it.
 struct Body {
     twinray::Transform to_world;
     glm::vec3 color;
@@ -50,7 +50,7 @@ static_assert(sizeof(Body) == 80);
 Scene make_scene(const Device& device);
 // Turns the ring: a whole turn is 1.
 void turn_ring(Scene& scene, float turns);
-// For each thing of the scene.
+// Returns one for each thing of the scene.
 std::vector<Body> bodies_of(const Scene& scene);
 
 }  // namespace renderer

@@ -47,7 +47,7 @@ Shadows::Shadows(const Device& device, const Scene& scene, VkExtent2D size, cons
 }
 
 // [end]
-// Frames of the renderer may still use what the accelerator owns. twinray was told of them.
+// Frames of the renderer may still use the accelerator's resources. twinray was told of them.
 Shadows::~Shadows() {
     try {
         context_.wait_for_gpu();

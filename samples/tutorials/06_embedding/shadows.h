@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The guest: all of twinray that the renderer has, but for the few lines where its device is made.
+// All uses of twinray in the renderer, except for the few lines where its device is made.
 #pragma once
 
 #include <memory>
@@ -20,11 +20,11 @@ class Shadows {
     Shadows(const Shadows&) = delete;
     Shadows& operator=(const Shadows&) = delete;
 
-    // Things are elsewhere.
+    // Takes over the things' new places.
     void move(const Scene& scene);
-    // Where rays and hits are.
+    // Adds the addresses of rays and hits.
     void add_to(FrameArgs& args) const;
-    // Makes and traces the rays of all pixels. done: when the command buffer will be done.
+    // Makes and traces the rays of all pixels. done: the point at which the command buffer will be done.
     void record(VkCommandBuffer commands, twinray::SyncPoint done, const FrameArgs& args);
 
     const twinray::AccelChoice& choice() const { return choice_; }

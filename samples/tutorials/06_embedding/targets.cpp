@@ -46,7 +46,7 @@ void Targets::create_render_pass() {
     subpass.colorAttachmentCount = 1;
     subpass.pColorAttachments = &color;
     subpass.pDepthStencilAttachment = &depth;
-    // The last frame has copied what it saw before this one draws; what is drawn is copied.
+    // The last frame has copied its targets before this one draws; this one's are copied after it.
     const VkPipelineStageFlags drawing = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT |
                                          VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT |
                                          VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Three vertices a triangle, read by address.
+// Three vertices per triangle, read by address.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "scene.glsl"

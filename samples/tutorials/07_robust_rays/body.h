@@ -13,7 +13,7 @@
 using namespace twinray;
 
 // [body]
-// A sphere with dents: closed, and seen from its middle no part hides another.
+// A sphere with dents: it is closed, and seen from its middle no part hides another.
 inline Mesh make_body() {
     Mesh body = make_icosphere(4);
     body.name = "body";
@@ -25,7 +25,7 @@ inline Mesh make_body() {
 // [/body]
 
 // [rays]
-// Where a ray is aimed: at a vertex of the body, from a point near its middle.
+// Rays from points near the body's middle, and the vertices that they are aimed at.
 struct AimedRays {
     std::vector<Ray> rays;
     std::vector<uint> vertices;

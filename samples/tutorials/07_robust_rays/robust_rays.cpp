@@ -25,8 +25,8 @@ std::vector<uint> leaked_vertices(AbstractAccel& accel, const AimedRays& aimed, 
 // [/count]
 
 // [crossings]
-// A ray that loses one wall may hit the next one, and then no miss tells of it. The number of crossings does: from
-// inside it is odd.
+// A ray that loses one wall may hit the next one, so that no miss shows it. The number of crossings does: from inside
+// it is odd.
 LeakCounts count_crossings(Context& context, const Mesh& body, Level level) {
     SwTlas accel(context, {.level = level});
     const LeakTest test(accel, body, level, 1);
@@ -37,7 +37,7 @@ LeakCounts count_crossings(Context& context, const Mesh& body, Level level) {
 // [/crossings]
 
 // [picture]
-// The body from outside, with its edges, and a red dot where a ray got out.
+// Shows the body from outside, with its edges, and a red dot where a ray got out.
 class Picture {
   public:
     static constexpr uint size = 480;

@@ -40,7 +40,7 @@ LeakCounts far_away(Context& context, Mesh body) {
 // [/exercise2]
 
 // [exercise3]
-// What the driver's own structures do with the same rays.
+// Tests the driver's own structures with the same rays.
 LeakCounts of_driver(Context& context, const Mesh& body) {
     HwTlas accel(context);
     LeakCounts counts;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Ways to trace the same rays, and how far the t of each is from the truth.
+// Ways to trace the same rays, and the error of the t of each.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,7 @@ struct Contestant {
     TracedBy by;
 };
 
-// Both accelerators with the scene in them, and what can be measured on this device.
+// Both accelerators with the scene in them, and the levels that can be measured on this device.
 struct Contest {
     std::vector<std::unique_ptr<AbstractAccel>> accels;
     std::vector<Contestant> contestants;
@@ -39,7 +39,7 @@ struct Contest {
     }
 };
 
-// Of `levels` those that an accelerator has on this device: from refined on it takes float64.
+// Those of `levels` that an accelerator has on this device: from refined on it takes float64.
 template <class Accel>
 std::vector<Level> levels_of(const Context& context, std::vector<Level> levels) {
     std::erase_if(levels, [&](Level level) {
@@ -51,7 +51,7 @@ std::vector<Level> levels_of(const Context& context, std::vector<Level> levels) 
 inline Contest make_contest(Context& context, const Scene& scene) {
     Contest contest;
     const auto levels = levels_of<SwTlas>(context, {all_levels.begin(), all_levels.end()});
-    // An accelerator is made for the highest level that it will be asked for. Nothing compiles behind what is timed.
+    // An accelerator is made for the highest level that it will trace at. Nothing compiles while times are taken.
     const AccelOptions options{.level = levels.back(), .compiles_in_background = false};
     contest.enter(std::make_unique<SwTlas>(context, options), scene, levels);
     if (!missing_for_hardware(context.properties()).empty()) return contest;
@@ -63,7 +63,7 @@ inline Contest make_contest(Context& context, const Scene& scene) {
 }
 // [/contestants]
 
-// The float64 answer to each ray, from the CPU.
+// Returns the float64 answer to each ray, from the CPU.
 inline std::vector<ReferenceHit> truth_of(const Reference& reference, const std::vector<Ray>& rays) {
     std::vector<ReferenceHit> truth;
     for (const Ray& ray : rays) truth.push_back(reference.closest_hit(ray));
@@ -71,13 +71,13 @@ inline std::vector<ReferenceHit> truth_of(const Reference& reference, const std:
 }
 
 // [ulp]
-// A unit in the last place: how far it is from the float32 at `value` to the next one.
+// A unit in the last place: the distance from the float32 at `value` to the next one.
 inline double ulp_of(double value) {
     const float rounded = std::abs(static_cast<float>(value));
     return double{std::nextafter(rounded, INFINITY)} - double{rounded};
 }
 
-// Errors of t in such units, ascending, of all rays that met the triangle that they should.
+// Errors of t in such units, ascending, for all rays that hit the right triangle.
 inline std::vector<double> errors_of_t(const std::vector<ReferenceHit>& truth, const std::vector<Hit>& hits) {
     std::vector<double> errors;
     for (std::size_t i = 0; i < truth.size(); ++i) {
@@ -89,7 +89,7 @@ inline std::vector<double> errors_of_t(const std::vector<ReferenceHit>& truth, c
 }
 // [/ulp]
 
-// Of ascending values: the one below which a fraction of them lies.
+// Takes ascending values: returns the one below which a fraction of them lies.
 inline double quantile(const std::vector<double>& ascending, double fraction) {
     return ascending.at(std::min(ascending.size() - 1, std::size_t(fraction * double(ascending.size()))));
 }

@@ -33,11 +33,11 @@ Point point_of(Estimator& estimator, const Method& method, std::uint64_t rays) {
     return {rays, std::sqrt(squares / seeds), ms};
 }
 
-// error = factor * rays^slope is a straight line between logarithms: least squares find it.
+// error = factor * rays^slope is a straight line between logarithms: it is found by least squares.
 struct Fit {
     double slope = 0, factor = 0;
 
-    // How many rays bring the error down to this.
+    // Returns how many rays reduce the error to this.
     std::uint64_t rays_for(double error) const { return std::uint64_t(std::pow(error / factor, 1 / slope)); }
 };
 
@@ -58,7 +58,7 @@ Fit fit_of(const std::vector<Point>& points) {
 // [curve]
 constexpr double wanted_error = 0.002;
 
-// A method's errors, the law that they follow, and what it foretells, tried.
+// A method's errors, the law that they follow, and a test of its prediction.
 struct Curve {
     std::vector<Point> points;
     Fit fit;
@@ -82,7 +82,7 @@ void print(const Method& method, const Curve& curve) {
               << 100 * curve.tried.error << " %" << std::setw(9) << curve.tried.ms << " ms\n";
 }
 
-// What holds on every device.
+// Checks what holds on every device.
 void check(const Method& method, const Curve& curve) {
     const bool is_random = method.sequence == Sequence::random;
     const double low = is_random ? -0.6 : -1.2, high = is_random ? -0.4 : -0.5;

@@ -14,7 +14,7 @@ using namespace twinray;
 
 namespace {
 
-// What was found out about a contestant.
+// The results of a contestant.
 struct Result {
     std::string name;
     double ns = 0, ns_low = 0, ns_high = 0;          // of a ray: the median, and its 95 % interval
@@ -38,7 +38,7 @@ struct Batch {
     }
 };
 
-// Nanoseconds a ray, by the clock of the GPU: of the trace alone, without the way from and to the host.
+// Returns nanoseconds per ray by the clock of the GPU: only of the trace, without transfers from and to the host.
 double time_of_ray(const Contestant& contestant, const Batch& batch) {
     AbstractAccel& accel = *contestant.accel;
     Commands commands(accel.context(), "trace");
@@ -54,7 +54,7 @@ double time_of_ray(const Contestant& contestant, const Batch& batch) {
 // [rounds]
 constexpr int rounds = 15;
 
-// In each round every contestant has one turn, so that whatever else the machine does meets all alike.
+// In each round every contestant has one turn, so that other work of the machine affects all alike.
 std::vector<std::vector<double>> times_of(const std::vector<Contestant>& contestants, const Batch& batch) {
     std::vector<std::vector<double>> times(contestants.size());
     for (const Contestant& contestant : contestants) time_of_ray(contestant, batch);  // compiles
@@ -86,7 +86,7 @@ Result measure(const Contestant& contestant, const Reference& reference, const s
 // [/measure]
 
 // [front]
-// Of those without a fault, the ones that no other beats in both time and error; the fastest first.
+// Returns those without a fault that no other beats in both time and error; the fastest first.
 std::vector<Result> front_of(std::vector<Result> results) {
     std::erase_if(results, [](const Result& result) { return result.faults > 0; });
     std::sort(results.begin(), results.end(), [](const Result& a, const Result& b) { return a.ns < b.ns; });
@@ -113,7 +113,7 @@ void print(const Result& r) {
               << r.faults << '\n';
 }
 
-// What holds on every device.
+// Checks what holds on every device.
 void check(const std::vector<Result>& results, const std::vector<Result>& front) {
     for (const Result& result : results) {
         const bool is_ours = result.name.starts_with("twinray"), is_fast = result.name.ends_with("fast");

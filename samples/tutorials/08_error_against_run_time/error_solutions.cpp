@@ -12,7 +12,7 @@ using namespace twinray;
 namespace {
 
 // [exercise1]
-// How steeply a ray meets a triangle: 1 is straight on, 0 along it.
+// Returns how steeply a ray meets a triangle: 1 is straight on, 0 along it.
 float steepness(const Mesh& mesh, const Ray& ray, uint triangle) {
     const uvec3 corners = mesh.triangles[triangle];
     const vec3 a = mesh.positions[corners.x];
@@ -20,7 +20,7 @@ float steepness(const Mesh& mesh, const Ray& ray, uint triangle) {
     return std::abs(dot(normalize(normal), normalize(ray.direction)));
 }
 
-// The 99th percentile of the error of t over the rays that meet their triangle so steeply.
+// Returns the 99th percentile of the error of t over the rays that meet their triangle so steeply.
 double error_between(float low, float high, AbstractAccel& accel, const Scene& scene) {
     const std::vector<Ray> all = random_rays(bounds_of(scene), 1 << 17, 1);
     const std::vector<ReferenceHit> truth_of_all = truth_of(Reference(scene), all);
@@ -50,7 +50,7 @@ void exercise_1(Context& context) {
 }
 
 // [exercise3]
-// As many rays as it takes for a 95 % interval of +- `error`.
+// Traces as many rays as a 95 % interval of +- `error` needs.
 ViewFactorRow row_within(double error, Sequence sequence, Context& context) {
     const Scene scene = facing_squares();
     SwTlas accel(context);

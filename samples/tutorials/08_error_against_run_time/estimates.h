@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Estimates of a view factor that is known, by three methods.
+// Three methods that estimate a known view factor.
 #pragma once
 
 #include <chrono>
@@ -36,14 +36,14 @@ constexpr Method methods[] = {{"random hits", PairEstimator::hits, Sequence::ran
                               {"Sobol hits", PairEstimator::hits, Sequence::sobol},
                               {"Sobol areas", PairEstimator::area, Sequence::sobol}};
 
-// An answer, and how long you wait for it.
+// An answer, and the time that it takes.
 struct TimedFactor {
     double value = 0, ms = 0;
 };
 
 class Estimator {
   public:
-    // Compiles all at first use, not behind what is timed.
+    // Compiles everything at first use, not while times are taken.
     explicit Estimator(Context& context)
         : scene_(facing_squares()), accel_(context, {.compiles_in_background = false}), faces_(context, scene_) {
         push_scene(accel_, scene_);

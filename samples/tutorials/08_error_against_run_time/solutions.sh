@@ -10,7 +10,7 @@ cd "$2/broken_driver"
 
 # [exercise2]
 twinray report --only W02 -o right --quiet
-# As if SwTlas had found triangles that are not there, each time that it was right.
+# Pretend that SwTlas found triangles that are not there, each time that it was right.
 sed '/"backend":"sw"/ s/"AGREE":/"SW_FALSE":/' right/report.jsonl > broken.jsonl
 if twinray report --compare right broken.jsonl; then
     echo "nobody would have noticed" >&2

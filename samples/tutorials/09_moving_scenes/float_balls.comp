@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // [float]
-// Where the balls float at a time: half under water.
+// Moves the balls to their places at a time: half under water.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

@@ -8,7 +8,7 @@
 #include "scene.h"
 
 // [expected]
-// From above, onto the middle of each ball: there the hit must be the top of the ball.
+// Traces from above onto the middle of each ball: there the hit must be the top of the ball.
 double largest_error(AbstractAccel& accel, float time) {
     std::vector<Ray> rays;
     for (uint ball = 0; ball < ball_count; ++ball) {
@@ -27,7 +27,7 @@ double largest_error(AbstractAccel& accel, float time) {
 // [/expected]
 
 // [rebuilt]
-// Hits after a refit against hits of a new accelerator with the same water.
+// Compares hits after a refit with hits of a new accelerator with the same water.
 std::size_t differing_hits(AbstractAccel& refitted, const std::vector<vec3>& vertices) {
     Mesh water = make_water();
     water.positions = vertices;

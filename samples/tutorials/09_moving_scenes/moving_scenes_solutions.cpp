@@ -6,7 +6,7 @@
 #include "scene.h"
 
 // [exercise1]
-// What the device did for some commands: the tutorial's own kernels, and all passes of the sync.
+// The device's work for some commands: the tutorial's own kernels, and all passes of the sync.
 struct Work {
     double kernels_ms = 0, sync_ms = 0;
     std::size_t sync_passes = 0;
@@ -76,7 +76,7 @@ std::vector<vec3> stirred_leaves(const Mesh& leaves, float time) {
 using StirredMesh = std::vector<vec3> (*)(const Mesh&, float);
 
 // [cost]
-// The cost of the tree after each of 13 frames.
+// Returns the cost of the tree after each of 13 frames.
 std::vector<double> costs(Context& context, const Mesh& mesh, StirredMesh stirred_mesh, double rebuild_ratio) {
     SwTlas accel(context);
     accel.set_rebuild_ratio(rebuild_ratio);
@@ -92,7 +92,7 @@ std::vector<double> costs(Context& context, const Mesh& mesh, StirredMesh stirre
 }
 // [/cost]
 
-// Of one mesh: refitted only, by default, and of a tree that is built over what was reached: in the last frame.
+// The costs of one mesh in the last frame: refitted only, by default, and of a tree that is built there.
 struct Costs {
     std::vector<double> refitted, by_default;
     double built = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A pixel an invocation: water or ball, the sun with its shadow.
+// Each invocation draws one pixel: water or ball, the sun with its shadow.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/query.glsl"

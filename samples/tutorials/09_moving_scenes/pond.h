@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// A pond with waves on which balls float: what its kernels and C++ share.
+// A pond with waves on which balls float: the common part of its kernels and C++.
 #ifndef TUTORIALS_POND_H
 #define TUTORIALS_POND_H
 #include "twinray/glsl/instance.h"
 
 // [height]
-// How high the water stands at a place, at a time.
+// Returns the height of the water at a place and a time.
 FUNC float height_of(vec2 place, float time) {
     return 0.12f * sin(3.0f * place.x + 2.0f * time) + 0.08f * sin(4.0f * place.y - 1.0f * place.x + 3.0f * time);
 }

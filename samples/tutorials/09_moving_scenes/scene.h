@@ -27,7 +27,7 @@ class Pond {
   public:
     explicit Pond(AbstractAccel& accel);
 
-    // Records: kernels move everything, the accelerator follows.
+    // Records a frame: kernels move everything, and the accelerator is refitted.
     void move(Commands& commands, float time);
     std::vector<Rgb> picture(uint width, uint height);
     std::vector<vec3> vertices() const;  // as they are on the device

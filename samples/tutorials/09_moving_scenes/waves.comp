@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // [waves]
-// The water's vertices at a time.
+// Computes the water's vertices at a time.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

@@ -7,7 +7,7 @@
 
 #include "tree.h"
 
-// What lies in [0, 1]^2 on the left, a tree on the right.
+// Draws the objects in [0, 1]^2 on the left, a tree on the right.
 class Drawing {
   public:
     void triangles(const Mesh& mesh);

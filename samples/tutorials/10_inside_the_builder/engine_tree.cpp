@@ -21,7 +21,7 @@ void require(bool holds, const std::string& what) {
 }
 
 // [read]
-// T: BvhNode or CompressedRecord.
+// T is BvhNode or CompressedRecord.
 template <class T>
 std::pair<std::vector<T>, std::vector<uint>> read(Context& context, const Mesh& mesh, Layout layout, uint count) {
     SwTlas accel(context, {.layout = layout});
@@ -45,7 +45,7 @@ std::pair<std::vector<T>, std::vector<uint>> read(Context& context, const Mesh& 
 bool same(const Bounds& box, vec3 lo, vec3 hi) { return box.lo == lo && box.hi == hi; }
 
 // [wide]
-// All triangles below a record, sorted.
+// Returns all triangles below a record, sorted.
 std::vector<uint> below(std::span<const CompressedRecord> records, uint record) {
     const uint word = records[record].a.w;
     if (word & LEAF_BIT) return {word & ~LEAF_BIT};
@@ -85,7 +85,7 @@ void check_binary(Context& context, const Mesh& mesh, const Sorted& sorted, std:
 // [/binary]
 
 std::size_t check_wide(Context& context, const Mesh& mesh, const Sorted& sorted, std::span<const Node> nodes) {
-    // The most that so many triangles can need; what they do not is left empty.
+    // The most that so many triangles can need; unused ones are left empty.
     const uint count = static_cast<uint>((5 * mesh.triangles.size() - 1) / 3);
     const std::vector<CompressedRecord> records =
         read<CompressedRecord>(context, mesh, Layout::compressed4, count).first;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the engine built, read from its memory and compared with trees of ours.
+// Reads the engine's tree from its memory and compares it with the tutorial's trees.
 #pragma once
 
 #include <twinray/tlas.h>
@@ -8,5 +8,5 @@
 
 // Throws Error naming the first node that differs.
 void check_binary(Context& context, const Mesh& mesh, const Sorted& sorted, std::span<const Node> nodes, int root);
-// How many records, nodes and triangles, were compared.
+// Returns how many records, nodes and triangles, were compared.
 std::size_t check_wide(Context& context, const Mesh& mesh, const Sorted& sorted, std::span<const Node> nodes);

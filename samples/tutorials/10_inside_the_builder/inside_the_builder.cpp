@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How a tree is built, a picture for each step, and the engine's tree beside it: inside_the_builder FOLDER
+// The steps of a tree's build, with a picture for each, and the engine's tree beside it: inside_the_builder FOLDER
 #include <iostream>
 
 #include "drawing.h"

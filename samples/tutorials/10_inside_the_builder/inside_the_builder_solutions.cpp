@@ -7,7 +7,7 @@
 #include "scene.h"
 
 // [exercise1]
-// The areas of all boxes below the root, leaves too, over the root's: how many boxes a long random ray enters.
+// The areas of all boxes below the root, including leaves, over the root's: the boxes that a long random ray enters.
 double cost(std::span<const Node> nodes, int root, std::span<const Bounds> boxes, const Sorted& sorted) {
     const auto area = [](const Bounds& box) {
         const dvec3 size(box.size());
@@ -25,7 +25,7 @@ double cost(std::span<const Node> nodes, int root, std::span<const Bounds> boxes
     }
     return sum / area(nodes[std::size_t(root)].box);
 }
-// What the engine measures of its own tree. It does so once vertices have been given anew.
+// The cost that the engine measures of its own tree. It does so once vertices have been given anew.
 double cost_of_engine(Context& context, const Mesh& mesh, Layout layout) {
     SwTlas accel(context, {.layout = layout});
     const AccelHandle handle = accel.push(mesh);
@@ -37,7 +37,7 @@ double cost_of_engine(Context& context, const Mesh& mesh, Layout layout) {
 // [/exercise1]
 
 // [exercise2]
-// Triangles with one centre: all codes are equal.
+// Uses triangles with one centre: all codes are equal.
 int depth_of_equal_codes(uint count) {
     const Bounds same{vec3(0), vec3(1, 1, 0)};
     const std::vector<Bounds> boxes(count, same);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Copies what the engine has built out of its memory: the nodes of a scene of one mesh and one instance.
+// Copies the engine's tree out of its memory: the nodes of a scene of one mesh and one instance.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

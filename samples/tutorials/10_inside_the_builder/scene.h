@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the tutorial builds a tree of.
+// The scene for which the tutorial builds a tree.
 #pragma once
 
 #include <random>

@@ -32,7 +32,7 @@ Sorted morton_order(std::span<const Bounds> boxes) {
 namespace {
 
 // [split]
-// The highest bit in which two neighbours differ; where their codes are equal, their positions tell them apart.
+// The highest bit in which two neighbours differ; if their codes are equal, that of their positions.
 int split_between(const Sorted& sorted, int i) {
     const auto code = [&](int at) { return std::uint64_t{sorted.codes[std::size_t(at)]} << 32 | std::uint64_t(at); };
     return 63 - std::countl_zero(code(i) ^ code(i + 1));
@@ -48,7 +48,7 @@ int cut(const Sorted& sorted, int first, int last) {
 // [/split]
 
 // [radix]
-// The subtree of a range: its reference, as in Node::children.
+// Builds the subtree of a range and returns its reference, as in Node::children.
 int build(const Sorted& sorted, std::span<const Bounds> boxes, std::vector<Node>& nodes, int first, int last) {
     if (first == last) return ~first;
     const int split = cut(sorted, first, last);
@@ -79,7 +79,7 @@ int radix_tree(const Sorted& sorted, std::span<const Bounds> boxes, std::vector<
 
 // [collapse]
 // A wide node takes the children of a binary one, then opens the child with the largest box until it has `width`: a
-// large box is likely to be entered anyway, so the step of its own is saved.
+// large box is likely to be entered anyway, so that its own step is saved.
 std::vector<Node> collapse(std::span<const Node> binary, int root, std::size_t width) {
     std::vector<Node> wide = {binary[std::size_t(root)]};
     for (std::size_t at = 0; at < wide.size(); ++at) {

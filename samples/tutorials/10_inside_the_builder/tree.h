@@ -32,7 +32,7 @@ struct Sorted {
 
 std::vector<Bounds> boxes_of(const Mesh& mesh);
 Sorted morton_order(std::span<const Bounds> boxes);
-// Node i is split behind position i, as the engine's are; the root is returned.
+// Node i is split behind position i, like the engine's; returns the root.
 int radix_tree(const Sorted& sorted, std::span<const Bounds> boxes, std::vector<Node>& nodes);
 // Node 0 is the root.
 std::vector<Node> collapse(std::span<const Node> binary, int root, std::size_t width);
