@@ -2,9 +2,13 @@
 // Parses JSON of untrusted files.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <istream>
+#include <iterator>
 #include <limits>
-#include <utility>
+#include <string>
+#include <string_view>
 
 #include "engine/core/error.h"
 
@@ -13,13 +17,34 @@ namespace twinray {
 // nlohmann's writer, copies and comparisons, and tinygltf, recurse; usual files have fewer than 15 levels.
 inline constexpr int most_json_levels = 100;
 
-// Parses like Json::parse, whose exceptions go through. Throws Error if it is nested deeper.
-template <class Json, class Source>
-Json parse_json(Source&& source) {
-    return Json::parse(std::forward<Source>(source), [](int depth, auto, auto&) {
-        if (depth > most_json_levels) fail("the JSON is nested deeper than ", most_json_levels, " levels");
-        return true;
-    });
+// How deep brackets are nested in a text; if it is no JSON, parsing says so.
+inline int json_levels(std::string_view source) {
+    int level = 0, deepest = 0;
+    bool is_string = false;
+    for (std::size_t i = 0; i < source.size(); ++i) {
+        const char c = source[i];
+        if (c == '"') is_string = !is_string;
+        if (is_string) {
+            if (c == '\\') ++i;  // what follows does not end the string
+            continue;
+        }
+        if (c == '[' || c == '{') deepest = std::max(deepest, ++level);
+        if (c == ']' || c == '}') --level;
+    }
+    return deepest;
+}
+
+// Parses as Json::parse does, whose exceptions go through. Throws Error where it is nested deeper. A callback of
+// Json::parse could count levels too, but looks at all entries of a list again for each object in it.
+template <class Json>
+Json parse_json(std::string_view source) {
+    if (json_levels(source) > most_json_levels)
+        fail("the JSON is nested deeper than ", most_json_levels, " levels");
+    return Json::parse(source);
+}
+template <class Json>
+Json parse_json(std::istream& in) {
+    return parse_json<Json>(std::string(std::istreambuf_iterator<char>(in), {}));
 }
 
 // Json::get() wraps negative numbers and casts fractions, also beyond the range. Throws Error naming the value.
