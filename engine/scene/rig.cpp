@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "engine/scene/flat.h"
+
 namespace twinray {
 namespace {
 
@@ -104,8 +106,10 @@ Pose pose_at(const Rig& rig, std::size_t animation, double seconds) {
 }
 
 glm::dmat4 matrix_of(const Pose& pose, const Rig::Attachment& attachment) {
-    return attachment.node < 0 ? attachment.local
-                               : pose->nodes[static_cast<std::size_t>(attachment.node)] * attachment.local;
+    const glm::dmat4 matrix = attachment.node < 0
+                                  ? attachment.local
+                                  : pose->nodes[static_cast<std::size_t>(attachment.node)] * attachment.local;
+    return thickened(matrix, attachment.thickness);
 }
 
 glm::dmat4 frame_of(const Pose& pose, const Rig::Attachment& attachment) {

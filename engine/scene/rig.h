@@ -99,13 +99,14 @@ struct Rig {
     struct Attachment {
         std::int32_t node = -1;  // -1: the world itself
         glm::dmat4 local = glm::dmat4(1);
+        double thickness = 0x1p-10;  // of an instance where it loses a direction: see thickened()
     };
     std::vector<Node> nodes;
     std::vector<Animation> animations;
     std::vector<Skin> skins;
     std::vector<DeformedMesh> meshes;
     std::vector<Attachment> instances, cameras, lights;  // by index in Scene
-    // An instance that is flat at rest, without an inverse, until an animation scales its node: see show_hidden().
+    // An instance without area at rest, until an animation scales its node: see show_hidden().
     struct Hidden {
         Instance instance;
         Attachment attachment;
@@ -123,6 +124,7 @@ struct Pose::Nodes {
 // Nodes that the animation does not drive are at rest.
 Pose pose_at(const Rig& rig, const Animation& animation, double seconds);
 
+// Of an instance.
 glm::dmat4 matrix_of(const Pose& pose, const Rig::Attachment& attachment);
 // The frame of a camera or light: it keeps the axes that a node scales to 0, since glTF excludes scales from both.
 glm::dmat4 frame_of(const Pose& pose, const Rig::Attachment& attachment);

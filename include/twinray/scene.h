@@ -185,6 +185,11 @@ Mesh joined(const Scene& scene, std::string name);
 // Gives the scene's meshes the materials of one of its variants. Throws Error naming the variants that it has.
 void apply_variant(Scene& scene, const std::string& name);
 
+// For a transform that loses one direction, as a scale of 1 1 0 does, and so has no inverse: flattens the mesh along it,
+// and returns the transform that puts the flat mesh in the same place and has an inverse. For any other one it returns
+// nothing and leaves the mesh as it is.
+std::optional<Transform> flatten(Mesh& mesh, const Transform& transform);
+
 // Pushes every mesh with all its instances, so that Hit::instance_index is the index into scene.instances and
 // Hit::custom_index is 1 + Instance::material, or 0 without one. Returns one handle per mesh that has instances. Throws
 // Error unless scene.instances is grouped by mesh, as load_scene() leaves it.
@@ -327,8 +332,8 @@ void pose_scene(Scene& scene, const Pose& pose);
 // Returns transforms by index in Scene::instances, as pose_scene() sets them.
 std::vector<Transform> instance_transforms(const Rig& rig, const Pose& pose);
 
-// Makes instances pushable that are flat at rest until an animation scales their node, and so have no inverse. Call it
-// before the scene is pushed into an accelerator and played: until the first pose_scene() they stand at the identity.
+// Gives instances that have no area at rest, until an animation scales their node, a place in the scene, before it is
+// pushed into an accelerator and played: until the first pose_scene() they stand at the identity.
 void show_hidden(Scene& scene);
 
 // Returns the meshes whose vertices follow a pose, by skin or morph targets: indices into Scene::meshes, which holds

@@ -37,9 +37,9 @@ TEST(GltfNodes, MirroringIsKept) {
     EXPECT_EQ(determinant(gltf.load().instances[0].transform), -1);
 }
 
-TEST(GltfNodes, AFlattenedInstanceIsSkippedByName) {
+TEST(GltfNodes, AnInstanceWithoutAreaIsSkippedByName) {
     GltfBuilder gltf = one_triangle();
-    gltf.add_node({{"name", "flat"}, {"mesh", 0}, {"scale", {1, 0, 1}}});
+    gltf.add_node({{"name", "flat"}, {"mesh", 0}, {"scale", {1, 0, 0}}});
     const Scene scene = gltf.load();
     EXPECT_EQ(scene.instances.size(), 1u);
     EXPECT_TRUE(has_warning(scene, "node 1 'flat': skipped 1 of 1 placements"));

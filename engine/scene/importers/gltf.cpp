@@ -2,9 +2,11 @@
 // Turns a glTF file into a Scene: here its meshes by the shape that skins and morph targets give them; each other step
 // has a file of its own.
 #include <algorithm>
+#include <array>
 #include <map>
 #include <set>
 
+#include "engine/scene/flat.h"
 #include "engine/scene/importers/gltf_file.h"
 #include "engine/scene/importers/gltf_material.h"
 #include "engine/scene/importers/gltf_mesh.h"
@@ -26,6 +28,7 @@ struct Shape {
     int skin = -1;
     std::vector<double> weights = {};  // of morph targets, at rest
     std::int32_t driver = -1;          // the node whose weights an animation drives; -1: none does
+    std::array<double, 3> lost = {};   // the direction along which it is flattened; 0: it is not
 
     auto operator<=>(const Shape&) const = default;
 };
@@ -43,14 +46,17 @@ class ShapeReader {
     ShapeReader(GltfFile& file, const std::vector<GltfInstance>& instances, Scene& scene, Rig& rig)
         : file_(file), scene_(scene), rig_(rig), rest_(rest_pose(rig)), driven_(nodes_with_driven_weights(rig)) {
         for (const std::string& name : read_variant_names(file)) scene_.variants.push_back({name, {}});
-        for (const GltfInstance& found : instances)
+        for (const GltfInstance& found : instances) {
             if (found.skin >= 0) skinned_.insert(found.instance.mesh);
+            if (found.lost) flattened_.insert(found.instance.mesh);
+        }
     }
 
     // The scene's index of the mesh, or EMPTY.
     uint mesh_of(const GltfInstance& found) {
         Shape shape{found.instance.mesh, found.skin};
         shape.weights = rig_.nodes[found.node].weights;
+        if (found.lost) shape.lost = {found.lost->x, found.lost->y, found.lost->z};
         if (driven_.contains(static_cast<uint>(found.node))) shape.driver = static_cast<std::int32_t>(found.node);
         const auto [known, is_new] = shapes_.try_emplace(shape, EMPTY);
         if (is_new) known->second = read(shape, static_cast<uint>(found.node));
@@ -66,11 +72,25 @@ class ShapeReader {
         const uint mesh = static_cast<uint>(scene_.meshes.size());
         for (std::size_t i = 0; i < source.variants.size(); ++i)
             scene_.variants[i].parts.push_back({mesh, source.variants[i]});
-        const bool is_rigid = shape.skin < 0 && source.motion.targets.empty();
-        if (is_rigid)
-            scene_.meshes.push_back(skinned_.contains(shape.mesh) ? source.mesh : std::move(source.mesh));
+        const bool is_shared = skinned_.contains(shape.mesh) || flattened_.contains(shape.mesh);
+        if (shape.skin >= 0 || !source.motion.targets.empty())
+            add_deformed(shape.lost == Shape().lost ? source : flattened(source, shape.lost), shape, mesh, node);
         else
-            add_deformed(source, shape, mesh, node);
+            scene_.meshes.push_back(shape.lost != Shape().lost ? flattened(source, shape.lost).mesh
+                                    : is_shared                ? source.mesh
+                                                               : std::move(source.mesh));
+        return mesh;
+    }
+
+    static GltfMesh flattened(GltfMesh mesh, const std::array<double, 3>& direction) {
+        const dvec3 lost(direction[0], direction[1], direction[2]);
+        flatten_positions(mesh.mesh.positions, lost);
+        flatten_normals(mesh.mesh.normals, lost);
+        flatten_tangents(mesh.mesh.tangents, lost);
+        for (MorphTarget& target : mesh.motion.targets) {
+            flatten_positions(target.positions, lost);
+            target.normals.clear(), target.tangents.clear();
+        }
         return mesh;
     }
 
@@ -94,7 +114,7 @@ class ShapeReader {
     Scene& scene_;
     Rig& rig_;
     Pose rest_;
-    std::set<uint> driven_, skinned_;  // nodes; meshes of the file
+    std::set<uint> driven_, skinned_, flattened_;  // nodes; meshes of the file
     std::map<uint, GltfMesh> sources_;
     std::map<Shape, uint> shapes_;
 };

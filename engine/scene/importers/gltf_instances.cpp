@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
 
+#include "engine/scene/flat.h"
 #include "engine/scene/importers/gltf_accessor.h"
 #include "engine/scene/importers/gltf_nodes.h"
 
@@ -56,21 +57,30 @@ class Placements {
     std::vector<vec4> rotations_;
 };
 
-// Returns for each node whether an animation scales it or one above it.
-std::vector<bool> scaled_nodes(const Rig& rig) {
-    std::vector<bool> scaled(rig.nodes.size());
+// What animations do to a node by themselves or by one above it.
+struct Driven {
+    bool is_scaled = false, is_turned = false;
+};
+
+// By node.
+std::vector<Driven> driven_nodes(const Rig& rig) {
+    std::vector<Driven> driven(rig.nodes.size());
     for (const Animation& animation : rig.animations)
-        for (const Animation::Channel& channel : animation.channels)
-            if (channel.path == Animation::Channel::Path::scale) scaled[channel.node] = true;
-    for (std::size_t i = 0; i < scaled.size(); ++i)
-        if (const std::int32_t parent = rig.nodes[i].parent; parent >= 0 && scaled[std::size_t(parent)])
-            scaled[i] = true;
-    return scaled;
+        for (const Animation::Channel& channel : animation.channels) {
+            driven[channel.node].is_scaled |= channel.path == Animation::Channel::Path::scale;
+            driven[channel.node].is_turned |= channel.path == Animation::Channel::Path::rotation;
+        }
+    for (std::size_t i = 0; i < driven.size(); ++i)
+        if (const std::int32_t parent = rig.nodes[i].parent; parent >= 0) {
+            driven[i].is_scaled |= driven[std::size_t(parent)].is_scaled;
+            driven[i].is_turned |= driven[std::size_t(parent)].is_turned;
+        }
+    return driven;
 }
 
-bool is_flat(const Transform& transform) { return !fault_of(transform).empty(); }
+bool has_no_inverse(const Transform& transform) { return !fault_of(transform).empty(); }
 
-void add_instances(GltfFile& file, const std::vector<GltfNode>& nodes, std::size_t index, bool is_scaled,
+void add_instances(GltfFile& file, const std::vector<GltfNode>& nodes, std::size_t index, Driven driven,
                    std::vector<GltfInstance>& instances) {
     const GltfNode& node = nodes[index];
     const tinygltf::Node& source = file.model.nodes[node.index];
@@ -87,11 +97,16 @@ void add_instances(GltfFile& file, const std::vector<GltfNode>& nodes, std::size
         found.attachment = {is_skinned ? -1 : static_cast<std::int32_t>(index), placements.matrix(i)};
         found.instance.name = source.name.empty() ? object : source.name;
         found.instance.mesh = static_cast<uint>(source.mesh);
-        const Transform local = rounded_transform(file, found.attachment.local, object);
-        found.instance.transform =
-            is_skinned ? local : rounded_transform(file, node.world * found.attachment.local, object);
-        if (is_flat(found.instance.transform)) {
-            if (!is_scaled || is_flat(local)) {
+        const glm::dmat4 placed = is_skinned ? found.attachment.local : node.world * found.attachment.local;
+        if (const std::optional<FlatPlacement> flat = flat_placement_of(placed);
+            flat && !driven.is_scaled && !driven.is_turned) {
+            found.lost = flat->lost;
+            found.attachment.thickness = 1;
+        }
+        found.instance.transform = rounded_transform(file, thickened(placed, found.attachment.thickness), object);
+        if (has_no_inverse(found.instance.transform)) {
+            const Transform local = rounded_transform(file, thickened(found.attachment.local, 1), object);
+            if (!driven.is_scaled || has_no_inverse(local)) {
                 ++singular;
                 continue;
             }
@@ -102,17 +117,17 @@ void add_instances(GltfFile& file, const std::vector<GltfNode>& nodes, std::size
     }
     if (singular)
         file.warn(text(node.name, ": skipped ", singular, " of ", placements.count(),
-                       " placements, whose transform flattens the mesh"));
+                       " placements, whose transform leaves the mesh no area"));
 }
 
 }  // namespace
 
 std::vector<GltfInstance> read_gltf_instances(GltfFile& file, const std::vector<GltfNode>& nodes, const Rig& rig) {
-    const std::vector<bool> scaled = scaled_nodes(rig);
+    const std::vector<Driven> driven = driven_nodes(rig);
     std::vector<GltfInstance> instances;
     for (std::size_t i = 0; i < nodes.size(); ++i)
         if (file.model.nodes[nodes[i].index].mesh != -1 && nodes[i].is_visible)
-            add_instances(file, nodes, i, scaled[i], instances);
+            add_instances(file, nodes, i, driven[i], instances);
     return instances;
 }
 

@@ -47,9 +47,12 @@ struct GltfInstance {
     Rig::Attachment attachment;
     bool is_hidden = false;  // as Rig::Hidden; its transform is then the identity
 };
-// Returns one for each placement of a mesh by a visible node, EXT_mesh_gpu_instancing included. Those whose transform
-// has a fault_of() are hidden if an animation of the rig scales their node or one above, else skipped with a warning.
-// Nodes do not move skinned meshes: these are in world space already.
+    // The mesh is flattened along this; none where its placement has an inverse, and where an animation may give it one
+    // or turns what is flat.
+    std::optional<dvec3> lost;
+// One for each placement of a mesh by a visible node, EXT_mesh_gpu_instancing included. Those that leave no area are
+// hidden where an animation of the rig scales their node or one above, else skipped with a warning.
+// Nodes do not move what a skin carries: it is in world space already.
 std::vector<GltfInstance> read_gltf_instances(GltfFile& file, const std::vector<GltfNode>& nodes, const Rig& rig);
 
 // Reads cameras of all nodes and KHR_lights_punctual of visible ones, and the nodes that carry them.

@@ -8,6 +8,7 @@
 
 #include <twinray/scene.h>
 
+#include "engine/scene/flat.h"
 #include "engine/scene/local_origin.h"
 #include "engine/scene/rig.h"
 
@@ -40,7 +41,9 @@ Bounds64 world_bounds(const Scene& scene, const Rig& rig, const Pose& pose) {
 dvec3 point_at_origin(const dmat4& to_scene, double reach) {
     const dvec3 position(to_scene[3]);
     if (!is_far(std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)}), reach)) return dvec3(0);
-    const dvec3 point(glm::inverse(to_scene)[3]);
+    dvec3 point(glm::inverse(thickened(to_scene, 1))[3]);
+    if (const std::optional<FlatPlacement> flat = flat_placement_of(to_scene))
+        point -= dot(point, flat->lost) * flat->lost;  // a flat mesh stays in its plane
     return std::isfinite(dot(point, point)) ? point : dvec3(0);
 }
 
