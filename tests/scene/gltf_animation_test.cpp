@@ -35,6 +35,28 @@ void expect_near(vec3 found, vec3 expected) {
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(found[i], expected[i], 1e-6);
 }
 
+TEST(GltfSkin, AMeshWhoseSkinIsBrokenIsLeftOut) {
+    GltfBuilder gltf = skinned_triangle();
+    gltf.root["skins"][0]["joints"] = {1, gltf.append("nodes", json::object())};
+    gltf.add_node({{"name", "whole"}, {"mesh", 0}});
+    const Scene scene = gltf.load();
+    ASSERT_EQ(scene.instances.size(), 1u);
+    EXPECT_EQ(scene.instances[0].name, "whole");
+    EXPECT_TRUE(has_warning(scene, "skin 0: joint 3 is a node that is not in the shown scene; the mesh of node 0 'node' "
+                                   "is not shown"));
+}
+
+TEST(GltfSkin, APrimitiveWithoutJointsFollowsTheFirst) {
+    GltfBuilder gltf = skinned_triangle();
+    json rigid = gltf.primitive();
+    rigid["attributes"].erase("JOINTS_0"), rigid["attributes"].erase("WEIGHTS_0");
+    gltf.root["meshes"][0]["primitives"].push_back(rigid);
+    const Scene scene = gltf.load();
+    ASSERT_EQ(scene.meshes[0].positions.size(), 6u);
+    EXPECT_EQ(scene.meshes[0].positions[3], scene.meshes[0].positions[0]);
+    EXPECT_TRUE(has_warning(scene, "3 vertices have no weights and follow the skin's first joint"));
+}
+
 TEST(GltfSkin, TheRestPoseIsShownWhereTheJointsAreNotWhereTheNodeIs) {
     GltfBuilder gltf = skinned_triangle();
     const Scene scene = gltf.load();
@@ -254,7 +276,6 @@ const Fault shape_faults[] = {
     {"InverseBindProjects",
      [](auto& g) { skin(g)["inverseBindMatrices"] = g.add_floats("MAT4", std::vector<float>(32, 1)); },
      "inverseBindMatrices 0: the last row is 1 1 1 1, not 0 0 0 1"},
-    {"NoWeights", [](auto& g) { g.primitive()["attributes"].erase("WEIGHTS_0"); }, "has no JOINTS_0 and WEIGHTS_0"},
     {"NegativeWeight",
      [](auto& g) {
          attribute(g, "WEIGHTS_0") = g.add_floats("VEC4", {1, 0, 0, 0, -1, 2, 0, 0, 1, 0, 0, 0});

@@ -116,12 +116,6 @@ const Fault object_faults[] = {
          g.add_node({{"children", {0}}});
      },
      "is listed in the scene but is a child of node 1"},
-    {"TwoParents",
-     [](auto& g) {
-         g.add_node({{"children", {0}}});
-         g.add_node({{"children", {0}}});
-     },
-     "node 0 'node': is a child of both node 1 and node 2"},
     {"Cycle",
      [](auto& g) {
          node(g)["children"] = {1};

@@ -45,6 +45,24 @@ TEST(GltfNodes, AnInstanceWithoutAreaIsSkippedByName) {
     EXPECT_TRUE(has_warning(scene, "node 1 'flat': skipped 1 of 1 placements"));
 }
 
+TEST(GltfNodes, ANodeOfTwoParentsIsShownBelowTheFirst) {
+    GltfBuilder gltf = one_triangle();
+    gltf.root["scenes"][0]["nodes"] = json::array();
+    for (const double x : {1, 2}) gltf.add_node({{"translation", {x, 0, 0}}, {"children", {0}}});
+    gltf.add_node({{"mesh", 0}, {"translation", {7, 0, 0}}});
+    const Scene scene = gltf.load();
+    ASSERT_EQ(scene.instances.size(), 2u);
+    EXPECT_EQ(scene.instances[0].transform.rows[0].w + scene.instances[1].transform.rows[0].w, 8);
+    EXPECT_TRUE(has_warning(scene, "node 0 'node': is a child of both node 1 and node 2, and shown once"));
+}
+
+TEST(GltfNodes, AChildThatIsListedTwiceIsShownOnce) {
+    GltfBuilder gltf = one_triangle();
+    gltf.root["scenes"][0]["nodes"] = json::array();
+    gltf.add_node({{"children", {0, 0}}});
+    EXPECT_EQ(gltf.load().instances.size(), 1u);
+}
+
 TEST(GltfNodes, OnlyTheDefaultSceneIsShown) {
     GltfBuilder gltf = one_triangle();
     gltf.append("nodes", {{"mesh", 0}});

@@ -151,12 +151,6 @@ bool shows_and_hides_nodes(const json& animation) {
     });
 }
 
-// Removes the file's name, which begins the text.
-std::string fault_of(const GltfFile& file, const Error& error) {
-    const std::string message = error.what(), prefix = text("'", file.path.string(), "': ");
-    return message.starts_with(prefix) ? message.substr(prefix.size()) : message;
-}
-
 }  // namespace
 
 std::vector<Animation> read_gltf_animations(GltfFile& file, const Rig& rig, const std::vector<std::int32_t>& flat) {
@@ -174,7 +168,7 @@ std::vector<Animation> read_gltf_animations(GltfFile& file, const Rig& rig, cons
         } catch (const Error& error) {
             animation.keyframes.clear();
             animation.channels.clear();
-            animation.fault = fault_of(file, error);
+            animation.fault = file.fault_of(error);
             file.warn(gltf_name("animation", i, animation.name) + " cannot be played: " + animation.fault);
         }
     }

@@ -35,7 +35,13 @@ struct GltfFile {
         throw Error(text("'", path.string(), "': ", parts...));
     }
 
-    // Adds each sentence once, however many objects it is true of.
+    // What an error of fail() says, without the file's name, which begins it.
+    std::string fault_of(const Error& error) const {
+        const std::string message = error.what(), prefix = text("'", path.string(), "': ");
+        return message.starts_with(prefix) ? message.substr(prefix.size()) : message;
+    }
+
+    // Says each sentence once, however many objects it is true of.
     void warn(const std::string& sentence) {
         if (std::ranges::find(warnings, sentence) == warnings.end()) warnings.push_back(sentence);
     }

@@ -16,7 +16,7 @@ struct MotionLayout {
     uint influences = 0;                     // joints a vertex
 };
 // has_*: whether the mesh has them. is_skinned: whether a node with a skin shows it. Throws Error naming the primitive
-// that has another number of targets than the first, or no joints.
+// that has another number of targets than the first.
 MotionLayout motion_layout(const GltfFile& file, const std::vector<const tinygltf::Primitive*>& primitives,
                            const std::string& object, bool is_skinned);
 

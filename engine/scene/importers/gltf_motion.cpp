@@ -98,9 +98,8 @@ MotionLayout motion_layout(const GltfFile& file, const std::vector<const Primiti
             layout.normals |= accessor_of(target, "NORMAL") >= 0;
             layout.tangents |= accessor_of(target, "TANGENT") >= 0;
         }
-        if (is_skinned && set_count(*primitive) == 0)
-            file.fail(object, ": is shown with a skin, but a primitive has no JOINTS_0 and WEIGHTS_0");
-        if (is_skinned) layout.influences = std::max(layout.influences, set_count(*primitive) * set_size);
+        // A primitive without joints, beside others or alone, follows the first joint.
+        if (is_skinned) layout.influences = std::max({layout.influences, set_count(*primitive) * set_size, set_size});
     }
     return layout;
 }

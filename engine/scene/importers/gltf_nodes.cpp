@@ -15,22 +15,26 @@ std::string node_name(const GltfFile& file, std::size_t index) {
     return gltf_name("node", index, file.model.nodes[index].name);
 }
 
-// Returns every node's parent or -1. Throws if a child does not exist or has two parents.
-std::vector<int> find_parents(const GltfFile& file) {
-    const auto& nodes = file.model.nodes;
+// Every node's parent or -1. A node that is a child of two stays with the first; the other loses it, with a warning.
+// Throws when a child does not exist.
+std::vector<int> find_parents(GltfFile& file) {
+    auto& nodes = file.model.nodes;
     std::vector<int> parents(nodes.size(), -1);
     for (std::size_t i = 0; i < nodes.size(); ++i)
-        for (const int child : nodes[i].children) {
+        std::erase_if(nodes[i].children, [&](const int child) {
             if (child < 0 || std::size_t(child) >= nodes.size())
                 file.fail(node_name(file, i), ": child ", child, " does not exist; the file has ", nodes.size(),
                           " nodes");
             int& parent = parents[std::size_t(child)];
-            if (parent >= 0)
-                file.fail(node_name(file, std::size_t(child)), ": is a child of both ",
-                          node_name(file, std::size_t(parent)), " and ", node_name(file, i),
-                          "; nodes must form a tree");
+            if (parent >= 0) {
+                file.warn(text(node_name(file, std::size_t(child)), ": is a child of both ",
+                               node_name(file, std::size_t(parent)), " and ", node_name(file, i),
+                               ", and shown once, below the first"));
+                return true;
+            }
             parent = static_cast<int>(i);
-        }
+            return false;
+        });
     return parents;
 }
 

@@ -23,9 +23,10 @@ struct GltfNode {
     bool is_visible = true;  // by KHR_node_visibility, its own and that of all nodes above
 };
 
-// Returns the nodes of the default scene, else of the first one, or without scenes all root nodes, with their
-// descendants; parents come first. Warns if a scene had to be chosen.
-// Throws Error naming the node for a missing child, two parents, a cycle, over 1000 levels, and a transform that is not
+// The nodes of the default scene, else of the first one, or where there are no scenes all root nodes, with their
+// descendants; parents come first. Warns where a scene had to be chosen, and of a node with two parents, which stays with
+// the first.
+// Throws Error naming the node on: a missing child, a cycle, over 1000 levels, a transform that is not
 // finite, not affine or has the wrong number of entries.
 std::vector<GltfNode> flatten_nodes(GltfFile& file);
 
@@ -46,10 +47,10 @@ struct GltfInstance {
     int skin = -1;         // glTF index
     Rig::Attachment attachment;
     bool is_hidden = false;  // as Rig::Hidden; its transform is then the identity
-};
     // The mesh is flattened along this; none where its placement has an inverse, and where an animation may give it one
     // or turns what is flat.
     std::optional<dvec3> lost;
+};
 // One for each placement of a mesh by a visible node, EXT_mesh_gpu_instancing included. Those that leave no area are
 // hidden where an animation of the rig scales their node or one above, else skipped with a warning.
 // Nodes do not move what a skin carries: it is in world space already.

@@ -36,17 +36,23 @@ std::vector<double> rest_weights(const GltfFile& file, const GltfNode& node) {
     return given;
 }
 
-std::vector<Skin> read_used_skins(const GltfFile& file, const std::vector<GltfNode>& nodes,
+// A mesh whose skin cannot be read is not shown: its vertices stand nowhere. Its node loses it, with a warning.
+std::vector<Skin> read_used_skins(GltfFile& file, const std::vector<GltfNode>& nodes,
                                   const std::vector<std::int32_t>& flat) {
     const nlohmann::json& sources = file.motion->at("skins");
     std::vector<Skin> skins(sources.is_array() ? sources.size() : 0);
     for (const GltfNode& node : nodes) {
-        const tinygltf::Node& source = file.model.nodes[node.index];
+        tinygltf::Node& source = file.model.nodes[node.index];
         if (source.skin < 0 || source.mesh < 0) continue;
         const std::size_t index = std::size_t(source.skin);
-        if (index >= skins.size())
-            file.fail(node.name, ": skin ", index, " does not exist; the file has ", skins.size());
-        if (skins[index].joints.empty()) skins[index] = read_gltf_skin(file, index, flat);
+        try {
+            if (index >= skins.size())
+                file.fail(node.name, ": skin ", index, " does not exist; the file has ", skins.size());
+            if (skins[index].joints.empty()) skins[index] = read_gltf_skin(file, index, flat);
+        } catch (const Error& error) {
+            file.warn(text(file.fault_of(error), "; the mesh of ", node.name, " is not shown"));
+            source.mesh = source.skin = -1;
+        }
     }
     return skins;
 }
