@@ -22,8 +22,11 @@ Rgb base_color(const Scene& scene, const Hit& hit) {
     const Instance& instance = scene.instances[hit.instance_index];
     const uint material = instance.material.value_or(scene.meshes[instance.mesh].material(hit.primitive_index));
     if (material >= scene.materials.size()) return {205, 208, 213};
-    const vec4 color = scene.materials[material].base_color;
-    return rgb_of_linear(vec3(color.x, color.y, color.z));
+    const Material& shown = scene.materials[material];
+    const vec3 color(shown.base_color.x, shown.base_color.y, shown.base_color.z), specular = shown.specular_color;
+    if (shown.ior != 0) return rgb_of_linear(color);
+    // All of its reflection at normal incidence is the specular colour, as KHR_materials_pbrSpecularGlossiness has it.
+    return rgb_of_linear(specular + color * (1 - std::max({specular.x, specular.y, specular.z})));
 }
 
 std::uint8_t byte_of(double share) { return static_cast<std::uint8_t>(std::lround(255 * std::clamp(share, 0.0, 1.0))); }

@@ -172,7 +172,7 @@ TEST(GltfMaterial, WhatIsNotShownIsNamedOnce) {
                                         "KHR_materials_dispersion, KHR_materials_iridescence"}));
 }
 
-TEST(GltfMaterial, SpecularGlossinessIsShownByItsDiffuseColour) {
+TEST(GltfMaterial, SpecularGlossinessIsShown) {
     const Scene scene = textured_triangle({{"extensions",
                                             {{"KHR_materials_pbrSpecularGlossiness",
                                               {{"diffuseFactor", {0.5, 0.25, 0, 1}},
@@ -183,7 +183,30 @@ TEST(GltfMaterial, SpecularGlossinessIsShownByItsDiffuseColour) {
     EXPECT_EQ(scene.materials[0].metallic, 0);
     EXPECT_EQ(scene.materials[0].roughness, 0.25f);
     EXPECT_EQ(scene.materials[0].base_color_texture.image, 0);
-    EXPECT_TRUE(has_warning(scene, "pbrSpecularGlossiness"));
+    EXPECT_EQ(scene.materials[0].ior, 0);
+    EXPECT_EQ(scene.materials[0].specular_color, vec3(1));
+    EXPECT_FALSE(has_warning(scene, "pbrSpecularGlossiness"));
+}
+
+// Roughness is 1 - factor * alpha; the alpha of the picture is 4.
+TEST(GltfMaterial, GlossinessInAlphaBecomesRoughness) {
+    const auto load = [](double factor) {
+        return textured_triangle({{"extensions",
+                                   {{"KHR_materials_pbrSpecularGlossiness",
+                                     {{"glossinessFactor", factor},
+                                      {"specularFactor", {0.5, 1, 1}},
+                                      {"specularGlossinessTexture", {{"index", 0}}}}}}}})
+            .load();
+    };
+    const Scene scene = load(0.5);
+    const Material& material = scene.materials[0];
+    EXPECT_EQ(material.specular_color, vec3(0.5f, 1, 1));
+    EXPECT_EQ(material.specular_color_texture.image, 0);
+    const Image& given = scene.images[0];
+    EXPECT_EQ(material.roughness, 1);
+    ASSERT_EQ(material.metallic_roughness_texture.image, 1);
+    for (std::size_t i = 0; i < given.rgba.size(); i += 4)
+        EXPECT_EQ(scene.images[1].rgba[i + 1], std::lround(255 - 0.5f * given.rgba[i + 3]));
 }
 
 TEST(GltfMaterial, FactorsOutsideOfTheirRangeAreClamped) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <vector>
 
 #include "engine/scene/importers/placeholder.h"
@@ -63,7 +64,11 @@ class GltfTextures {
     // Reads a reference inside an extension: member `key` of `parent`; no texture if it is absent.
     Texture read(const tinygltf::Value& parent, const std::string& key, const std::string& object);
 
-    // Returns whether its image could not be decoded.
+    // By what the alpha of a picture says of glossiness: a picture of roughness for metallic_roughness_texture, whose
+    // factors are 1; none where all alpha is 1.
+    std::optional<Texture> roughness_of(const Texture& glossiness, float factor);
+
+    // Whether its image could not be decoded.
     bool is_placeholder(const Texture& texture) const {
         return texture.image >= 0 && images_[std::size_t(texture.image)].is_placeholder;
     }
@@ -76,6 +81,7 @@ class GltfTextures {
     GltfFile& file_;
     std::vector<Image>& images_;
     std::vector<std::int32_t> decoded_;  // glTF image -> index into images_, -1 = not yet
+    std::map<std::pair<std::int32_t, float>, std::int32_t> roughness_;  // image and factor -> index into images_
 };
 
 GltfTextures::GltfTextures(GltfFile& file, std::vector<Image>& images)
@@ -149,6 +155,40 @@ void GltfTextures::set_sampler(Texture& result, int sampler, const std::string& 
     if (samplers[std::size_t(sampler)].magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST) result.filter = Filter::nearest;
 }
 
+// Roughness is 1 - factor * alpha, in the green channel.
+template <class T>
+std::vector<T> roughness_texels(const std::vector<T>& rgba, float factor) {
+    constexpr float most = std::numeric_limits<T>::max();
+    std::vector<T> texels(rgba.size(), static_cast<T>(most));
+    for (std::size_t i = 0; i + 3 < rgba.size(); i += 4)
+        texels[i + 1] = static_cast<T>(std::lround(most - factor * static_cast<float>(rgba[i + 3])));
+    return texels;
+}
+
+// Of a picture with four channels.
+template <class T>
+bool uses_alpha(const std::vector<T>& rgba) {
+    for (std::size_t i = 3; i < rgba.size(); i += 4)
+        if (rgba[i] != std::numeric_limits<T>::max()) return true;
+    return false;
+}
+
+std::optional<Texture> GltfTextures::roughness_of(const Texture& glossiness, float factor) {
+    if (glossiness.image < 0) return std::nullopt;
+    const Image& source = images_[std::size_t(glossiness.image)];
+    if (!uses_alpha(source.rgba) && !uses_alpha(source.rgba16)) return std::nullopt;
+    const auto [known, is_new] =
+        roughness_.try_emplace({glossiness.image, factor}, static_cast<std::int32_t>(images_.size()));
+    if (is_new) {
+        Image image{source.name + " (roughness)", source.width, source.height, roughness_texels(source.rgba, factor)};
+        image.rgba16 = roughness_texels(source.rgba16, factor);
+        images_.push_back(std::move(image));
+    }
+    Texture roughness = glossiness;
+    roughness.image = known->second;
+    return roughness;
+}
+
 constexpr double no_limit = 1e30;
 
 // Reads members of one extension.
@@ -175,6 +215,21 @@ void read_specular(const Reader& from, Material& material) {
     material.specular_color = from.color("specularColorFactor", vec3(1), no_limit);
     material.specular_texture = from.texture("specularTexture");
     material.specular_color_texture = from.texture("specularColorTexture");
+}
+
+// As KHR_materials_specular says it, which can say all of it: an index of refraction of 0 reflects everything times the
+// specular colour.
+void read_specular_glossiness(const Reader& from, Material& material) {
+    material.base_color = color_factor<4>(numbers_of(from.extension, "diffuseFactor"), vec4(1));
+    material.base_color_texture = from.texture("diffuseTexture");
+    material.metallic = 0;
+    material.ior = 0;
+    material.specular_color = from.color("specularFactor", vec3(1));
+    material.specular_color_texture = from.texture("specularGlossinessTexture");
+    const float glossiness = unit_factor(from.number("glossinessFactor", 1));
+    const std::optional<Texture> roughness = from.textures.roughness_of(material.specular_color_texture, glossiness);
+    material.roughness = roughness ? 1 : 1 - glossiness;
+    material.metallic_roughness_texture = roughness.value_or(Texture{});
 }
 
 void read_clearcoat(const Reader& from, Material& material) {
@@ -209,11 +264,12 @@ void read_volume(const Reader& from, Material& material) {
             clamped_factor(from.number("attenuationDistance", 1), std::numeric_limits<float>::min(), no_limit);
 }
 
-// Reads KHR_materials_{anisotropy, clearcoat, sheen, specular, volume} into `material` and ignores other extensions.
-// `object` names the material in errors and warnings.
+// Takes KHR_materials_{anisotropy, clearcoat, pbrSpecularGlossiness, sheen, specular, volume} into `material`; other
+// extensions are none of its business. `object` names the material in errors and warnings.
 void read_gltf_layer(const std::string& name, const tinygltf::Value& extension, const std::string& object,
                      GltfTextures& textures, Material& material) {
     const Reader from{extension, object, textures};
+    if (name == "KHR_materials_pbrSpecularGlossiness") read_specular_glossiness(from, material);
     if (name == "KHR_materials_specular") read_specular(from, material);
     if (name == "KHR_materials_clearcoat") read_clearcoat(from, material);
     if (name == "KHR_materials_sheen") read_sheen(from, material);
@@ -278,12 +334,6 @@ class MaterialReader {
         } else if (name == "KHR_materials_transmission") {
             material.transmission = unit_factor(number_or(extension, "transmissionFactor", 0));
             material.transmission_texture = textures_.read(extension, "transmissionTexture", object);
-        } else if (name == "KHR_materials_pbrSpecularGlossiness") {
-            material.base_color = color_factor<4>(numbers_of(extension, "diffuseFactor"), vec4(1));
-            material.base_color_texture = textures_.read(extension, "diffuseTexture", object);
-            material.metallic = 0;
-            material.roughness = 1 - unit_factor(number_or(extension, "glossinessFactor", 1));
-            file_.warn("KHR_materials_pbrSpecularGlossiness is shown by its diffuse colour and glossiness alone");
         } else {
             read_gltf_layer(name, extension, object, textures_, material);
         }
