@@ -8,6 +8,7 @@
 #include <cstring>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -15,6 +16,8 @@
 #include "engine/core/error.h"
 #include "engine/scene/bytes.h"
 #include "engine/scene/image_exr.h"
+#include "engine/scene/importers/words.h"
+#include "twinray/glsl/vector_math.h"
 
 // A private copy of stb_image, with only the decoders for untrusted files.
 #define STB_IMAGE_IMPLEMENTATION
@@ -65,7 +68,41 @@ std::span<const std::uint8_t> radiance_rows(std::span<const std::uint8_t> bytes)
     return next_line(next_line(bytes));
 }
 
-// Takes the runs of one channel of a row off `rows`. Returns false if they are incomplete.
+// What the header says that pixels were multiplied by: EXPOSURE lines, and by channel COLORCORR lines, each of which
+// counts on top of those before it.
+dvec3 radiance_factors(std::span<const std::uint8_t> bytes) {
+    dvec3 factors(1);
+    const auto multiply = [&factors](std::string_view numbers, int wanted) {
+        dvec3 factor(1);
+        for (int i = 0; i < wanted; ++i) {
+            const std::optional<double> number = parse_number(cut_word(numbers));
+            if (!number || !(*number > 0) || !std::isfinite(*number)) return;  // as Radiance, which takes what is right
+            if (wanted == 1) factor = dvec3(*number);
+            factor[i] = *number;
+        }
+        factors = factors * factor;
+    };
+    while (!bytes.empty() && bytes[0] != '\n' && bytes[0] != '\0') {
+        const std::span<const std::uint8_t> rest = next_line(bytes);
+        const std::string_view line(reinterpret_cast<const char*>(bytes.data()), bytes.size() - rest.size());
+        if (line.starts_with("EXPOSURE=")) multiply(line.substr(line.find('=') + 1), 1);
+        if (line.starts_with("COLORCORR=")) multiply(line.substr(line.find('=') + 1), 3);
+        bytes = rest;
+    }
+    return factors;
+}
+
+// The mantissas of RGBE are cut off after 8 bits: half a step more is right in the mean, as Radiance itself reads them.
+// The largest of a pixel has its highest bit set. A black pixel is black.
+vec3 with_half_step(vec3 pixel) {
+    constexpr int bits_of_half_step = 9;
+    const float most = std::max({pixel.x, pixel.y, pixel.z});
+    int exponent = 0;
+    std::frexp(most, &exponent);
+    return most > 0 ? pixel + std::ldexp(1.0f, exponent - bits_of_half_step) : pixel;
+}
+
+// Takes the runs of one channel of a row off `rows`. False: they are cut off.
 bool take_runs(std::span<const std::uint8_t>& rows, std::uint64_t width) {
     for (std::uint64_t done = 0; done < width;) {
         if (rows.empty()) return false;
@@ -200,8 +237,10 @@ HdrImage load_radiance_image(const std::filesystem::path& file) {
     if (!pixels) fail("'", object, "': damaged Radiance .hdr image (", stbi_failure_reason(), ")");
     HdrImage image{static_cast<uint>(width), static_cast<uint>(height), {}};
     image.rgb.resize(std::size_t(image.width) * image.height);
+    const dvec3 factors = radiance_factors(bytes);
     for (std::size_t i = 0; i < image.rgb.size(); ++i)
-        image.rgb[i] = vec3(pixels.get()[3 * i], pixels.get()[3 * i + 1], pixels.get()[3 * i + 2]);
+        image.rgb[i] = vec3(
+            dvec3(with_half_step({pixels.get()[3 * i], pixels.get()[3 * i + 1], pixels.get()[3 * i + 2]})) / factors);
     return image;
 }
 

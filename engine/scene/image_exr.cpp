@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "engine/scene/image_exr.h"
 
+#include <fstream>
+#include <string>
+#include <string_view>
+
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
+#include <OpenEXRConfig.h>
 
 #include "engine/core/error.h"
 
@@ -69,6 +74,22 @@ Imath::Box2i display_window(const HdrImage& image) {
     return {Imath::V2i(0, 0), size - Imath::V2i(1, 1)};
 }
 
+// OpenEXR 3.1 knows methods 0 to 9; newer ones are HTJ2K and ZSTD. Empty where the header names a known one or none.
+std::string newer_compression(const std::filesystem::path& file) {
+    constexpr std::string_view name("compression\0compression\0", 24);
+    constexpr std::size_t header_part = 1 << 16, size_of_length = 4;
+    std::string head(header_part, '\0');
+    std::ifstream in(file, std::ios::binary);
+    in.read(head.data(), static_cast<std::streamsize>(head.size()));
+    head.resize(static_cast<std::size_t>(in.gcount()));
+    const std::size_t at = head.find(name);
+    if (at == head.npos || at + name.size() + size_of_length >= head.size()) return "";
+    const auto method = static_cast<unsigned char>(head[at + name.size() + size_of_length]);
+    if (method < Imf::NUM_COMPRESSION_METHODS) return "";
+    return text("its compression method ", int{method}, ", one of the newer HTJ2K and ZSTD, is not known to OpenEXR ",
+                OPENEXR_VERSION_STRING, "; save it with ZIP");
+}
+
 }  // namespace
 
 HdrImage load_exr_image(const std::filesystem::path& file) {
@@ -78,6 +99,7 @@ HdrImage load_exr_image(const std::filesystem::path& file) {
     } catch (const Error&) {
         throw;
     } catch (const std::exception& e) {  // OpenEXR's own, and running out of memory on a false size
+        if (const std::string reason = newer_compression(file); !reason.empty()) fail("'", file.string(), "': ", reason);
         fail("'", file.string(), "': not a readable OpenEXR image (", e.what(), ")");
     }
 }

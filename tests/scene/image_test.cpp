@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <fstream>
 #include <twinray/scene.h>
 
 #include <cmath>
@@ -79,8 +80,29 @@ TEST(HdrImage, RadianceIsReadAsLinearLight) {
         load_hdr_image(dir.write("a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n" + pixels));
     ASSERT_EQ(image.width, 2u);
     ASSERT_EQ(image.height, 1u);
-    EXPECT_EQ(image.rgb[0], vec3(1, 0.5f, 0));
-    EXPECT_EQ(image.rgb[1], vec3(0, 8, 0));
+    const float half_step = 0x1p-8f;  // of a pixel whose largest mantissa is worth 1
+    EXPECT_EQ(image.rgb[0], vec3(1, 0.5f, 0) + half_step);
+    EXPECT_EQ(image.rgb[1], vec3(0, 8, 0) + 8 * half_step);
+}
+
+TEST(HdrImage, ABlackRadiancePixelStaysBlack) {
+    const TempDir dir;
+    const std::string file = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n" + std::string(4, '\0');
+    EXPECT_EQ(load_hdr_image(dir.write("a.hdr", file)).rgb[0], vec3(0));
+}
+
+TEST(HdrImage, ExposuresAndColourCorrectionsAreDividedOut) {
+    const TempDir dir;
+    const std::string pixels("\x80\x80\x80\x81", 4);
+    const auto pixel = [&](const std::string& lines) {
+        return load_hdr_image(dir.write("a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n" + lines + "\n-Y 1 +X 1\n" + pixels)).rgb[0];
+    };
+    const float one = pixel("").x;
+    EXPECT_EQ(pixel("EXPOSURE=4.0000e+00\n"), vec3(one / 4));
+    EXPECT_EQ(pixel("EXPOSURE=4\nSOFTWARE=x\nEXPOSURE= 0.5\n"), vec3(one / 2));
+    EXPECT_EQ(pixel("COLORCORR= 1 2 4\n"), vec3(one, one / 2, one / 4));
+    for (const char* nothing : {"EXPOSURE=\n", "EXPOSURE=0\n", "EXPOSURE=nan\n", "COLORCORR=2 2\n"})
+        EXPECT_EQ(pixel(nothing), vec3(one)) << nothing;
 }
 
 // A row of 8 pixels by runs: of each channel one that repeats a byte 8 times, or 8 bytes. A header may end with a NUL.
@@ -92,11 +114,10 @@ TEST(HdrImage, RowsOfRunsAreReadWholeOrRefused) {
         "\x02\x02\x00\x08\x88\x80\x08"s + std::string(8, '\x40') + "\x88\x00\x08"s + std::string(8, '\x81');
     for (const std::string& line : {"\n"s, "\0\n"s}) {
         const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n" + line + "-Y 1 +X 8\n";
-        EXPECT_EQ(load_hdr_image(dir.write("a.hdr", header + runs)).rgb, std::vector(8, vec3(1, 0.5f, 0)));
-        for (std::size_t missing = 1; missing <= 8; ++missing)
-            expect_contains(
-                error_of([&] { load_hdr_image(dir.write("a.hdr", header + runs.substr(0, runs.size() - missing))); }),
-                "its rows are cut off");
+        EXPECT_EQ(load_hdr_image(dir.write("a.hdr", header + runs)).rgb, std::vector(8, vec3(1, 0.5f, 0) + 0x1p-8f));
+        for (std::size_t left = 4; left + 1 < runs.size(); ++left)
+            expect_contains(error_of([&] { load_hdr_image(dir.write("a.hdr", header + runs.substr(0, left))); }),
+                            "its rows are cut off");
     }
 }
 
@@ -174,6 +195,20 @@ TEST(HdrImage, FaultsAreNamed) {
     expect_contains(error_of([&] { load_hdr_image(dir.write("a.hdr", "x")); }), "not a Radiance .hdr image");
     expect_contains(error_of([&] { load_hdr_image(write_exr(dir, {"Z"}, 1, 1, {1}, Imf::NO_COMPRESSION)); }),
                     "neither channels R, G and B nor Y");
+}
+
+TEST(HdrImage, ANewerCompressionOfOpenExrIsNamed) {
+    const TempDir dir;
+    const std::filesystem::path file = write_exr(dir, {"R", "G", "B"}, 1, 1, {1, 2, 3}, Imf::ZIP_COMPRESSION);
+    std::string bytes = [&] {
+        std::ifstream in(file, std::ios::binary);
+        return std::string(std::istreambuf_iterator<char>(in), {});
+    }();
+    const std::string name("compression\0compression\0", 24);
+    bytes[bytes.find(name) + name.size() + 4] = 77;
+    const std::string error = error_of([&] { load_hdr_image(dir.write("new.exr", bytes)); });
+    expect_contains(error, "compression method 77, one of the newer HTJ2K and ZSTD");
+    expect_contains(error, "save it with ZIP");
 }
 
 }  // namespace
