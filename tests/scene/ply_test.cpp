@@ -2,9 +2,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <map>
 
 #include <twinray/scene.h>
 
+#include "engine/scene/importers/ply_header.h"
 #include "tests/scene/packed_bytes.h"
 #include "tests/scene/load_text.h"
 #include "twinray/glsl/vector_math.h"
@@ -118,7 +120,7 @@ TEST(Ply, FacesMayComeBeforeVerticesAndOtherElementsAreSkipped) {
     ASSERT_EQ(scene.warnings.size(), 1u);
     expect_contains(
         scene.warnings[0],
-        "passed over elements and properties of the header: 'flags' (line 4), 'edge' (line 6), 'red' (line 13)");
+        "passed over elements and properties of the header: 'flags' (line 4), 'edge' (line 6), 'colours' (line 13)");
 }
 
 TEST(Ply, GzipIsUnpacked) {
@@ -232,6 +234,59 @@ TEST(Ply, BodyFaultsAreNamed) {
     expect_ply_error(ply(3, TRIANGLE_ROWS, 0, ""), "has 3 vertices but no faces");
     const std::string binary = binary_ply(false);
     expect_ply_error(binary.substr(0, binary.size() - 1), "truncated");
+}
+
+// A file of that kind is made by writers of NumPy arrays: see ply_type_of().
+TEST(Ply, NamesOfTypesHaveTheirSizes) {
+    const std::map<std::string, std::size_t> sizes = {
+        {"char", 1},  {"int8", 1},  {"uchar", 1},  {"uint8", 1},  {"short", 2},   {"int16", 2}, {"ushort", 2},
+        {"uint16", 2}, {"int", 4},  {"int32", 4},  {"uint", 4},   {"uint32", 4},  {"int64", 8}, {"uint64", 8},
+        {"half", 2},  {"float16", 2}, {"float", 4}, {"float32", 4}, {"double", 8}, {"float64", 8}};
+    for (const auto& [name, size] : sizes) {
+        ASSERT_TRUE(ply_type_of(name)) << name;
+        EXPECT_EQ(size_of(*ply_type_of(name)), size) << name;
+    }
+    EXPECT_FALSE(ply_type_of("float128"));
+}
+
+TEST(Ply, VerticesHaveColours) {
+    const Scene scene = load_ply("ply\nformat ascii 1.0\nelement vertex 3\n" + POSITIONS +
+                                 "property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 1\n" +
+                                 FACE_LIST + "end_header\n0 0 0 255 0 0\n1 0 0 0 255 0\n0 1 0 0 0 128\n3 0 1 2\n");
+    EXPECT_TRUE(scene.warnings.empty());
+    EXPECT_EQ(scene.meshes[0].colors[0], vec4(1, 0, 0, 1));
+    EXPECT_EQ(scene.meshes[0].colors[2].z, linear_of_srgb(128 / 255.0f));
+    EXPECT_EQ(scene.materials[0].metallic, 0);
+}
+
+// Two triangles that share an edge, on whose vertices they have other texture coordinates.
+const std::string WEDGES = "ply\nformat ascii 1.0\ncomment TextureFile my wall.png\nelement vertex 4\n" + POSITIONS +
+                           "element face 2\n" + FACE_LIST +
+                           "property list uchar float texcoord\nproperty uchar red\nproperty uchar green\nend_header\n" +
+                           TRIANGLE_ROWS + "1 1 0\n3 0 1 2 6 0 0 1 0 0 1 9 9\n3 2 1 3 6 0 1 0.5 0 1 1 9 9\n";
+
+TEST(Ply, CornersOfFacesHaveTextureCoordinates) {
+    const Scene scene = load_ply(WEDGES);
+    const Mesh& mesh = scene.meshes[0];
+    ASSERT_EQ(mesh.positions.size(), 5u);  // vertex 1 has two
+    EXPECT_EQ(mesh.uvs.size(), 5u);
+    EXPECT_EQ(mesh.uvs[mesh.triangles[0].y], vec2(1, 1));
+    EXPECT_EQ(mesh.uvs[mesh.triangles[1].y], vec2(0.5f, 1));
+    EXPECT_EQ(mesh.positions[mesh.triangles[1].y], vec3(1, 0, 0));
+    EXPECT_EQ(mesh.triangles[0].z, mesh.triangles[1].x);
+    ASSERT_EQ(scene.materials.size(), 1u);
+    EXPECT_EQ(scene.materials[0].base_color_texture.image, 0);
+    EXPECT_TRUE(scene.images[0].is_placeholder);
+    ASSERT_EQ(scene.warnings.size(), 2u);
+    expect_contains(scene.warnings[0], "'colours' (line 11)");
+    expect_contains(scene.warnings[1], "picture 'my wall.png' is shown as a checkerboard");
+}
+
+TEST(Ply, APictureWithoutCoordinatesIsNamed) {
+    const Scene scene = load_ply("ply\nformat ascii 1.0\ncomment TextureFile a.png\nelement vertex 3\n" + POSITIONS +
+                                 "element face 1\n" + FACE_LIST + "end_header\n" + TRIANGLE_ROWS + "3 0 1 2\n");
+    ASSERT_EQ(scene.warnings.size(), 1u);
+    expect_contains(scene.warnings[0], "picture 'a.png' is not shown");
 }
 
 }  // namespace

@@ -6,9 +6,12 @@
 #include <cstring>
 #include <map>
 #include <optional>
-#include <sstream>
 #include <string>
+#include <tuple>
+#include <type_traits>
 #include <vector>
+
+#include <glm/gtc/packing.hpp>
 
 #include <twinray/scene.h>
 
@@ -16,6 +19,8 @@
 #include "engine/scene/bytes.h"
 #include "engine/scene/importers/importers.h"
 #include "engine/scene/importers/passed_over.h"
+#include "engine/scene/importers/placeholder.h"
+#include "engine/scene/importers/ply_header.h"
 #include "engine/scene/importers/polygon.h"
 #include "engine/scene/importers/words.h"
 #include "engine/scene/local_origin.h"
@@ -23,129 +28,6 @@
 
 namespace twinray {
 namespace {
-
-enum class PlyType { i8, u8, i16, u16, i32, u32, f32, f64 };
-
-std::size_t size_of(PlyType type) {
-    constexpr std::array<std::size_t, 8> sizes = {1, 1, 2, 2, 4, 4, 4, 8};
-    return sizes[static_cast<std::size_t>(type)];
-}
-
-struct PlyProperty {
-    std::string name;
-    PlyType type = PlyType::f32;
-    std::optional<PlyType> count_type;  // set: a list, which starts with its length
-    std::size_t line = 0;               // of the header, from 1
-};
-
-struct PlyElement {
-    std::string name;
-    std::size_t count = 0, line = 0;
-    std::vector<PlyProperty> properties;
-};
-
-// The elements that a header declares.
-struct PlyHeader {
-    enum class Format { ascii, little_endian, big_endian };
-    Format format = Format::ascii;
-    std::vector<PlyElement> elements;
-    std::size_t size = 0;  // where the body starts
-};
-
-std::optional<PlyType> type_of(const std::string& name) {
-    static const std::map<std::string, PlyType> types = {
-        {"char", PlyType::i8},   {"int8", PlyType::i8},     {"uchar", PlyType::u8},   {"uint8", PlyType::u8},
-        {"short", PlyType::i16}, {"int16", PlyType::i16},   {"ushort", PlyType::u16}, {"uint16", PlyType::u16},
-        {"int", PlyType::i32},   {"int32", PlyType::i32},   {"uint", PlyType::u32},   {"uint32", PlyType::u32},
-        {"float", PlyType::f32}, {"float32", PlyType::f32}, {"double", PlyType::f64}, {"float64", PlyType::f64}};
-    const auto found = types.find(name);
-    return found == types.end() ? std::nullopt : std::optional(found->second);
-}
-
-bool read_format(std::istringstream& words, PlyHeader& header) {
-    std::string format;
-    words >> format;
-    if (format == "binary_little_endian") header.format = PlyHeader::Format::little_endian;
-    if (format == "binary_big_endian") header.format = PlyHeader::Format::big_endian;
-    return format == "ascii" || header.format != PlyHeader::Format::ascii;
-}
-
-bool read_element(std::istringstream& words, std::size_t line, PlyHeader& header) {
-    PlyElement element;
-    element.line = line;
-    std::string count;
-    words >> element.name >> count;
-    if (count.empty() || count.size() > 12 || count.find_first_not_of("0123456789") != std::string::npos) return false;
-    element.count = std::stoull(count);
-    header.elements.push_back(std::move(element));
-    return true;
-}
-
-bool read_property(std::istringstream& words, std::size_t line, PlyHeader& header) {
-    PlyProperty property;
-    property.line = line;
-    std::string type, count_type;
-    words >> type;
-    if (type == "list") words >> count_type >> type;
-    words >> property.name;
-    if (header.elements.empty() || property.name.empty() || !type_of(type)) return false;
-    property.type = *type_of(type);
-    if (!count_type.empty()) {
-        property.count_type = type_of(count_type);
-        if (!property.count_type || *property.count_type >= PlyType::f32) return false;
-    }
-    header.elements.back().properties.push_back(std::move(property));
-    return true;
-}
-
-bool read_line(const std::string& line, std::size_t number, PlyHeader& header) {
-    std::istringstream words(line);
-    std::string keyword;
-    words >> keyword;
-    if (keyword == "format") return read_format(words, header);
-    if (keyword == "element") return read_element(words, number, header);
-    if (keyword == "property") return read_property(words, number, header);
-    // Blender 2.47 forgot the word "comment"; from the first element on, a line must be understood.
-    return header.elements.empty() || keyword == "comment" || keyword == "obj_info";
-}
-
-// After this, no count makes a reader reserve more memory than the file's size justifies.
-void check_counts(const PlyHeader& header, std::size_t body_size, const std::string& object) {
-    for (const PlyElement& element : header.elements) {
-        std::size_t least = element.properties.empty() ? 1 : 0;
-        for (const PlyProperty& property : element.properties)
-            least +=
-                header.format == PlyHeader::Format::ascii ? 1 : size_of(property.count_type.value_or(property.type));
-        if (element.count > body_size / least)
-            fail("'", object, "': ", element.count, " elements '", element.name, "' do not fit into the ", body_size,
-                 " bytes after the header");
-    }
-}
-
-// Throws Error naming `object` and the line that it cannot parse, or the element that is larger than the file.
-PlyHeader parse_ply_header(const Bytes& bytes, const std::string& object) {
-    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    if (!text.starts_with("ply") || text.size() < 4)
-        fail("'", object, "': not a PLY file (it does not start with 'ply')");
-    // All lines end as the first one does. If each were examined, a body after CR that begins with the byte 10 would
-    // lose it.
-    const std::size_t first_end = text.find_first_of("\r\n");
-    const bool ends_in_cr = first_end != text.npos && text[first_end] == '\r' && text.substr(first_end + 1, 1) != "\n";
-    const char line_end = ends_in_cr ? '\r' : '\n';
-    PlyHeader header;
-    for (std::size_t line_number = 1; header.size < text.size(); ++line_number) {
-        const std::size_t end = std::min(text.find(line_end, header.size), text.size());
-        const std::string line(trimmed(text.substr(header.size, end - header.size)));
-        header.size = std::min(end + 1, text.size());
-        if (line == "end_header") {
-            check_counts(header, text.size() - header.size, object);
-            return header;
-        }
-        if (!read_line(line, line_number, header))
-            fail("'", object, "': PLY header line ", line_number, " '", line.substr(0, 60), "' is not understood");
-    }
-    fail("'", object, "': the PLY header has no end_header");
-}
 
 // The values of the body, one after the other.
 class PlyValues {
@@ -178,6 +60,9 @@ class PlyValues {
             case PlyType::u16: return from<std::uint16_t>(raw);
             case PlyType::i32: return from<std::int32_t>(raw);
             case PlyType::u32: return from<std::uint32_t>(raw);
+            case PlyType::i64: return from<std::int64_t>(raw);
+            case PlyType::u64: return from<std::uint64_t>(raw);
+            case PlyType::f16: return glm::unpackHalf1x16(static_cast<std::uint16_t>(raw[0] | raw[1] << 8));
             case PlyType::f32: return from<float>(raw);
             case PlyType::f64: return from<double>(raw);
         }
@@ -216,13 +101,14 @@ bool is_any_of(const std::string& name, std::initializer_list<const char*> names
     return std::ranges::find(names, name) != names.end();
 }
 
-// The destination of a vertex property: 0-2 position, 3-5 normal, 6-7 texture coordinates, 8 nowhere.
-constexpr std::size_t nowhere = 8;
+// Where a vertex property goes: 0-2 position, 3-5 normal, 6-7 texture coordinates, 8-11 colour, 12 nowhere.
+constexpr std::size_t nowhere = 12;
 
 std::size_t slot_of(const PlyProperty& property) {
     if (property.count_type) return nowhere;
     const std::array<std::initializer_list<const char*>, nowhere> names = {
-        {{"x"}, {"y"}, {"z"}, {"nx"}, {"ny"}, {"nz"}, {"u", "s", "texture_u"}, {"v", "t", "texture_v"}}};
+        {{"x"}, {"y"}, {"z"}, {"nx"}, {"ny"}, {"nz"}, {"u", "s", "texture_u"}, {"v", "t", "texture_v"},
+         {"red", "diffuse_red"}, {"green", "diffuse_green"}, {"blue", "diffuse_blue"}, {"alpha", "diffuse_alpha"}}};
     for (std::size_t i = 0; i < nowhere; ++i)
         if (is_any_of(property.name, names[i])) return i;
     return nowhere;
@@ -232,6 +118,24 @@ bool holds_faces(const PlyElement& element) { return is_any_of(element.name, {"f
 
 bool holds_corners(const PlyElement& element, const PlyProperty& property) {
     return holds_faces(element) && property.count_type && is_any_of(property.name, {"vertex_indices", "vertex_index"});
+}
+
+bool is_color(const PlyProperty& property) { return !property.count_type && slot_of(property) / 4 == 2; }
+
+// Two coordinates for each corner of a polygon.
+bool holds_uvs(const PlyElement& element, const PlyProperty& property) {
+    return element.name == "face" && property.count_type && property.name == "texcoord";
+}
+
+// Which of the header's pictures a face shows.
+bool holds_texture(const PlyElement& element, const PlyProperty& property) {
+    return element.name == "face" && !property.count_type && property.name == "texnumber";
+}
+
+// Integers are shares of the largest, and all are sRGB.
+float color_of(double value, PlyType type) {
+    const double most = type == PlyType::u8 ? 255 : type == PlyType::u16 ? 65535 : 1;
+    return static_cast<float>(std::clamp(value / most, 0.0, 1.0));
 }
 
 class PlyReader {
@@ -249,8 +153,12 @@ class PlyReader {
         origin_ = wanted_origin.value_or(choose_local_origin(bounds()));
         mesh_.positions = local_positions(positions_, origin_);
         triangulate();
+        if (!corner_uvs_.empty()) split_vertices();
         return std::move(mesh_);
     }
+
+    // The pictures that the file names, in the order of Mesh::materials.
+    const std::vector<std::string>& textures() const { return header_.textures; }
 
     const dvec3& origin() const { return origin_; }
     std::vector<std::string> warnings() const {
@@ -262,20 +170,35 @@ class PlyReader {
 
   private:
     void read_vertices(const PlyElement& element) {
-        std::array<bool, 9> has{};
+        std::array<bool, nowhere + 1> has{};
         std::vector<std::size_t> slots;
         for (const PlyProperty& property : element.properties) {
             has[slots.emplace_back(slot_of(property))] = true;
             if (slots.back() == nowhere) passed_over_.add(property.name, property.line);
         }
+        const bool has_colors = has[8] && has[9] && has[10];
+        const bool shows_colors = has_colors && header_.textures.empty();  // a picture says more
+        for (const PlyProperty& property : element.properties)
+            if (is_color(property) && !shows_colors) passed_over_.add("colours", property.line);
         if (!has[0] || !has[1] || !has[2]) fail("'", object_, "': its vertices have no x, y and z");
         for (std::size_t i = 0; i < element.count; ++i) {
-            std::array<double, 9> v{};
-            for (std::size_t p = 0; p < slots.size(); ++p) v[slots[p]] = read_property(element.properties[p]);
+            std::array<double, nowhere + 1> v{};
+            v[11] = 1;
+            for (std::size_t p = 0; p < slots.size(); ++p) {
+                const PlyProperty& property = element.properties[p];
+                const double value = read_property(property);
+                v[slots[p]] = is_color(property) ? color_of(value, property.type) : value;
+            }
             positions_.emplace_back(v[0], v[1], v[2]);
             if (has[3] && has[4] && has[5]) mesh_.normals.push_back(normal_or_none({v[3], v[4], v[5]}));
             if (has[6] && has[7]) mesh_.uvs.emplace_back(v[6], 1 - v[7]);  // v points up here and down in glTF
+            if (shows_colors) mesh_.colors.push_back(linear_color(v[8], v[9], v[10], v[11]));
         }
+    }
+
+    static vec4 linear_color(double red, double green, double blue, double alpha) {
+        const auto linear = [](double value) { return linear_of_srgb(static_cast<float>(value)); };
+        return {linear(red), linear(green), linear(blue), static_cast<float>(alpha)};
     }
 
     double read_property(const PlyProperty& property) {
@@ -288,15 +211,42 @@ class PlyReader {
     void read_faces(const PlyElement& element) {
         const bool has_strips = element.name == "tristrips";
         if (!holds_faces(element)) passed_over_.add(element.name, element.line);
+        const bool has_uvs = std::ranges::any_of(
+            element.properties, [&](const PlyProperty& property) { return holds_uvs(element, property); });
         for (const PlyProperty& property : element.properties)
-            if (holds_faces(element) && !holds_corners(element, property))
-                passed_over_.add(property.name, property.line);
-        for (std::size_t i = 0; i < element.count; ++i)
+            if (holds_faces(element) && !holds_corners(element, property) && !holds_uvs(element, property) &&
+                !holds_texture(element, property))
+                passed_over_.add(is_color(property) ? "colours" : property.name, property.line);
+        for (std::size_t i = 0; i < element.count; ++i) {
+            std::vector<double> uvs;
+            double texture = 0;
             for (const PlyProperty& property : element.properties)
-                if (!holds_corners(element, property))
+                if (holds_uvs(element, property))
+                    uvs = read_list(property);
+                else if (holds_texture(element, property))
+                    texture = read_property(property);
+                else if (!holds_corners(element, property))
                     read_property(property);
                 else
                     has_strips ? read_strips(property) : read_polygon(property);
+            if (has_uvs) add_corner_uvs(uvs);
+            textures_of_faces_.resize(vertex_counts_.size(), texture);
+        }
+    }
+
+    std::vector<double> read_list(const PlyProperty& property) {
+        std::vector<double> values;
+        for (std::size_t left = values_.next_count(*property.count_type); left > 0; --left)
+            values.push_back(values_.next(property.type));
+        return values;
+    }
+
+    // For the corners read since; a face may have none, or another number than it has corners.
+    void add_corner_uvs(const std::vector<double>& uvs) {
+        const std::size_t first = corner_uvs_.size();
+        const bool fits = uvs.size() == 2 * (indices_.size() - first);
+        for (std::size_t i = 0; i < indices_.size() - first; ++i)
+            corner_uvs_.push_back(fits ? vec2(uvs[2 * i], 1 - uvs[2 * i + 1]) : vec2(0));
     }
 
     void read_polygon(const PlyProperty& property) {
@@ -349,9 +299,42 @@ class PlyReader {
             const auto index = [&](std::size_t i) { return static_cast<uint>(indices_[first + i]); };
             outline.clear();
             for (std::size_t i = 0; i < vertex_counts_[face]; ++i) outline.push_back(positions_[index(i)]);
-            for (const uvec3& t : cutter_.cut(outline, face))
+            for (const uvec3& t : cutter_.cut(outline, face)) {
                 mesh_.triangles.emplace_back(index(t.x), index(t.y), index(t.z));
+                mesh_.materials.push_back(texture_of(face));
+                if (!corner_uvs_.empty())
+                    uvs_.insert(uvs_.end(), {corner_uvs_[first + t.x], corner_uvs_[first + t.y],
+                                             corner_uvs_[first + t.z]});
+            }
         }
+    }
+
+    // Without a picture, or with one that the header does not name, the first.
+    uint texture_of(std::size_t face) const {
+        const double number = textures_of_faces_[face];
+        return number > 0 && number < static_cast<double>(header_.textures.size()) ? static_cast<uint>(number) : 0;
+    }
+
+    // A vertex for each position and texture coordinates that meet in a corner.
+    void split_vertices() {
+        std::map<std::tuple<uint, float, float>, uint> vertices;
+        std::vector<uint> sources;
+        std::vector<vec2> uvs;
+        for (std::size_t i = 0; i < uvs_.size(); ++i) {
+            uint& corner = mesh_.triangles[i / 3][static_cast<int>(i % 3)];
+            const auto [known, is_new] =
+                vertices.try_emplace({corner, uvs_[i].x, uvs_[i].y}, static_cast<uint>(sources.size()));
+            if (is_new) sources.push_back(corner), uvs.push_back(uvs_[i]);
+            corner = known->second;
+        }
+        const auto pick = [&sources](auto& values) {
+            if (values.empty()) return;
+            std::remove_reference_t<decltype(values)> all;
+            for (const uint source : sources) all.push_back(values[source]);
+            values = std::move(all);
+        };
+        pick(mesh_.positions), pick(mesh_.normals), pick(mesh_.colors);
+        mesh_.uvs = std::move(uvs);
     }
 
     std::string object_;
@@ -362,9 +345,27 @@ class PlyReader {
     std::vector<dvec3> positions_;  // as the file has them
     std::vector<double> indices_;   // of all faces, unchecked
     std::vector<std::size_t> vertex_counts_;
+    std::vector<double> textures_of_faces_;
+    std::vector<vec2> corner_uvs_;  // as indices_; empty: faces have none
+    std::vector<vec2> uvs_;         // three a triangle, where faces have some
     FaceCutter cutter_;
     PassedOver passed_over_;
 };
+
+// The pictures that a file names, each as a material.
+void add_textures(Scene& scene, const std::vector<std::string>& names, const std::filesystem::path& folder) {
+    for (const std::string& name : names) {
+        Material material{.name = name, .metallic = 0};
+        material.base_color_texture.image = static_cast<std::int32_t>(scene.images.size());
+        try {
+            scene.images.push_back(decode_image(read_file(folder / name), text("picture '", name, "'")));
+        } catch (const Error& e) {
+            scene.warnings.push_back(text(e.what(), "; picture '", name, "' is shown as a checkerboard"));
+            scene.images.push_back(checkerboard_image(name));
+        }
+        scene.materials.push_back(std::move(material));
+    }
+}
 
 }  // namespace
 
@@ -375,8 +376,15 @@ Scene import_ply(const std::filesystem::path& file, const std::optional<dvec3>& 
     Mesh mesh = reader.read(origin);
     scene.origin = reader.origin();
     mesh.name = file.stem().string();
-    mesh.materials.assign(mesh.triangles.size(), 0);
     scene.warnings = reader.warnings();
+    if (!mesh.uvs.empty())
+        add_textures(scene, reader.textures(), file.parent_path());
+    else
+        for (const std::string& name : reader.textures())
+            scene.warnings.push_back(
+                text("picture '", name, "' is not shown: the file has no texture coordinates; save it as OBJ or glTF"));
+    if (scene.materials.empty()) mesh.materials.assign(mesh.triangles.size(), 0);
+    if (!mesh.colors.empty()) scene.materials.push_back({.name = "colours of vertices", .metallic = 0});
     if (mesh.triangles.empty()) fail("'", file.string(), "': has ", mesh.positions.size(), " vertices but no faces");
     scene.instances.push_back({mesh.name, 0, {}});
     scene.meshes.push_back(std::move(mesh));
