@@ -5,9 +5,9 @@
 set(TWINRAY_LIBRARIES "")
 set(TWINRAY_PARTS "")
 
-# twinray_add_library(<name> PARTS <part>... SEES <name>... USES <library of others>...)
+# twinray_add_library(<name> PARTS <part>... SEES <name>... USES <library of others>... MERGES <archive of others>...)
 function(twinray_add_library name)
-    cmake_parse_arguments(arg "" "" "PARTS;SEES;USES" ${ARGN})
+    cmake_parse_arguments(arg "" "" "PARTS;SEES;USES;MERGES" ${ARGN})
     list(TRANSFORM arg_PARTS REPLACE ".+" "twinray_\\0_part")
     list(TRANSFORM arg_SEES REPLACE ".+" "twinray_\\0")
     set_target_properties(${arg_PARTS} PROPERTIES POSITION_INDEPENDENT_CODE ON INTERPROCEDURAL_OPTIMIZATION OFF)
@@ -29,7 +29,7 @@ function(twinray_add_library name)
     set(library ${PROJECT_BINARY_DIR}/twinray_${name}.o)
     add_custom_command(
         OUTPUT ${library}
-        COMMAND ${merge} ${CMAKE_LINKER} ${CMAKE_NM} ${CMAKE_OBJCOPY} ${library} ${objects}
+        COMMAND ${merge} ${CMAKE_LINKER} ${CMAKE_NM} ${CMAKE_OBJCOPY} ${library} ${objects} ${arg_MERGES}
         DEPENDS ${merge} ${objects}
         COMMENT "Merging twinray_${name}.o"
         COMMAND_EXPAND_LISTS
@@ -39,6 +39,7 @@ function(twinray_add_library name)
     # Merged, what clang's sanitizers count of each part would be counted several times.
     if(TWINRAY_FUZZ)
         add_library(twinray_${name} STATIC ${objects})
+        target_link_libraries(twinray_${name} PRIVATE ${arg_MERGES})
     else()
         add_library(twinray_${name} ${library})
     endif()
@@ -63,7 +64,16 @@ endfunction()
 
 twinray_add_library(core PARTS core swtlas hwtlas USES ZLIB::ZLIB ${CMAKE_DL_LIBS})
 if(TWINRAY_SCENE)
-    twinray_add_library(scene PARTS scene SEES core USES OpenEXR::OpenEXR ZLIB::ZLIB)
+    set(scene_uses OpenEXR::OpenEXR ZLIB::ZLIB)
+    set(scene_merges "")
+    foreach(format ${TWINRAY_FORMATS})
+        if(format STREQUAL DRACO)
+            list(APPEND scene_merges ${DRACO_LIBRARY})
+        else()
+            list(APPEND scene_uses ${${format}_LIBRARY})
+        endif()
+    endforeach()
+    twinray_add_library(scene PARTS scene SEES core USES ${scene_uses} MERGES ${scene_merges})
 endif()
 if(TWINRAY_ANALYSIS)
     twinray_add_library(analysis PARTS analysis SEES scene)

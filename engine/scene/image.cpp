@@ -15,6 +15,7 @@
 
 #include "engine/core/error.h"
 #include "engine/scene/bytes.h"
+#include "engine/scene/image_codecs.h"
 #include "engine/scene/image_exr.h"
 #include "engine/scene/importers/words.h"
 #include "twinray/glsl/vector_math.h"
@@ -193,8 +194,6 @@ std::string description_of(std::span<const std::uint8_t> bytes) {
     if (head.starts_with("\x89PNG"sv)) return damaged("PNG");
     if (head.starts_with("\xff\xd8\xff"sv)) return damaged("JPEG");
     if (head.starts_with("\xabKTX 20"sv)) return "a KTX2 (Basis) texture, which is not supported; convert it to PNG";
-    if (head.starts_with("RIFF"sv) && head.substr(8).starts_with("WEBP"sv))
-        return "a WebP image, which is not supported; convert it to PNG";
     if (head.starts_with("DDS "sv)) return "a DDS texture, which is not supported; convert it to PNG";
     return "neither PNG nor JPEG";
 }
@@ -259,6 +258,7 @@ void check_image_size(std::int64_t width, std::int64_t height, const std::string
 
 Image decode_image(std::span<const std::uint8_t> bytes, const std::string& object) {
     const int size = checked_size(bytes, object);
+    if (const Codec codec = codec_of(bytes); codec != Codec::none) return decode_by_codec(codec, bytes, object);
     if (size == 0 || stbi_is_hdr_from_memory(bytes.data(), size)) fail(object, " is ", description_of(bytes));
     if (const std::string fault = fault_of_png(bytes); !fault.empty()) fail(object, " is a damaged PNG (", fault, ")");
     if (const std::string fault = fault_of_jpeg(bytes); !fault.empty())

@@ -1,14 +1,29 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <map>
 #include <set>
 #include <string_view>
 
+#include "engine/scene/image_codecs.h"
 #include "engine/scene/importers/gltf_json.h"
 
 namespace twinray {
 namespace {
 
 using nlohmann::json;
+
+// By a library that this twinray was built with.
+bool is_decoded(const std::string& extension) {
+    if (extension == "EXT_texture_webp") return has_library(Codec::webp);
+    if (extension == "EXT_texture_avif") return has_library(Codec::avif);
+#ifdef TWINRAY_HAS_MESHOPT
+    if (extension == "EXT_meshopt_compression" || extension == "KHR_meshopt_compression") return true;
+#endif
+#ifdef TWINRAY_HAS_DRACO
+    if (extension == "KHR_draco_mesh_compression") return true;
+#endif
+    return false;
+}
 
 bool is_supported(const std::string& extension) {
     static const std::set<std::string_view> supported = {"EXT_mesh_gpu_instancing",
@@ -27,23 +42,32 @@ bool is_supported(const std::string& extension) {
                                                          "KHR_mesh_quantization",
                                                          "KHR_node_visibility",
                                                          "KHR_texture_transform"};
-    return supported.contains(extension);
+    return supported.contains(extension) || is_decoded(extension);
 }
 
-// These say how a surface looks or what a file means, not where its triangles are: the scene is shown without them.
+// These say how a surface looks, what shines on it, what a file means or what may happen, not where its triangles are:
+// the scene is shown without them.
 bool is_optional_by_nature(const std::string& extension) {
-    static const std::set<std::string_view> metadata = {"KHR_xmp", "KHR_xmp_json_ld", "KHR_animation_pointer",
-                                                        "EXT_lights_image_based"};
-    return extension.starts_with("KHR_materials_") || metadata.contains(extension);
+    static const std::string_view families[] = {
+        "KHR_materials_", "EXT_materials_", "KHR_texture_", "EXT_texture_", "MSFT_texture_", "MSFT_packing_",
+        "KHR_lights_",    "EXT_lights_",    "KHR_xmp",      "KHR_physics_", "KHR_audio_",    "MSFT_audio_",
+        "KHR_interactiv", "KHR_animation_", "VRM",          "KHR_environ",  "EXT_structural_metadata",
+        "EXT_mesh_features", "EXT_instance_features", "EXT_feature_metadata"};
+    static const std::set<std::string_view> others = {
+        "ADOBE_materials_clearcoat_specular", "ADOBE_materials_clearcoat_tint", "ADOBE_materials_thin_transparency",
+        "AGI_articulations", "AGI_stk_metadata", "EXT_gltf_audio", "FB_geometry_metadata",
+        "FB_ngon_encoding", "KHR_collision_shapes", "KHR_implicit_shapes", "KHR_node_hoverability",
+        "KHR_node_selectability", "KHR_rigid_bodies", "KHR_techniques_webgl", "MSFT_lod", "NV_materials_mdl",
+        "OMI_collider", "OMI_physics_body", "OMI_physics_gravity", "OMI_physics_joint", "OMI_physics_shape"};
+    return others.contains(extension) ||
+           std::ranges::any_of(families, [&](std::string_view family) { return extension.starts_with(family); });
 }
 
 std::string_view advice(const std::string& extension) {
     static const std::map<std::string_view, std::string_view> remedies = {
         {"KHR_draco_mesh_compression", "decompress it, for example with `gltf-transform copy in.glb out.glb`"},
         {"EXT_meshopt_compression", "decompress it, for example with `gltf-transform copy in.glb out.glb`"},
-        {"KHR_meshopt_compression", "decompress it, for example with `gltf-transform copy in.glb out.glb`"},
-        {"KHR_texture_basisu", "convert its images, for example with `gltf-transform ktxdecompress in.glb out.glb`"},
-        {"EXT_texture_webp", "convert its images to PNG, for example with `gltf-transform png in.glb out.glb`"}};
+        {"KHR_meshopt_compression", "decompress it with `gltfpack -noq -kn -km -i in.glb -o out.glb`"}};
     const auto found = remedies.find(extension);
     return found != remedies.end() ? found->second : "export it again without this extension";
 }
@@ -58,11 +82,6 @@ std::set<std::string> strings_of(const json& root, const char* key) {
         for (const json& entry : *list)
             if (entry.is_string()) strings.insert(entry.get<std::string>());
     return strings;
-}
-
-bool has_extension(const json& object, const char* name) {
-    const auto extensions = object.find("extensions");
-    return extensions != object.end() && extensions->is_object() && extensions->contains(name);
 }
 
 const json& list_of(const json& object, const char* key) {
@@ -86,22 +105,32 @@ bool lacks_draco_fallback(const json& root) {
 }
 
 // A meshopt fallback buffer without a URI holds nothing.
-bool lacks_meshopt_fallback(const json& root) {
+bool lacks_meshopt_fallback(const json& root, const char* name) {
     for (const json& buffer : list_of(root, "buffers"))
-        if (has_extension(buffer, "EXT_meshopt_compression") && !buffer.contains("uri")) return true;
+        if (has_extension(buffer, name) && !buffer.contains("uri")) return true;
     return false;
 }
 
 }  // namespace
 
+bool has_extension(const json& object, const char* name) {
+    const auto extensions = object.find("extensions");
+    return extensions != object.end() && extensions->is_object() && extensions->contains(name);
+}
+
 void check_extensions(GltfFile& file, const json& root) {
     for (const std::string& extension : strings_of(root, "extensionsRequired"))
         if (!is_supported(extension) && !is_optional_by_nature(extension)) refuse(file, extension);
-    if (lacks_draco_fallback(root)) refuse(file, "KHR_draco_mesh_compression");
-    if (lacks_meshopt_fallback(root)) refuse(file, "EXT_meshopt_compression");
+    if (const char* draco = "KHR_draco_mesh_compression"; !is_decoded(draco) && lacks_draco_fallback(root))
+        refuse(file, draco);
+    for (const char* meshopt : {"EXT_meshopt_compression", "KHR_meshopt_compression"})
+        if (!is_decoded(meshopt) && lacks_meshopt_fallback(root, meshopt)) refuse(file, meshopt);
 
+    std::set<std::string> used = strings_of(root, "extensionsUsed");
+    used.merge(strings_of(root, "extensionsRequired"));
+    used.erase("FB_ngon_encoding");  // says which triangles were one face, and nothing of how they look
     std::string ignored;
-    for (const std::string& extension : strings_of(root, "extensionsUsed"))
+    for (const std::string& extension : used)
         if (!is_supported(extension)) ignored += (ignored.empty() ? "" : ", ") + extension;
     if (!ignored.empty()) file.warn("shown without the glTF extensions " + ignored);
 }

@@ -77,7 +77,7 @@ std::vector<tinygltf::Buffer> take_buffers(const GltfFile& file, GltfJson& sourc
     for (const json& entry : source.root.value("buffers", json::array())) {
         tinygltf::Buffer buffer;
         buffer.name = json_string(entry, "name");
-        buffer.data = read_buffer(file, entry, buffers.size(), source.binary);
+        if (!is_meshopt_placeholder(entry)) buffer.data = read_buffer(file, entry, buffers.size(), source.binary);
         buffers.push_back(std::move(buffer));
     }
     source.root.erase("buffers");
@@ -106,6 +106,20 @@ Bytes read_uri(const GltfFile& file, const std::string& uri) {
     return read_file(file.path.parent_path() / decode_percent(uri));
 }
 
+std::span<const std::uint8_t> stream_bytes(const GltfFile& file, const json& range,
+                                           const std::vector<tinygltf::Buffer>& buffers, const std::string& object) {
+    const auto length = json_count(range, "byteLength");
+    const std::uint64_t buffer = json_count(range, "buffer").value_or(UINT64_MAX);
+    const std::uint64_t offset = json_count(range, "byteOffset").value_or(0);
+    if (!length || buffer >= buffers.size())
+        file.fail(object, ": byteLength is missing, or its buffer does not exist; the file has ", buffers.size());
+    const auto& data = buffers[buffer].data;
+    if (offset > data.size() || *length > data.size() - offset)
+        file.fail(object, ": takes ", *length, " bytes from byte ", offset, ", but buffer ", buffer, " has only ",
+                  data.size(), " bytes");
+    return {data.data() + offset, *length};
+}
+
 std::span<const std::uint8_t> view_bytes(const GltfFile& file, int view, const std::string& object) {
     const auto& views = file.model.bufferViews;
     if (view < 0 || std::size_t(view) >= views.size())
@@ -129,6 +143,8 @@ GltfFile open_gltf(const std::filesystem::path& path) {
     std::vector<tinygltf::Image> images = take_images(source.root);
     file.motion = take_motion(source.root);
     check_types(file, source.root);
+    decode_meshopt_views(file, source.root, buffers);
+    decode_draco_primitives(file, source.root, buffers);
     parse_model(file, source.root);
     // Morph targets that move few vertices of a mesh have such accessors, with as many elements as it has vertices.
     file.zeros_left = std::size_t{1} << 22;

@@ -115,7 +115,7 @@ Texture GltfTextures::read(const tinygltf::Value& parent, const std::string& key
 
 std::int32_t GltfTextures::image_of(const tinygltf::Texture& texture, const std::string& object) {
     int source = texture.source;
-    for (const char* name : {"KHR_texture_basisu", "EXT_texture_webp", "MSFT_texture_dds"})
+    for (const char* name : {"KHR_texture_basisu", "EXT_texture_webp", "EXT_texture_avif", "MSFT_texture_dds"})
         if (const tinygltf::Value* extension = find_extension(texture.extensions, name); extension && source < 0)
             source = index_of(*extension, "source");
     if (source == -1) return -1;
