@@ -37,12 +37,18 @@ install(DIRECTORY shaders/hwtlas DESTINATION ${glsl_dir}/shaders FILES_MATCHING 
 # A static library leaves it to the host to link what it uses itself.
 set(find_link_only "")
 set(requires_link_only "")
+set(libs_link_only "")
 if(NOT BUILD_SHARED_LIBS)
     set(find_link_only "find_dependency(ZLIB)")
     set(requires_link_only "zlib")
     if(TWINRAY_SCENE)
         string(APPEND find_link_only "\nfind_dependency(OpenEXR CONFIG)")
         string(APPEND requires_link_only " OpenEXR")
+        foreach(format ${TWINRAY_FORMATS})
+            if(NOT format STREQUAL DRACO) # merged into ours
+                string(APPEND libs_link_only " ${${format}_LIBRARY}")
+            endif()
+        endforeach()
     endif()
 endif()
 list(TRANSFORM TWINRAY_LIBRARIES PREPEND "-l" OUTPUT_VARIABLE link_flags)

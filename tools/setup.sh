@@ -17,6 +17,7 @@ demo_packages=(
     g++ cmake ninja-build libvulkan-dev libvulkan-memory-allocator-dev libvulkan-volk-dev
     mesa-vulkan-drivers glslang-tools spirv-tools libglm-dev
     libtinygltf-dev libstb-dev nlohmann-json3-dev libcli11-dev libopenexr-dev zlib1g-dev
+    libwebp-dev libavif-dev libmeshoptimizer-dev libdraco-dev
 )
 packages=(
     "${demo_packages[@]}" pkg-config python3-minimal python3-venv python3-dev vulkan-tools
@@ -32,6 +33,8 @@ declare -A without=(
     [libembree-dev]="twinray bench does not measure Embree" [chromium-common]="no tests on SwiftShader"
     [libglfw3-dev]="twinray view opens no window" [libimgui-dev]="twinray view opens no window"
     [assimp-testmodels]="tests of its models are skipped" [gnuplot-nox]="no plots" [doxygen]="no documentation"
+    [libwebp-dev]="pictures in WebP are checkerboards" [libavif-dev]="pictures in AVIF are checkerboards"
+    [libmeshoptimizer-dev]="glTF compressed by meshopt is refused" [libdraco-dev]="glTF compressed by Draco is refused"
     [graphviz]="no figures in the documentation" [vulkan-validationlayers]="nothing checks our use of Vulkan"
 )
 

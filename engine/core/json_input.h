@@ -38,8 +38,7 @@ inline int json_levels(std::string_view source) {
 // Json::parse could count levels too, but looks at all entries of a list again for each object in it.
 template <class Json>
 Json parse_json(std::string_view source) {
-    if (json_levels(source) > most_json_levels)
-        fail("the JSON is nested deeper than ", most_json_levels, " levels");
+    if (json_levels(source) > most_json_levels) fail("the JSON is nested deeper than ", most_json_levels, " levels");
     return Json::parse(source);
 }
 template <class Json>

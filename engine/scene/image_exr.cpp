@@ -99,7 +99,8 @@ HdrImage load_exr_image(const std::filesystem::path& file) {
     } catch (const Error&) {
         throw;
     } catch (const std::exception& e) {  // OpenEXR's own, and running out of memory on a false size
-        if (const std::string reason = newer_compression(file); !reason.empty()) fail("'", file.string(), "': ", reason);
+        if (const std::string reason = newer_compression(file); !reason.empty())
+            fail("'", file.string(), "': ", reason);
         fail("'", file.string(), "': not a readable OpenEXR image (", e.what(), ")");
     }
 }

@@ -185,9 +185,7 @@ Mesh joined(const Scene& scene, std::string name);
 // Gives the scene's meshes the materials of one of its variants. Throws Error naming the variants that it has.
 void apply_variant(Scene& scene, const std::string& name);
 
-// For a transform that loses one direction, as a scale of 1 1 0 does, and so has no inverse: flattens the mesh along it,
-// and returns the transform that puts the flat mesh in the same place and has an inverse. For any other one it returns
-// nothing and leaves the mesh as it is.
+// Where a transform has no inverse, as it loses one direction: flattens the mesh, and returns a transform that has one.
 std::optional<Transform> flatten(Mesh& mesh, const Transform& transform);
 
 // Pushes every mesh with all its instances, so that Hit::instance_index is the index into scene.instances and

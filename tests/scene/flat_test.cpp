@@ -42,9 +42,8 @@ void expect_all_near(const std::vector<vec3>& found, const std::vector<vec3>& ex
 TEST(Flat, APlacementWithAnInverseIsLeftAlone) {
     Mesh mesh;
     mesh.positions = {{1, 2, 3}};
-    for (const Transform& transform :
-         {Transform{}, Transform::scaling({1, 1, 1e-30f}), Transform::scaling({-1, 1, 1}), Transform::scaling(vec3(0)),
-          Transform::scaling({1, 0, 0})})
+    for (const Transform& transform : {Transform{}, Transform::scaling({1, 1, 1e-30f}), Transform::scaling({-1, 1, 1}),
+                                       Transform::scaling(vec3(0)), Transform::scaling({1, 0, 0})})
         EXPECT_FALSE(flatten(mesh, transform));
     EXPECT_EQ(mesh.positions[0], vec3(1, 2, 3));
 }
@@ -94,12 +93,10 @@ TEST(Flat, NodesOfEveryKindShowWhatIsLeft) {
     EXPECT_TRUE(scene.warnings.empty());
     ASSERT_EQ(scene.instances.size(), 6u);
     EXPECT_EQ(scene.meshes.size(), 5u);  // whole, and along z (two share it), y, x, and x but for a rounding
-    std::vector<std::vector<vec3>> expected = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}},
-                                               {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
-                                               {{5, 0, 0}, {6, 0, 0}, {5, 0, 0}, {5, 0, 1}},
-                                               {{0, 0, 0}, {0, 0, 0}, {0, 1, 0}, {1, 0, 0}},
-                                               {{0, 0, 0}, {0, 0, 0}, {0, 1, 0}, {0, 0, 1}},
-                                               {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}}};
+    std::vector<std::vector<vec3>> expected = {
+        {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}}, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+        {{5, 0, 0}, {6, 0, 0}, {5, 0, 0}, {5, 0, 1}}, {{0, 0, 0}, {0, 0, 0}, {0, 1, 0}, {1, 0, 0}},
+        {{0, 0, 0}, {0, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}}};
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         EXPECT_EQ(fault_of(scene.instances[i].transform), "");
         const std::vector<vec3> found = world_positions(scene, i);

@@ -42,8 +42,9 @@ TEST(GltfSkin, AMeshWhoseSkinIsBrokenIsLeftOut) {
     const Scene scene = gltf.load();
     ASSERT_EQ(scene.instances.size(), 1u);
     EXPECT_EQ(scene.instances[0].name, "whole");
-    EXPECT_TRUE(has_warning(scene, "skin 0: joint 3 is a node that is not in the shown scene; the mesh of node 0 'node' "
-                                   "is not shown"));
+    EXPECT_TRUE(has_warning(scene,
+                            "skin 0: joint 3 is a node that is not in the shown scene; the mesh of node 0 'node' "
+                            "is not shown"));
 }
 
 TEST(GltfSkin, APrimitiveWithoutJointsFollowsTheFirst) {

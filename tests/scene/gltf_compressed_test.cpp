@@ -35,8 +35,7 @@ struct MeshoptFile {
         if (first_byte != 0xa0) vertices[0] = static_cast<char>(first_byte);
         gltf.buffer = vertices + faces;
         root = json::parse(gltf.with_data_uri());
-        root["buffers"].push_back(
-            {{"byteLength", 72}, {"extensions", {{extension, {{"fallback", true}}}}}});
+        root["buffers"].push_back({{"byteLength", 72}, {"extensions", {{extension, {{"fallback", true}}}}}});
         root["extensionsRequired"] = {extension};
         root["bufferViews"] = {view(extension, 0, vertices.size(), sizeof(vec3), CORNERS.size(), "ATTRIBUTES"),
                                view(extension, vertices.size(), faces.size(), 4, FACES.size(), "TRIANGLES")};
@@ -83,7 +82,8 @@ TEST(GltfMeshopt, StreamsThatDoNotFitAreNamed) {
     expect([](MeshoptFile& file) { file.stream(0)["count"] = 1u << 30; }, "bufferView 0 EXT_meshopt_compression");
     expect([](MeshoptFile& file) { file.stream(0)["byteStride"] = 14; }, "mode ATTRIBUTES with 4 elements of 14 bytes");
     expect([](MeshoptFile& file) { file.stream(0)["mode"] = "POINTS"; }, "unknown mode 'POINTS'");
-    expect([](MeshoptFile& file) { file.stream(0)["filter"] = "OCTAHEDRAL"; }, "filter 'OCTAHEDRAL' with a stride of 12");
+    expect([](MeshoptFile& file) { file.stream(0)["filter"] = "OCTAHEDRAL"; },
+           "filter 'OCTAHEDRAL' with a stride of 12");
     expect([](MeshoptFile& file) { file.stream(0)["byteLength"] = 1u << 20; }, "takes 1048576 bytes from byte 0");
     expect([](MeshoptFile& file) { file.stream(0)["buffer"] = 9; }, "the file has 2");
     expect([](MeshoptFile& file) { file.stream(0)["byteLength"] = 4; }, "is damaged");

@@ -247,10 +247,9 @@ TEST(GltfFile, AMissingFileIsNamed) {
 }
 
 TEST(GltfFile, WhatMovesNoTriangleMayBeRequired) {
-    for (const char* name :
-         {"KHR_texture_basisu", "MSFT_texture_dds", "EXT_lights_ies", "EXT_lights_image_based", "KHR_xmp_json_ld",
-          "KHR_physics_rigid_bodies", "KHR_implicit_shapes", "KHR_interactivity", "VRM", "VRMC_vrm",
-          "KHR_animation_pointer", "EXT_structural_metadata", "MSFT_lod"}) {
+    for (const char* name : {"KHR_texture_basisu", "MSFT_texture_dds", "EXT_lights_ies", "EXT_lights_image_based",
+                             "KHR_xmp_json_ld", "KHR_physics_rigid_bodies", "KHR_implicit_shapes", "KHR_interactivity",
+                             "VRM", "VRMC_vrm", "KHR_animation_pointer", "EXT_structural_metadata", "MSFT_lod"}) {
         GltfBuilder gltf = one_triangle();
         gltf.root["extensionsRequired"] = {name};
         const Scene scene = gltf.load();

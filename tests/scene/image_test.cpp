@@ -95,7 +95,9 @@ TEST(HdrImage, ExposuresAndColourCorrectionsAreDividedOut) {
     const TempDir dir;
     const std::string pixels("\x80\x80\x80\x81", 4);
     const auto pixel = [&](const std::string& lines) {
-        return load_hdr_image(dir.write("a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n" + lines + "\n-Y 1 +X 1\n" + pixels)).rgb[0];
+        return load_hdr_image(
+                   dir.write("a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n" + lines + "\n-Y 1 +X 1\n" + pixels))
+            .rgb[0];
     };
     const float one = pixel("").x;
     EXPECT_EQ(pixel("EXPOSURE=4.0000e+00\n"), vec3(one / 4));

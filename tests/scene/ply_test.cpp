@@ -239,9 +239,9 @@ TEST(Ply, BodyFaultsAreNamed) {
 // A file of that kind is made by writers of NumPy arrays: see ply_type_of().
 TEST(Ply, NamesOfTypesHaveTheirSizes) {
     const std::map<std::string, std::size_t> sizes = {
-        {"char", 1},  {"int8", 1},  {"uchar", 1},  {"uint8", 1},  {"short", 2},   {"int16", 2}, {"ushort", 2},
-        {"uint16", 2}, {"int", 4},  {"int32", 4},  {"uint", 4},   {"uint32", 4},  {"int64", 8}, {"uint64", 8},
-        {"half", 2},  {"float16", 2}, {"float", 4}, {"float32", 4}, {"double", 8}, {"float64", 8}};
+        {"char", 1},   {"int8", 1},    {"uchar", 1}, {"uint8", 1},   {"short", 2},  {"int16", 2},  {"ushort", 2},
+        {"uint16", 2}, {"int", 4},     {"int32", 4}, {"uint", 4},    {"uint32", 4}, {"int64", 8},  {"uint64", 8},
+        {"half", 2},   {"float16", 2}, {"float", 4}, {"float32", 4}, {"double", 8}, {"float64", 8}};
     for (const auto& [name, size] : sizes) {
         ASSERT_TRUE(ply_type_of(name)) << name;
         EXPECT_EQ(size_of(*ply_type_of(name)), size) << name;
@@ -260,10 +260,10 @@ TEST(Ply, VerticesHaveColours) {
 }
 
 // Two triangles that share an edge, on whose vertices they have other texture coordinates.
-const std::string WEDGES = "ply\nformat ascii 1.0\ncomment TextureFile my wall.png\nelement vertex 4\n" + POSITIONS +
-                           "element face 2\n" + FACE_LIST +
-                           "property list uchar float texcoord\nproperty uchar red\nproperty uchar green\nend_header\n" +
-                           TRIANGLE_ROWS + "1 1 0\n3 0 1 2 6 0 0 1 0 0 1 9 9\n3 2 1 3 6 0 1 0.5 0 1 1 9 9\n";
+const std::string WEDGES =
+    "ply\nformat ascii 1.0\ncomment TextureFile my wall.png\nelement vertex 4\n" + POSITIONS + "element face 2\n" +
+    FACE_LIST + "property list uchar float texcoord\nproperty uchar red\nproperty uchar green\nend_header\n" +
+    TRIANGLE_ROWS + "1 1 0\n3 0 1 2 6 0 0 1 0 0 1 9 9\n3 2 1 3 6 0 1 0.5 0 1 1 9 9\n";
 
 TEST(Ply, CornersOfFacesHaveTextureCoordinates) {
     const Scene scene = load_ply(WEDGES);

@@ -42,7 +42,7 @@ std::optional<DracoCounts> draco_counts_of(std::span<const std::uint8_t> bytes) 
 }
 
 std::unique_ptr<draco::Mesh> decode_draco(const GltfFile& file, std::span<const std::uint8_t> bytes,
-                                    const std::string& object) {
+                                          const std::string& object) {
     // A face of a flat grid takes less than a bit.
     constexpr std::size_t most_expansion = 64;
     const std::optional<DracoCounts> counts = draco_counts_of(bytes);
@@ -60,7 +60,7 @@ std::unique_ptr<draco::Mesh> decode_draco(const GltfFile& file, std::span<const 
 
 template <class T>
 void put_draco_attribute(const draco::Mesh& mesh, const draco::PointAttribute& attribute, std::size_t components,
-                   std::vector<unsigned char>& bytes) {
+                         std::vector<unsigned char>& bytes) {
     bytes.resize(mesh.num_points() * components * sizeof(T));
     std::vector<T> values(components);
     for (std::uint32_t i = 0; i < mesh.num_points(); ++i) {
@@ -104,7 +104,9 @@ class DracoPrimitive {
         if (components == 0) file_.fail(object_, ": ", name, " is no scalar and no vector");
         std::vector<unsigned char> bytes;
         switch (json_count(target, "componentType").value_or(0)) {
-            case TINYGLTF_COMPONENT_TYPE_BYTE: put_draco_attribute<std::int8_t>(mesh_, *attribute, components, bytes); break;
+            case TINYGLTF_COMPONENT_TYPE_BYTE:
+                put_draco_attribute<std::int8_t>(mesh_, *attribute, components, bytes);
+                break;
             case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
                 put_draco_attribute<std::uint8_t>(mesh_, *attribute, components, bytes);
                 break;
@@ -156,8 +158,8 @@ std::span<const std::uint8_t> draco_stream(const GltfFile& file, const json& roo
 }
 
 // Strips come out as triangles.
-void decode_draco_primitive(const GltfFile& file, json& root, std::vector<tinygltf::Buffer>& buffers,
-                            json& primitive, const std::string& object) {
+void decode_draco_primitive(const GltfFile& file, json& root, std::vector<tinygltf::Buffer>& buffers, json& primitive,
+                            const std::string& object) {
     const json extension = primitive["extensions"][draco_extension];
     const std::unique_ptr<draco::Mesh> mesh =
         decode_draco(file, draco_stream(file, root, extension, buffers, object), object);

@@ -48,17 +48,47 @@ bool is_supported(const std::string& extension) {
 // These say how a surface looks, what shines on it, what a file means or what may happen, not where its triangles are:
 // the scene is shown without them.
 bool is_optional_by_nature(const std::string& extension) {
-    static const std::string_view families[] = {
-        "KHR_materials_", "EXT_materials_", "KHR_texture_", "EXT_texture_", "MSFT_texture_", "MSFT_packing_",
-        "KHR_lights_",    "EXT_lights_",    "KHR_xmp",      "KHR_physics_", "KHR_audio_",    "MSFT_audio_",
-        "KHR_interactiv", "KHR_animation_", "VRM",          "KHR_environ",  "EXT_structural_metadata",
-        "EXT_mesh_features", "EXT_instance_features", "EXT_feature_metadata"};
-    static const std::set<std::string_view> others = {
-        "ADOBE_materials_clearcoat_specular", "ADOBE_materials_clearcoat_tint", "ADOBE_materials_thin_transparency",
-        "AGI_articulations", "AGI_stk_metadata", "EXT_gltf_audio", "FB_geometry_metadata",
-        "FB_ngon_encoding", "KHR_collision_shapes", "KHR_implicit_shapes", "KHR_node_hoverability",
-        "KHR_node_selectability", "KHR_rigid_bodies", "KHR_techniques_webgl", "MSFT_lod", "NV_materials_mdl",
-        "OMI_collider", "OMI_physics_body", "OMI_physics_gravity", "OMI_physics_joint", "OMI_physics_shape"};
+    static const std::string_view families[] = {"KHR_materials_",
+                                                "EXT_materials_",
+                                                "KHR_texture_",
+                                                "EXT_texture_",
+                                                "MSFT_texture_",
+                                                "MSFT_packing_",
+                                                "KHR_lights_",
+                                                "EXT_lights_",
+                                                "KHR_xmp",
+                                                "KHR_physics_",
+                                                "KHR_audio_",
+                                                "MSFT_audio_",
+                                                "KHR_interactiv",
+                                                "KHR_animation_",
+                                                "VRM",
+                                                "KHR_environ",
+                                                "EXT_structural_metadata",
+                                                "EXT_mesh_features",
+                                                "EXT_instance_features",
+                                                "EXT_feature_metadata"};
+    static const std::set<std::string_view> others = {"ADOBE_materials_clearcoat_specular",
+                                                      "ADOBE_materials_clearcoat_tint",
+                                                      "ADOBE_materials_thin_transparency",
+                                                      "AGI_articulations",
+                                                      "AGI_stk_metadata",
+                                                      "EXT_gltf_audio",
+                                                      "FB_geometry_metadata",
+                                                      "FB_ngon_encoding",
+                                                      "KHR_collision_shapes",
+                                                      "KHR_implicit_shapes",
+                                                      "KHR_node_hoverability",
+                                                      "KHR_node_selectability",
+                                                      "KHR_rigid_bodies",
+                                                      "KHR_techniques_webgl",
+                                                      "MSFT_lod",
+                                                      "NV_materials_mdl",
+                                                      "OMI_collider",
+                                                      "OMI_physics_body",
+                                                      "OMI_physics_gravity",
+                                                      "OMI_physics_joint",
+                                                      "OMI_physics_shape"};
     return others.contains(extension) ||
            std::ranges::any_of(families, [&](std::string_view family) { return extension.starts_with(family); });
 }

@@ -40,15 +40,16 @@ struct MeshoptStream {
 // No stream holds more: a byte of control says of 256 vertices that 4 bytes of each are 0.
 constexpr std::size_t most_meshopt_expansion = 1024;
 
-MeshoptStream read_meshopt_stream(const GltfFile& file, const json& extension, const std::vector<tinygltf::Buffer>& buffers,
-                   const std::string& object) {
+MeshoptStream read_meshopt_stream(const GltfFile& file, const json& extension,
+                                  const std::vector<tinygltf::Buffer>& buffers, const std::string& object) {
     const std::span<const std::uint8_t> bytes = stream_bytes(file, extension, buffers, object);
     const auto count = json_count(extension, "count"), stride = json_count(extension, "byteStride");
     if (!count || !stride) file.fail(object, ": count or byteStride is missing or not a non-negative integer");
     MeshoptStream stream{bytes, *count, *stride, "", ""};
     stream.mode = json_string(extension, "mode");
     stream.filter = json_string(extension, "filter");
-    if (stream.stride == 0 || stream.stride > 256 || stream.count > most_meshopt_expansion * (bytes.size() + 1) / stream.stride)
+    if (stream.stride == 0 || stream.stride > 256 ||
+        stream.count > most_meshopt_expansion * (bytes.size() + 1) / stream.stride)
         file.fail(object, ": ", stream.count, " elements of ", stream.stride, " bytes are no more than 256 each and ",
                   most_meshopt_expansion, " times the ", bytes.size(), " bytes of the stream");
     return stream;
@@ -82,19 +83,21 @@ int decode_meshopt_into(const MeshoptStream& stream, Bytes& bytes) {
 
 Bytes decode_meshopt(const GltfFile& file, const MeshoptStream& stream, const std::string& object) {
     const bool is_index = stream.mode == "TRIANGLES" || stream.mode == "INDICES";
-    if (!is_index && stream.mode != "ATTRIBUTES") file.fail(object, ": unknown mode '", stream.mode, "'; ", meshopt_remedy);
+    if (!is_index && stream.mode != "ATTRIBUTES")
+        file.fail(object, ": unknown mode '", stream.mode, "'; ", meshopt_remedy);
     const bool fits = is_index ? stream.stride == 2 || stream.stride == 4 : stream.stride % 4 == 0;
     if (!fits || (stream.mode == "TRIANGLES" && stream.count % 3 != 0))
         file.fail(object, ": mode ", stream.mode, " with ", stream.count, " elements of ", stream.stride, " bytes");
     if (!meshopt_filter_fits(stream))
-        file.fail(object, ": filter '", stream.filter, "' with a stride of ", stream.stride, " is not known; ", meshopt_remedy);
+        file.fail(object, ": filter '", stream.filter, "' with a stride of ", stream.stride, " is not known; ",
+                  meshopt_remedy);
     Bytes bytes(stream.count * stream.stride);
     const int status = decode_meshopt_into(stream, bytes);
     constexpr std::uint8_t newest_vertices = 0xa0;  // that libmeshoptimizer of before 0.23 decodes
     if (status == -1 && MESHOPTIMIZER_VERSION < 230 && !is_index && !stream.bytes.empty() &&
         stream.bytes[0] > newest_vertices)
-        file.fail(object, ": is compressed for a newer libmeshoptimizer than version ", MESHOPTIMIZER_VERSION / 1000, ".",
-                  MESHOPTIMIZER_VERSION / 10 % 100, ", which this twinray was built with; ", meshopt_remedy);
+        file.fail(object, ": is compressed for a newer libmeshoptimizer than version ", MESHOPTIMIZER_VERSION / 1000,
+                  ".", MESHOPTIMIZER_VERSION / 10 % 100, ", which this twinray was built with; ", meshopt_remedy);
     if (status != 0) file.fail(object, ": is damaged: libmeshoptimizer decodes it with status ", status);
     undo_meshopt_filter(stream, bytes);
     return bytes;

@@ -24,9 +24,8 @@ struct GltfNode {
 };
 
 // The nodes of the default scene, else of the first one, or where there are no scenes all root nodes, with their
-// descendants; parents come first. Warns where a scene had to be chosen, and of a node with two parents, which stays with
-// the first.
-// Throws Error naming the node on: a missing child, a cycle, over 1000 levels, a transform that is not
+// descendants; parents come first. Warns where a scene had to be chosen, and of a node with two parents, which stays
+// with the first. Throws Error naming the node on: a missing child, a cycle, over 1000 levels, a transform that is not
 // finite, not affine or has the wrong number of entries.
 std::vector<GltfNode> flatten_nodes(GltfFile& file);
 

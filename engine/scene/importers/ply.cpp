@@ -106,9 +106,18 @@ constexpr std::size_t nowhere = 12;
 
 std::size_t slot_of(const PlyProperty& property) {
     if (property.count_type) return nowhere;
-    const std::array<std::initializer_list<const char*>, nowhere> names = {
-        {{"x"}, {"y"}, {"z"}, {"nx"}, {"ny"}, {"nz"}, {"u", "s", "texture_u"}, {"v", "t", "texture_v"},
-         {"red", "diffuse_red"}, {"green", "diffuse_green"}, {"blue", "diffuse_blue"}, {"alpha", "diffuse_alpha"}}};
+    const std::array<std::initializer_list<const char*>, nowhere> names = {{{"x"},
+                                                                            {"y"},
+                                                                            {"z"},
+                                                                            {"nx"},
+                                                                            {"ny"},
+                                                                            {"nz"},
+                                                                            {"u", "s", "texture_u"},
+                                                                            {"v", "t", "texture_v"},
+                                                                            {"red", "diffuse_red"},
+                                                                            {"green", "diffuse_green"},
+                                                                            {"blue", "diffuse_blue"},
+                                                                            {"alpha", "diffuse_alpha"}}};
     for (std::size_t i = 0; i < nowhere; ++i)
         if (is_any_of(property.name, names[i])) return i;
     return nowhere;
@@ -303,8 +312,8 @@ class PlyReader {
                 mesh_.triangles.emplace_back(index(t.x), index(t.y), index(t.z));
                 mesh_.materials.push_back(texture_of(face));
                 if (!corner_uvs_.empty())
-                    uvs_.insert(uvs_.end(), {corner_uvs_[first + t.x], corner_uvs_[first + t.y],
-                                             corner_uvs_[first + t.z]});
+                    uvs_.insert(uvs_.end(),
+                                {corner_uvs_[first + t.x], corner_uvs_[first + t.y], corner_uvs_[first + t.z]});
             }
         }
     }

@@ -85,11 +85,11 @@ void check_counts(const PlyHeader& header, std::size_t body_size, const std::str
 
 std::optional<PlyType> ply_type_of(std::string_view name) {
     static const std::map<std::string_view, PlyType> types = {
-        {"char", PlyType::i8},    {"int8", PlyType::i8},     {"uchar", PlyType::u8},    {"uint8", PlyType::u8},
-        {"short", PlyType::i16},  {"int16", PlyType::i16},   {"ushort", PlyType::u16},  {"uint16", PlyType::u16},
-        {"int", PlyType::i32},    {"int32", PlyType::i32},   {"uint", PlyType::u32},    {"uint32", PlyType::u32},
-        {"int64", PlyType::i64},  {"uint64", PlyType::u64},  {"float16", PlyType::f16}, {"half", PlyType::f16},
-        {"float", PlyType::f32},  {"float32", PlyType::f32}, {"double", PlyType::f64},  {"float64", PlyType::f64}};
+        {"char", PlyType::i8},   {"int8", PlyType::i8},     {"uchar", PlyType::u8},    {"uint8", PlyType::u8},
+        {"short", PlyType::i16}, {"int16", PlyType::i16},   {"ushort", PlyType::u16},  {"uint16", PlyType::u16},
+        {"int", PlyType::i32},   {"int32", PlyType::i32},   {"uint", PlyType::u32},    {"uint32", PlyType::u32},
+        {"int64", PlyType::i64}, {"uint64", PlyType::u64},  {"float16", PlyType::f16}, {"half", PlyType::f16},
+        {"float", PlyType::f32}, {"float32", PlyType::f32}, {"double", PlyType::f64},  {"float64", PlyType::f64}};
     const auto found = types.find(name);
     return found == types.end() ? std::nullopt : std::optional(found->second);
 }
