@@ -171,7 +171,7 @@ Scene::Part& Scene::movable(uint geometry, const char* action) {
 uint Scene::add_instance(uint of, const Transform& transform) {
     const Lock lock(device_->mutex);
     const Part original = movable(of, "add_instance");
-    if (Mesh own = *original.mesh; flatten(own, transform)) return add(Mesh(*original.mesh), transform);
+    if (Mesh none; flatten(none, transform)) return add(Mesh(*original.mesh), transform);  // it needs a mesh of its own
     const InstanceOptions options = options_of_next();
     const AccelHandle handle =
         accel_->push_instances_of(original.handle, std::span(&transform, 1), std::span(&options, 1));
