@@ -184,8 +184,7 @@ Mesh joined(const Scene& scene, std::string name);
 
 // Gives the scene's meshes the materials of one of its variants. Throws Error naming the variants that it has.
 void apply_variant(Scene& scene, const std::string& name);
-
-// Where a transform has no inverse, as it loses one direction: flattens the mesh, and returns a transform that has one.
+// Flattens the mesh if the transform has no inverse because it loses one direction, and returns one that has.
 std::optional<Transform> flatten(Mesh& mesh, const Transform& transform);
 
 // Pushes every mesh with all its instances, so that Hit::instance_index is the index into scene.instances and
@@ -330,8 +329,8 @@ void pose_scene(Scene& scene, const Pose& pose);
 // Returns transforms by index in Scene::instances, as pose_scene() sets them.
 std::vector<Transform> instance_transforms(const Rig& rig, const Pose& pose);
 
-// Gives instances that have no area at rest, until an animation scales their node, a place in the scene, before it is
-// pushed into an accelerator and played: until the first pose_scene() they stand at the identity.
+// Lets instances that have no area until an animation scales their node be pushed. Call it before the scene is pushed
+// into an accelerator and played: until the first pose_scene() they stand at the identity.
 void show_hidden(Scene& scene);
 
 // Returns the meshes whose vertices follow a pose, by skin or morph targets: indices into Scene::meshes, which holds

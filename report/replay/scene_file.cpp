@@ -129,7 +129,7 @@ std::string hash_of(const Scene& scene) {
         hash.add_bytes(std::span(mesh.triangles));
         hash.add_bytes(std::span(&instance.transform, 1));
     }
-    return hexadecimal(hash.value());
+    return twinray::hexadecimal(hash.value());
 }
 
 Scene load_traced_scene(const std::filesystem::path& file, const Replay& replay) {
