@@ -151,27 +151,14 @@ uint Scene::keep(AccelHandle handle, std::shared_ptr<KeptMesh> mesh, const Trans
 uint Scene::add(Mesh&& mesh, const Transform& transform) {
     const Lock lock(device_->mutex);
     mesh.name = "geometry " + std::to_string(parts_.size());
-    const std::optional<Transform> flat = flatten(mesh, transform);
-    const Transform placed = flat.value_or(transform);
-    auto kept = std::make_shared<Mesh>(std::move(mesh));
-    const AccelHandle handle = accel_->push(*kept, placed, options_of_next());
-    const uint geometry = keep(handle, std::move(kept), placed);
-    parts_[geometry]->is_flat = flat.has_value();
-    return geometry;
-}
-
-Scene::Part& Scene::movable(uint geometry, const char* action) {
-    Part& moved = part(geometry, action);
-    if (moved.is_flat)
-        throw Error(std::string(action) + ": geometry " + std::to_string(geometry) +
-                    " was flattened by its transform; add its mesh again");
-    return moved;
+    auto kept = std::make_shared<KeptMesh>(KeptMesh{std::move(mesh), {}});
+    const AccelHandle handle = accel_->push(*kept, transform, options_of_next());
+    return keep(handle, std::move(kept), transform);
 }
 
 uint Scene::add_instance(uint of, const Transform& transform) {
     const Lock lock(device_->mutex);
-    const Part original = movable(of, "add_instance");
-    if (Mesh none; flatten(none, transform)) return add(Mesh(*original.mesh), transform);  // it needs a mesh of its own
+    const Part original = part(of, "add_instance");
     const InstanceOptions options = options_of_next();
     const AccelHandle handle =
         accel_->push_instances_of(original.handle, std::span(&transform, 1), std::span(&options, 1));
@@ -204,7 +191,7 @@ void Scene::remove(uint geometry) {
 
 void Scene::set_transform(uint geometry, const Transform& transform) {
     const Lock lock(device_->mutex);
-    Part& moved = movable(geometry, "set_transform");
+    Part& moved = part(geometry, "set_transform");
     accel_->update_transform(moved.handle, transform);
     if (lister_) lister_->update_transform(moved.listed, transform);
     moved.transform = transform;
@@ -213,7 +200,7 @@ void Scene::set_transform(uint geometry, const Transform& transform) {
 
 void Scene::update_vertices(uint geometry, std::vector<vec3>&& positions) {
     const Lock lock(device_->mutex);
-    Part& moved = movable(geometry, "update_vertices");
+    Part& moved = part(geometry, "update_vertices");
     accel_->update_vertices(moved.handle, positions);
     if (lister_) lister_->update_vertices(moved.listed, positions);
     moved.mesh->positions = std::move(positions);

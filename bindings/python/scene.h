@@ -187,13 +187,14 @@ class Scene {
         AccelHandle handle;
         std::shared_ptr<KeptMesh> mesh;
         Transform transform;
-        bool is_flat = false;  // by the transform that it was added with; see twinray::flatten()
+        AccelHandle listed = {};  // in lister_, while that is there
     };
     using Lock = std::lock_guard<std::recursive_mutex>;
 
     Part& part(uint geometry, const char* action);
-    uint keep(AccelHandle handle, std::shared_ptr<Mesh> mesh, const Transform& transform);
-    Part& movable(uint geometry, const char* action);  // throws for one that is flat
+    uint keep(AccelHandle handle, std::shared_ptr<KeptMesh> mesh, const Transform& transform);
+    void changed();
+    void forget_lister();
     InstanceOptions options_of_next() const;
     Numbers3 normal_of(uint geometry, uint primitive) const;
     // None: 2^32 - 1 both.

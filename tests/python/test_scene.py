@@ -533,21 +533,3 @@ def test_the_five_lines_of_the_readme(capsys):
     [lines] = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.S)
     exec(lines, {})
     assert capsys.readouterr().out == "[2.] [0]\n" and len(lines.splitlines()) == 5
-
-
-def test_a_transform_that_flattens_leaves_what_is_left():
-    scene = twinray.Scene()
-    flat = scene.add_triangles(*cube(), transform=np.diag([2, 1, 0, 1]))
-    found = scene.cast_rays([[1.5, 0.5, 3, 0, 0, -1], [2.5, 0.5, 3, 0, 0, -1]])
-    assert np.isclose(found["t_hit"][0], 3, atol=1e-6) and np.isinf(found["t_hit"][1])
-    for call in (
-        lambda: scene.set_transform(flat, np.eye(4)),
-        lambda: scene.add_instance(flat),
-        lambda: scene.update_vertices(flat, cube()[0]),
-    ):
-        with pytest.raises(twinray.Error, match="geometry 0 was flattened by its transform; add its mesh again"):
-            call()
-    whole = scene.add_triangles(*cube(), transform=np.array([[1, 0, 0, 10], [0, 1, 0, 0], [0, 0, 1, 0]]))
-    scene.add_instance(whole, np.array([[1, 0, 0, 20], [0, 0, 0, 0], [0, 0, 1, 0]]))
-    assert np.isclose(scene.cast_rays([20.5, -3, 0.5, 0, 1, 0])["t_hit"], 3, atol=1e-6)
-    assert len(scene) == 3

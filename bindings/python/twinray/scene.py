@@ -202,8 +202,7 @@ class Scene:
             A mesh of trimesh, Open3D or PyVista stands for both arrays.
         triangle_indices : array_like, (M, 3) uint32
         transform : array_like, (4, 4) or (3, 4), optional
-            From the mesh to the scene; columns are the images of the axes and of the origin. One that loses one
-            direction, as a scale of 1, 1, 0 does, flattens the geometry for good.
+            From the mesh to the scene; columns are the images of the axes and of the origin.
 
         Returns
         -------
@@ -215,7 +214,7 @@ class Scene:
         ValueError, TypeError
             Naming the argument, its shape or dtype, and what is wanted.
         Error
-            For an index that names no vertex, and a transform that leaves no area.
+            For an index that names no vertex, and a transform that cannot be inverted.
         """
         if triangle_indices is None:
             vertex_positions, triangle_indices = arrays_of_mesh(vertex_positions)
