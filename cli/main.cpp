@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The command `twinray`.
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <iostream>
 
 #include "cli/command/help_text.h"
@@ -87,4 +89,11 @@ std::vector<Command> all_commands() {
 
 }  // namespace twinray::cli
 
-int main(int argc, char** argv) { return twinray::cli::run({argv + 1, argv + argc}); }
+int main(int argc, char** argv) {
+    const int status = twinray::cli::run({argv + 1, argv + argc});
+    errno = 0;
+    if (std::cout.flush()) return status;
+    std::cerr << "twinray: the standard output cannot be written: "
+              << (errno ? std::strerror(errno) : "an earlier line failed") << '\n';
+    return status ? status : 1;
+}

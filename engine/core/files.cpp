@@ -9,6 +9,23 @@
 #include "engine/core/error.h"
 
 namespace twinray {
+namespace {
+
+constexpr int most_links = 40;  // as Linux follows
+
+// What the name stands for, also where that is not there yet.
+std::filesystem::path linked(std::filesystem::path file) {
+    std::error_code error;
+    for (int i = 0; i < most_links && std::filesystem::is_symlink(file, error); ++i)
+        file = file.parent_path() / std::filesystem::read_symlink(file, error);
+    return file;
+}
+
+[[noreturn]] void fail_to_write(const std::filesystem::path& file, const std::string& reason) {
+    fail("'", file.string(), "': cannot be written: ", reason);
+}
+
+}  // namespace
 
 Bytes read_file(const std::filesystem::path& file) {
     std::error_code error;
@@ -26,19 +43,23 @@ Bytes read_file(const std::filesystem::path& file) {
 }
 
 void write_whole(const std::filesystem::path& file, const std::function<void(const std::filesystem::path&)>& write) {
-    std::filesystem::path partial = file;
+    const std::filesystem::path target = linked(file);
+    std::error_code error;
+    if (const auto status = std::filesystem::status(target, error);
+        std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+        write(target);
+        return;
+    }
+    std::filesystem::path partial = target;
     partial += text(".partial-", std::hex, std::random_device{}());
-    std::error_code error, ignored;
     try {
         write(partial);
-        std::filesystem::rename(partial, file, error);
+        std::filesystem::rename(partial, target, error);
+        if (error) fail_to_write(file, error.message());
     } catch (...) {
-        std::filesystem::remove(partial, ignored);
+        std::filesystem::remove(partial, error);
         throw;
     }
-    if (!error) return;
-    std::filesystem::remove(partial, ignored);
-    fail("'", file.string(), "': cannot be written: ", error.message());
 }
 
 void write_file(const std::filesystem::path& file, std::span<const std::span<const std::byte>> pieces) {
@@ -48,7 +69,7 @@ void write_file(const std::filesystem::path& file, std::span<const std::span<con
         for (const std::span<const std::byte> piece : pieces)
             out.write(reinterpret_cast<const char*>(piece.data()), static_cast<std::streamsize>(piece.size()));
         out.close();
-        if (!out) fail("'", file.string(), "': cannot be written: ", std::generic_category().message(errno));
+        if (!out) fail_to_write(file, std::generic_category().message(errno));
     });
 }
 

@@ -18,7 +18,8 @@ using Bytes = std::vector<std::uint8_t>;
 Bytes read_file(const std::filesystem::path& file);
 
 // Makes the file whole or not at all: `write` makes it under another name in the same folder, and it is renamed at the
-// end. Throws Error naming the file; an existing file is then unchanged.
+// end. A symbolic link is followed; a file that is not regular, such as a pipe, is written directly. Throws Error
+// naming the file, or what `write` throws; an existing file is then unchanged.
 void write_whole(const std::filesystem::path& file, const std::function<void(const std::filesystem::path&)>& write);
 
 // Writes the pieces, one after the other, by write_whole().

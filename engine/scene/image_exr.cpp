@@ -128,7 +128,7 @@ void write_exr_image(const std::filesystem::path& file, const HdrImage& image, s
         out.setFrameBuffer(frame);
         out.writePixels(static_cast<int>(image.height));
     } catch (const std::exception& e) {
-        fail("'", file.string(), "': cannot write the picture (", e.what(), ")");
+        fail("the picture cannot be written (", e.what(), ")");
     }
 }
 

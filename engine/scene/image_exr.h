@@ -10,7 +10,7 @@ namespace twinray {
 HdrImage load_exr_image(const std::filesystem::path& file);
 
 // Writes linear 32-bit float, and channels beside them; a part of an image as the data window of the whole's display
-// window. Throws Error naming the file.
+// window. Throws Error that says why it cannot.
 void write_exr_image(const std::filesystem::path& file, const HdrImage& image, std::span<const ImageChannel> channels);
 
 // Throws Error naming `object` if an image of this size is empty or over 2^28 pixels, beyond which a file is more

@@ -13,6 +13,19 @@
 #include "samples/support/text.h"
 
 namespace twinray::samples {
+namespace {
+
+constexpr int most_links = 40;  // as Linux follows
+
+// What the name stands for, also where that is not there yet.
+std::filesystem::path linked(std::filesystem::path file) {
+    std::error_code error;
+    for (int i = 0; i < most_links && std::filesystem::is_symlink(file, error); ++i)
+        file = file.parent_path() / std::filesystem::read_symlink(file, error);
+    return file;
+}
+
+}  // namespace
 
 std::vector<std::byte> read_file(const std::filesystem::path& file) {
     std::error_code error;
@@ -26,7 +39,8 @@ std::vector<std::byte> read_file(const std::filesystem::path& file) {
 }
 
 void write_file(const std::filesystem::path& file, std::span<const std::span<const std::byte>> parts) {
-    std::filesystem::path partial = file;
+    const std::filesystem::path target = linked(file);
+    std::filesystem::path partial = target;
     partial += text(".partial-", std::hex, std::random_device{}());
     errno = 0;
     std::ofstream out(partial, std::ios::binary);
@@ -35,7 +49,7 @@ void write_file(const std::filesystem::path& file, std::span<const std::span<con
     out.close();
     std::error_code error;
     if (out)
-        std::filesystem::rename(partial, file, error);
+        std::filesystem::rename(partial, target, error);
     else
         error = std::error_code(errno, std::generic_category());
     if (!error) return;

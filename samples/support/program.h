@@ -2,7 +2,9 @@
 // The common part of the samples with a command line: options of the device, a context and an accelerator for them.
 #pragma once
 
+#include <cstdio>
 #include <filesystem>
+#include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -46,7 +48,9 @@ void report_warnings(const std::vector<std::string>& warnings, const std::filesy
 template <class Run>
 int run_program(const char* program, const Run& run) {
     try {
-        return run();
+        const int status = run();
+        if (std::fflush(stdout) == 0 && std::cout.flush() && !std::ferror(stdout)) return status;
+        throw Error("the standard output cannot be written");
     } catch (const std::exception& error) {
         std::fprintf(stderr, "%s: %s\n", program, error.what());
         return 1;

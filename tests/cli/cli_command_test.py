@@ -102,6 +102,12 @@ def bash(*words):
     return done.stdout.split()
 
 
+# What cannot be printed is no success.
+for arguments in (["--help"], ["--version"], ["help", "trace"], ["completion", "bash"]):
+    with open("/dev/full", "w") as full:
+        done = subprocess.run([twinray, *arguments], stdout=full, stderr=subprocess.PIPE, text=True)
+    assert done.returncode == 1 and "the standard output cannot be written" in done.stderr, (arguments, done)
+
 if shutil.which("bash"):
     assert bash("twinray", "") == [*commands, "--help", "--version"]
     assert bash("twinray", "tr") == ["trace"]

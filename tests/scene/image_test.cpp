@@ -123,6 +123,21 @@ TEST(HdrImage, RowsOfRunsAreReadWholeOrRefused) {
     }
 }
 
+TEST(ImageTest, FilesAreWrittenThroughLinksAndLeaveNothingBesideThem) {
+    const TempDir dir;
+    const HdrImage image{.width = 1, .height = 1, .rgb = {vec3(1)}};
+    std::filesystem::create_directory(dir / "there");
+    for (const std::string name : {"a.exr", "a.png"}) {
+        std::filesystem::create_symlink("there/" + name, dir / name);
+        for (int i = 0; i < 2; ++i) write_image(dir / name, image, 0, {});
+        EXPECT_TRUE(std::filesystem::is_symlink(dir / name));
+        EXPECT_TRUE(std::filesystem::is_regular_file(dir / ("there/" + name)));
+        expect_contains(error_of([&] { write_image(dir / "none" / name, image, 0, {}); }), "none/" + name + "'");
+    }
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(dir / "."))
+        EXPECT_EQ(entry.path().string().find("partial"), std::string::npos) << entry.path();
+}
+
 // Writes interleaved floats, as many channels as names, with the data window starting at (3, 5).
 std::filesystem::path write_exr(const TempDir& dir, const std::vector<std::string>& channels, int width, int height,
                                 const std::vector<float>& values, Imf::Compression compression) {
