@@ -11,12 +11,17 @@ PipelineVariants::PipelineVariants(Create create, uint all, bool in_background)
     : create_(std::move(create)), all_(all), in_background_(in_background) {}
 
 PipelineVariants::~PipelineVariants() {
-    {
-        const std::lock_guard lock(mutex_);
-        is_ending_ = true;
+    if (background_->process != getpid()) {
+        // Its worker is not there to be waited for.
+        static_cast<void>(background_.release());
+        return;
     }
-    changed_.notify_all();
-    if (worker_.joinable()) worker_.join();
+    {
+        const std::lock_guard lock(background_->mutex);
+        background_->is_ending = true;
+    }
+    background_->changed.notify_all();
+    if (background_->worker.joinable()) background_->worker.join();
 }
 
 const TraceProgram& PipelineVariants::get(uint features, Query query, Level level) {
@@ -34,8 +39,9 @@ const TraceProgram& PipelineVariants::get(uint features, Query query, Level leve
 }
 
 void PipelineVariants::wait() const {
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return queue_.empty(); });
+    if (background_->process != getpid()) return;
+    std::unique_lock lock(background_->mutex);
+    background_->changed.wait(lock, [&] { return background_->queue.empty(); });
 }
 
 PipelineVariants::Job PipelineVariants::job(uint features, Query query, Level level) {
@@ -45,41 +51,41 @@ PipelineVariants::Job PipelineVariants::job(uint features, Query query, Level le
 }
 
 PipelineVariants::State PipelineVariants::state(const Job& job) const {
-    const std::lock_guard lock(mutex_);
-    const auto found = states_.find(job);
-    return found == states_.end() ? State::missing : found->second;
+    const std::lock_guard lock(background_->mutex);
+    const auto found = background_->states.find(job);
+    return found == background_->states.end() ? State::missing : found->second;
 }
 
 // A variant that has failed in the background is not tried there again.
 void PipelineVariants::queue(const Job& job) {
     {
-        const std::lock_guard lock(mutex_);
-        State& state = states_[job];
+        const std::lock_guard lock(background_->mutex);
+        State& state = background_->states[job];
         if (state != State::missing) return;
         state = State::queued;
-        queue_.push_back(job);
-        if (!worker_.joinable()) worker_ = std::thread([this] { work(); });
+        background_->queue.push_back(job);
+        if (!background_->worker.joinable()) background_->worker = std::thread([this] { work(); });
     }
-    changed_.notify_all();
+    background_->changed.notify_all();
 }
 
 void PipelineVariants::compile_now(const Job& job) {
     {
-        std::unique_lock lock(mutex_);
-        changed_.wait(lock, [&] { return states_[job] != State::queued; });
-        if (states_[job] == State::ready) return;
+        std::unique_lock lock(background_->mutex);
+        background_->changed.wait(lock, [&] { return background_->states[job] != State::queued; });
+        if (background_->states[job] == State::ready) return;
     }
     job.program->prepare(job.query, job.level);
-    const std::lock_guard lock(mutex_);
-    states_[job] = State::ready;
+    const std::lock_guard lock(background_->mutex);
+    background_->states[job] = State::ready;
 }
 
 void PipelineVariants::work() {
-    std::unique_lock lock(mutex_);
+    std::unique_lock lock(background_->mutex);
     for (;;) {
-        changed_.wait(lock, [&] { return is_ending_ || !queue_.empty(); });
-        if (is_ending_) return;
-        const Job job = queue_.front();
+        background_->changed.wait(lock, [&] { return background_->is_ending || !background_->queue.empty(); });
+        if (background_->is_ending) return;
+        const Job job = background_->queue.front();
         lock.unlock();
         State result = State::ready;
         try {
@@ -88,9 +94,9 @@ void PipelineVariants::work() {
             result = State::failed;  // the program that serves meanwhile goes on serving
         }
         lock.lock();
-        states_[job] = result;
-        queue_.pop_front();
-        changed_.notify_all();
+        background_->states[job] = result;
+        background_->queue.pop_front();
+        background_->changed.notify_all();
     }
 }
 

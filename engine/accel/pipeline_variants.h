@@ -2,6 +2,8 @@
 // The programs that an accelerator traces with if the scene needs none of the user's: one for each set of features.
 #pragma once
 
+#include <unistd.h>
+
 #include <condition_variable>
 #include <deque>
 #include <functional>
@@ -44,6 +46,15 @@ class PipelineVariants {
         auto operator<=>(const Job&) const = default;
     };
     enum class State : std::uint8_t { missing, queued, ready, failed };
+    struct Background {
+        pid_t process = getpid();  // the only one that has the worker
+        std::mutex mutex;          // of what follows
+        std::condition_variable changed;
+        std::map<Job, State> states;
+        std::deque<Job> queue;  // the first one is being compiled
+        bool is_ending = false;
+        std::thread worker;  // from the first job on
+    };
 
     Job job(uint features, Query query, Level level);
     State state(const Job& job) const;
@@ -55,12 +66,7 @@ class PipelineVariants {
     uint all_;
     bool in_background_;
     std::map<uint, std::unique_ptr<TraceProgram>> programs_;  // by features
-    mutable std::mutex mutex_;                                // guards the members below
-    mutable std::condition_variable changed_;
-    std::map<Job, State> states_;
-    std::deque<Job> queue_;  // the first one is being compiled
-    bool is_ending_ = false;
-    std::thread worker_;  // from the first job on
+    std::unique_ptr<Background> background_ = std::make_unique<Background>();
 };
 
 }  // namespace twinray

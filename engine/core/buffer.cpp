@@ -140,6 +140,7 @@ void release(Context::State& state, const AllocatedBuffer& made, const ExternalM
 
 Buffer::Buffer(Context& context, const BufferDesc& desc) : context_(&context), bytes_(desc.bytes), name_(desc.name) {
     if (name_.empty()) fail("buffer of ", bytes_, " bytes: a name is required");
+    context.state().check_process();
     if (bytes_ == 0) return;
     made_ = context.state().allocator().allocate(
         {name_.c_str(), bytes_, usage_of(context, desc), desc.memory, desc.alignment});
@@ -149,6 +150,7 @@ Buffer::Buffer(Context& context, const BufferDesc& desc) : context_(&context), b
 Buffer::Buffer(Context& context, const BufferDesc& desc, const ExportedMemory& memory)
     : context_(&context), bytes_(desc.bytes), name_(desc.name) {
     if (name_.empty()) fail("buffer of ", bytes_, " bytes: a name is required");
+    context.state().check_process();
     const ExternalBuffer made = make_external(context, desc, usage_of(context, desc), memory);
     made_.buffer = made.buffer;
     external_ = made.memory;

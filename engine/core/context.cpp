@@ -69,7 +69,9 @@ DeviceProperties check_adoption(const AdoptedDevice& adopted, const VulkanTable&
 
 Context::Context(const ContextDesc& desc) : state_(std::make_unique<State>(desc)) {}
 Context::Context(const AdoptedDevice& adopted) : state_(std::make_unique<State>(adopted)) {}
-Context::~Context() = default;
+Context::~Context() {
+    if (!state_->is_of_this_process()) static_cast<void>(state_.release());
+}
 VkDevice Context::device() const { return state_->device(); }
 VkPhysicalDevice Context::physical_device() const { return state_->physical_device(); }
 std::uint32_t Context::queue_family() const { return state_->queue_family(); }

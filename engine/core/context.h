@@ -2,6 +2,8 @@
 // The parts of a Context that the library itself needs: Vulkan's functions, memory, pipelines, submissions.
 #pragma once
 
+#include <unistd.h>
+
 #include <deque>
 #include <mutex>
 
@@ -83,7 +85,13 @@ struct Context::State {
     // Runs `destroy` when everything submitted or announced so far is done.
     void retire(std::function<void()> destroy);
 
-    // Throws DeviceLost, with the work in flight and the driver's report, once the device has been lost.
+    // A device does not outlive a fork: a child process must leave it alone. Its threads are the parent's, and the
+    // memory that a driver frees may be the parent's, too. Any thread.
+    bool is_of_this_process() const noexcept { return process_ == getpid(); }
+    // Throws Error unless it is.
+    void check_process() const;
+    // Throws as check_process, and DeviceLost, with the work in flight and the driver's report, once the device has
+    // been lost.
     void check_alive() const;
     // Like vk_check for calls that may report the loss of the device, which is remembered.
     void check(VkResult result, const char* action) const;
@@ -116,6 +124,7 @@ struct Context::State {
     VkSemaphore new_timeline(const char* name);
     void wait_for(SyncPoint point) const;
     VkResult wait_for(const VkSemaphoreWaitInfo& info) const;
+    VkResult wait_patiently(const VkSemaphoreWaitInfo& info, std::uint64_t most) const;
     VkResult note_hang() const;
     VkResult enqueue(std::span<const Submission> submissions, std::uint64_t promised) const;
     VkResult enqueue(std::span<const VkSubmitInfo> infos) const;
@@ -131,6 +140,7 @@ struct Context::State {
     KernelTuning tuning_;
     Log log_;
     KernelWatch watch_;
+    pid_t process_ = getpid();
     bool owns_device_ = true;
     VkInstance instance_ = VK_NULL_HANDLE;
     VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The loss of Context's device.
+// Checks of Context's device: it may be lost, or belong to another process.
 #include "engine/core/context.h"
 #include "engine/core/device_fault.h"
 #include "engine/core/error.h"
@@ -24,7 +24,14 @@ void Context::State::check(VkResult result, const char* action) const {
     vk_check(result, action);
 }
 
+void Context::State::check_process() const {
+    if (!is_of_this_process())
+        fail("device '", properties_.name, "': process ", process_, " opened it, and a fork made process ", getpid(),
+             " of that; a device does not outlive a fork. Open one in the new process, or start that by spawn");
+}
+
 void Context::State::check_alive() const {
+    check_process();
     if (is_lost_) throw DeviceLost(text("device '", properties_.name, "': ", words_of_loss()));
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "engine/core/pace.h"
 #include "engine/core/context.h"
+#include "engine/core/interruption.h"
 
 #include <algorithm>
 
@@ -9,12 +10,17 @@ namespace {
 
 constexpr double aimed_share = 0.25;  // of the most seconds, which a submission aims at
 constexpr double most_growth = 4;
+constexpr double most_interruptible_seconds = 2;
 constexpr std::uint64_t fewest_items = 64;
 constexpr double slowest_items_per_second = 1 << 17, slowest_groups_per_second = 1 << 17;
 
 std::uint64_t whole_groups(double items) {
     constexpr double most = 0x1p63;
     return std::max(static_cast<std::uint64_t>(std::min(items, most)) / fewest_items, std::uint64_t{1}) * fewest_items;
+}
+
+double most_seconds(double of_device, bool is_interruptible) {
+    return is_interruptible && of_device == 0 ? most_interruptible_seconds : of_device;
 }
 
 }  // namespace
@@ -36,8 +42,10 @@ std::uint64_t most_groups(double most_seconds) {
     return static_cast<std::uint64_t>(slowest_groups_per_second * most_seconds * aimed_share);
 }
 
+// Who may want an end does not want to wait for what is submitted either.
 Pace::Pace(const Context& context)
-    : most_seconds_(context.state().tuning().most_submission_seconds), allowed_(first_items(most_seconds_)) {}
+    : most_seconds_(most_seconds(context.state().tuning().most_submission_seconds, is_interruptible())),
+      allowed_(first_items(most_seconds_)) {}
 
 std::uint64_t Pace::next(std::uint64_t left) const { return most_seconds_ == 0 ? left : std::min(left, allowed_); }
 

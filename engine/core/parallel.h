@@ -10,6 +10,8 @@
 #include <thread>
 #include <vector>
 
+#include "engine/core/interruption.h"
+
 namespace twinray {
 
 // Calls body(begin, end) for disjoint ranges that cover [0, count), on `threads` threads (0: one per core). Ranges are
@@ -27,7 +29,7 @@ void parallel_for(std::size_t count, const Body& body, unsigned threads = 0) {
     const auto work = [&] {
         try {
             for (std::size_t begin = next.fetch_add(grain); begin < count; begin = next.fetch_add(grain))
-                body(begin, std::min(begin + grain, count));
+                body(begin, std::min(begin + grain, count)), look_for_interruption();
         } catch (...) {
             next = count;  // the other threads stop at their next range
             const std::lock_guard lock(failure_mutex);

@@ -71,6 +71,7 @@ std::shared_ptr<CompiledKernel> compile(Context& context, const KernelDesc& desc
 
 // Compiles unlocked: if two threads compile the same, the first result is used.
 std::shared_ptr<CompiledKernel> PipelineTable::get(Context& context, const KernelDesc& desc, std::uint32_t args_bytes) {
+    context.state().check_process();
     std::string key = key_of(desc, args_bytes);
     if (std::shared_ptr<CompiledKernel> kernel = find(key)) return kernel;
     std::shared_ptr<CompiledKernel> kernel = compile(context, desc, args_bytes, Telling::nothing);
@@ -85,6 +86,7 @@ std::shared_ptr<CompiledKernel> PipelineTable::find(const std::string& key) cons
 }
 
 void PipelineTable::give_back(Context& context, std::shared_ptr<CompiledKernel> kernel) {
+    if (!context.state().is_of_this_process()) return;
     std::shared_ptr<CompiledKernel> gone;
     {
         const std::lock_guard lock(mutex_);

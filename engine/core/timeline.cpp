@@ -7,6 +7,7 @@
 
 #include "engine/core/context.h"
 #include "engine/core/error.h"
+#include "engine/core/interruption.h"
 #include "engine/core/vulkan.h"
 
 namespace twinray {
@@ -35,7 +36,7 @@ SyncPoint Context::State::promise() {
 
 void Context::State::give_up(std::uint64_t promised) noexcept {
     promised_.give_up(promised);
-    if (is_lost_ || !promised_.is_due(promised)) return;
+    if (!is_of_this_process() || is_lost_ || !promised_.is_due(promised)) return;
     const std::uint64_t value = promised_.value_of(promised);
     VkTimelineSemaphoreSubmitInfo timeline{};
     timeline.sType = VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO;
@@ -153,14 +154,25 @@ void Context::State::wait_for(SyncPoint point) const {
 
 // It keeps waiting while the device finishes submissions.
 VkResult Context::State::wait_for(const VkSemaphoreWaitInfo& info) const {
-    if (most_wait_seconds_ <= 0) return vk_.vkWaitSemaphores(device_, &info, UINT64_MAX);
+    if (most_wait_seconds_ <= 0) return wait_patiently(info, UINT64_MAX);
     const auto most = static_cast<std::uint64_t>(most_wait_seconds_ * 1e9);
     for (std::uint64_t ended = reached(timeline_);;) {
-        const VkResult result = vk_.vkWaitSemaphores(device_, &info, most);
+        const VkResult result = wait_patiently(info, most);
         if (result != VK_TIMEOUT) return result;
         const std::uint64_t now = reached(timeline_);
         if (now == ended) return note_hang();
         ended = now;
+    }
+}
+
+// For so many nanoseconds; in pieces where somebody may want to end it.
+VkResult Context::State::wait_patiently(const VkSemaphoreWaitInfo& info, std::uint64_t most) const {
+    if (!is_interruptible()) return vk_.vkWaitSemaphores(device_, &info, most);
+    constexpr auto piece = static_cast<std::uint64_t>(seconds_between_looks * 1e9);
+    for (std::uint64_t left = most;; left -= piece) {
+        look_for_interruption();
+        const VkResult result = vk_.vkWaitSemaphores(device_, &info, std::min(left, piece));
+        if (result != VK_TIMEOUT || left <= piece) return result;
     }
 }
 
@@ -198,7 +210,7 @@ std::uint64_t Context::State::reached(VkSemaphore semaphore) const noexcept {
 }
 
 void Context::State::collect() noexcept {
-    if (retired_.empty() || !timeline_) return;
+    if (retired_.empty() || !timeline_ || !is_of_this_process()) return;
     std::erase_if(announced_, [&](SyncPoint point) { return reached(point.semaphore) >= point.value; });
     const std::uint64_t own = reached(timeline_);
     submission_log_.reached(own);
@@ -212,6 +224,7 @@ void Context::State::collect() noexcept {
 
 // Resources that the GPU still uses must not be destroyed, even if waiting fails: reading the timeline needs no memory.
 void Context::State::finish() noexcept {
+    const InterruptScope patient([] { return true; });
     try {
         wait(last_submission());
         wait_for({promised_timeline_, promised_.last_passed()});

@@ -243,7 +243,9 @@ void disable_features(ContextDesc& desc, const std::string& list);
 // Returns "twinray" in the user's folder for caches: $XDG_CACHE_HOME, else .cache in $HOME; empty if neither is set.
 std::filesystem::path user_pipeline_folder();
 
-// One device with its memory allocator, one queue and one timeline. Not copyable; used by one thread at a time.
+// One device with its memory allocator, one queue and one timeline. Not copyable; used by one thread at a time. It does
+// not outlive a fork: in a child process all that was made with it throws Error and may be destroyed, which leaves the
+// parent's alone; another Context of the child's own works where the driver's does.
 class Context {
   public:
     // Throws Error with the reason why each device was rejected if none fits.

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <concepts>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <span>
 #include <stdexcept>
@@ -34,6 +35,29 @@ class DeviceLost : public Error {
   public:
     using Error::Error;
 };
+
+// Ends a call that its caller no longer wants. It is no std::exception, so that no handler of errors takes it.
+struct Interrupted {};
+
+// While it lives, twinray's calls on this thread ask `goes_on` about ten times a second, while they wait for the device
+// and while they compute on the host; once it returns false they throw Interrupted. What is submitted already runs to
+// its end, for which the next call waits. State that the call changes is left as before the call, or as after it.
+// Scopes nest: the innermost is asked.
+class InterruptScope {
+  public:
+    explicit InterruptScope(std::function<bool()> goes_on);
+    ~InterruptScope();
+    InterruptScope(const InterruptScope&) = delete;
+    InterruptScope& operator=(const InterruptScope&) = delete;
+
+  private:
+    friend void look_for_interruption();
+
+    std::function<bool()> goes_on_;
+    InterruptScope* outer_;
+};
+// Asks the innermost scope of this thread, at most ten times a second. Throws Interrupted.
+void look_for_interruption();
 
 // Vectors of two to four numbers. They are plain data and convert to and from GLM's vectors, or an application's own
 // with the same members. They have no arithmetic: use the application's own type for that.

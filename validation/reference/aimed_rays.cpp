@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/core/interruption.h"
 #include "validation/reference/draws.h"
 
 namespace twinray {
@@ -52,7 +53,9 @@ std::vector<Ray> aimed_rays(const ReferenceScene& scene, std::size_t count, std:
     if (targets.empty()) return random_rays({}, count, seed);
     std::vector<Ray> rays;
     rays.reserve(count);
+    LoopInterruption interruption;
     for (std::size_t i = 0; i < count; ++i) {
+        interruption.look();
         Draws draws(seed, i);
         const dvec3 target = pick(draws, draw_triangle(draws, scene, targets));
         double distance = draws.between(0.05, 2.0) * diagonal_of(scene.bounds());
@@ -74,7 +77,9 @@ std::vector<Ray> random_rays(const Bounds& bounds, std::size_t count, std::uint6
     box.include(bounds.is_empty() ? dvec3(0.5) : dvec3(bounds.hi));
     std::vector<Ray> rays;
     rays.reserve(count);
+    LoopInterruption interruption;
     for (std::size_t i = 0; i < count; ++i) {
+        interruption.look();
         Draws draws(seed, i);
         const double margin = diagonal_of(box) * (i % 2 == 0 ? 0.1 : 1.0);
         dvec3 origin;

@@ -5,6 +5,8 @@
 #include <cassert>
 #include <numeric>
 
+#include "engine/core/interruption.h"
+
 namespace twinray {
 namespace {
 
@@ -99,11 +101,13 @@ Bvh64::Builder::Builder(Bvh64& bvh, std::span<const Box64> boxes) : bvh_(bvh), b
 
 void Bvh64::Builder::build() {
     std::vector<Range> pending = {{0, 0, static_cast<uint>(boxes_.size()), 0}};
+    LoopInterruption interruption;
     bvh_.nodes_.emplace_back();
     while (!pending.empty()) {
         const Range range = pending.back();
         pending.pop_back();
         close_box(range);
+        interruption.look();
         if (range.end - range.begin <= leaf_size) {
             bvh_.nodes_[range.node].first = range.begin;
             bvh_.nodes_[range.node].count = range.end - range.begin;

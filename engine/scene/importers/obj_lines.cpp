@@ -24,6 +24,7 @@ std::size_t comment_begin(std::string_view line) {
 
 bool ObjLines::next() {
     while (!rest_.empty()) {
+        interruption_.look();
         line_ = lines_cut_ + 1;
         value_ = cut_joined_line();
         keyword_ = cut_word(value_);

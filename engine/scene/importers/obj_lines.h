@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "engine/core/interruption.h"
+
 namespace twinray {
 
 // The lines with contents, one after the other. A backslash at the end of a line joins the next one to it, unless a
@@ -28,6 +30,7 @@ class ObjLines {
     std::string_view rest_, keyword_, value_;
     std::string joined_;
     std::size_t line_ = 0, lines_cut_ = 0;
+    LoopInterruption interruption_;
 };
 
 }  // namespace twinray

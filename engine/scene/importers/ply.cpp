@@ -16,6 +16,7 @@
 #include <twinray/scene.h>
 
 #include "engine/core/error.h"
+#include "engine/core/interruption.h"
 #include "engine/scene/bytes.h"
 #include "engine/scene/importers/importers.h"
 #include "engine/scene/importers/passed_over.h"
@@ -191,6 +192,7 @@ class PlyReader {
             if (is_color(property) && !shows_colors) passed_over_.add("colours", property.line);
         if (!has[0] || !has[1] || !has[2]) fail("'", object_, "': its vertices have no x, y and z");
         for (std::size_t i = 0; i < element.count; ++i) {
+            interruption_.look();
             std::array<double, nowhere + 1> v{};
             v[11] = 1;
             for (std::size_t p = 0; p < slots.size(); ++p) {
@@ -227,6 +229,7 @@ class PlyReader {
                 !holds_texture(element, property))
                 passed_over_.add(is_color(property) ? "colours" : property.name, property.line);
         for (std::size_t i = 0; i < element.count; ++i) {
+            interruption_.look();
             std::vector<double> uvs;
             double texture = 0;
             for (const PlyProperty& property : element.properties)
@@ -359,6 +362,7 @@ class PlyReader {
     std::vector<vec2> uvs_;         // three a triangle, where faces have some
     FaceCutter cutter_;
     PassedOver passed_over_;
+    LoopInterruption interruption_;
 };
 
 // The pictures that a file names, each as a material.

@@ -218,6 +218,7 @@ Triangulation triangulate_polygon(std::span<const dvec3> vertices) {
 }
 
 const std::vector<uvec3>& FaceCutter::cut(std::span<const dvec3> vertices, std::size_t number) {
+    interruption_.look();
     triangles_.clear();
     if (vertices.size() < 3) ++short_;
     if (vertices.size() == 3) triangles_.emplace_back(0, 1, 2);

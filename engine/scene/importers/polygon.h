@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/interruption.h"
 #include "twinray/glsl/cpp.h"
 
 namespace twinray {
@@ -31,6 +32,7 @@ class FaceCutter {
   private:
     std::vector<uvec3> triangles_;
     std::size_t short_ = 0, overlapping_ = 0, first_overlapping_ = 0;
+    LoopInterruption interruption_;
 };
 
 }  // namespace twinray
