@@ -6,13 +6,17 @@
 #include <memory>
 #include <span>
 #include <type_traits>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include "bindings/python/analysis.h"
@@ -82,11 +86,21 @@ std::vector<Row> copied(const Array& rows) {
     return {span.begin(), span.end()};
 }
 
-// Calls without the GIL: others go on while the device works.
+bool no_signal_ends_it() {
+    const nb::gil_scoped_acquire acquired;
+    return PyErr_CheckSignals() == 0;
+}
+
+// Calls without the GIL: others go on while the device works. Ctrl-C ends the call.
 template <class Call>
 auto unlocked(const Call& call) {
-    const nb::gil_scoped_release released;
-    return call();
+    try {
+        const nb::gil_scoped_release released;
+        const InterruptScope scope(&no_signal_ends_it);
+        return call();
+    } catch (const Interrupted&) {
+        throw nb::python_error();  // of the signal's handler
+    }
 }
 
 void add_places(nb::dict& arrays, Places&& places) {
@@ -184,20 +198,49 @@ nb::tuple add_file(Scene& scene, const std::string& file, const std::optional<Ve
     return nb::make_tuple(added, nb::make_tuple(origin->x, origin->y, origin->z));
 }
 
+// (positions, triangles) of each mesh; (number, mesh, transform, is_flat) of each geometry; the count of numbers given.
+nb::tuple bound_content(Scene& scene) {
+    Content content = unlocked([&] { return scene.content(); });
+    nb::list meshes, geometries;
+    for (Mesh& mesh : content.meshes)
+        meshes.append(
+            nb::make_tuple(given<float>(std::move(mesh.positions), 3), given<uint>(std::move(mesh.triangles), 3)));
+    for (const auto& [number, mesh, transform, is_flat] : content.geometries) {
+        std::vector<vec4> rows(transform.rows.begin(), transform.rows.end());
+        geometries.append(nb::make_tuple(number, mesh, given<float>(std::move(rows), 4), is_flat));
+    }
+    return nb::make_tuple(meshes, geometries, content.count);
+}
+
+void restore(Scene& scene, const std::vector<std::pair<Rows<float, 3>, Rows<uint, 3>>>& meshes,
+             const std::vector<std::tuple<uint, uint, TransformRows, bool>>& geometries, uint count) {
+    Content content{.meshes = {}, .geometries = {}, .count = count};
+    for (const auto& [positions, triangles] : meshes) {
+        Mesh& mesh = content.meshes.emplace_back();
+        mesh.positions = copied<vec3>(positions);
+        mesh.triangles = copied<uvec3>(triangles);
+    }
+    for (const auto& [number, mesh, transform, is_flat] : geometries)
+        content.geometries.push_back({number, mesh, transform_of(transform), is_flat});
+    unlocked([&] { scene.restore(std::move(content)); });
+}
+
 void bind_scene(nb::module_& m) {
     nb::class_<Scene> scene_class(m, "Scene");
     bind_rays<float>(scene_class);
     bind_rays<double>(scene_class);
     scene_class
-        .def(nb::init<const std::string&, const std::string&, const std::string&>(), nb::arg("accel"),
-             nb::arg("device"), nb::arg("level"), nb::call_guard<nb::gil_scoped_release>())
+        .def("__init__", [](Scene* place, const std::string& accel, const std::string& device,
+                            const std::string& level) { unlocked([&] { new (place) Scene(accel, device, level); }); })
         .def("add", &add)
         .def("add_instance",
              [](Scene& scene, uint of, const TransformRows& matrix) {
                  return unlocked([&] { return scene.add_instance(of, transform_of(matrix)); });
              })
         .def("add_file", &add_file)
-        .def("remove", &Scene::remove, nb::call_guard<nb::gil_scoped_release>())
+        .def("remove", [](Scene& scene, uint geometry) { unlocked([&] { scene.remove(geometry); }); })
+        .def("content", &bound_content)
+        .def("restore", &restore)
         .def("set_transform",
              [](Scene& scene, uint geometry, const TransformRows& matrix) {
                  unlocked([&] { scene.set_transform(geometry, transform_of(matrix)); });
@@ -206,15 +249,15 @@ void bind_scene(nb::module_& m) {
              [](Scene& scene, uint geometry, const Rows<float, 3>& positions) {
                  unlocked([&] { scene.update_vertices(geometry, copied<vec3>(positions)); });
              })
-        .def("geometries", &Scene::geometries, nb::call_guard<nb::gil_scoped_release>())
-        .def("triangle_count", &Scene::triangle_count, nb::call_guard<nb::gil_scoped_release>())
+        .def("geometries", [](Scene& scene) { return unlocked([&] { return scene.geometries(); }); })
+        .def("triangle_count", [](Scene& scene) { return unlocked([&] { return scene.triangle_count(); }); })
         .def("reach",
              [](Scene& scene, uint geometry) {
                  const Scene::Reach reach = unlocked([&] { return scene.reach(geometry); });
                  return nb::make_tuple(reach.farthest, reach.extent);
              })
         .def("first_faces",
-             [](const Scene& scene) { return given<std::uint64_t>(unlocked([&] { return scene.first_faces(); })); })
+             [](Scene& scene) { return given<std::uint64_t>(unlocked([&] { return scene.first_faces(); })); })
         .def("bounds", [](Scene& scene) { return corners_of(unlocked([&] { return scene.bounds(); })); })
         .def("closest",
              [](Scene& scene, const PointRows& points, bool with_normals) {
@@ -225,11 +268,11 @@ void bind_scene(nb::module_& m) {
                  return given<double>(unlocked([&] { return scene.winding_numbers(as<dvec3>(points)); }));
              })
         .def("world_triangles",
-             [](const Scene& scene) { return given<double>(unlocked([&] { return scene.world_triangles(); }), 3); })
-        .def("backend", [](const Scene& scene) { return dict_of(unlocked([&] { return scene.backend(); })); })
+             [](Scene& scene) { return given<double>(unlocked([&] { return scene.world_triangles(); }), 3); })
+        .def("backend", [](Scene& scene) { return dict_of(unlocked([&] { return scene.backend(); })); })
         .def("progress",
              [](Scene& scene) { return nb::make_tuple(scene.progress().done.load(), scene.progress().total.load()); })
-        .def("take_log", &Scene::take_log, nb::call_guard<nb::gil_scoped_release>());
+        .def("take_log", [](Scene& scene) { return unlocked([&] { return scene.take_log(); }); });
 }
 
 nb::dict bound_view_factors(Scene& scene, std::vector<uint> groups, bool both_sides, std::uint64_t rays,
@@ -328,7 +371,10 @@ class DeviceMemory {
 
     std::byte* mapped() const { return buffer_.mapped(); }  // null unless it lies in the host's memory
     std::uint64_t bytes() const { return buffer_.bytes(); }
-    ExportedMemory exported() const { return buffer_.exported(); }
+    ExportedMemory exported() const {
+        const DeviceLock lock(*device_);
+        return buffer_.exported();
+    }
     std::array<std::uint8_t, 16> device_uuid() const { return device_->context.properties().uuid; }
     Column<std::byte> download() const;
 
@@ -340,17 +386,18 @@ class DeviceMemory {
 };
 
 DeviceMemory::DeviceMemory(Scene& scene, std::uint64_t bytes, bool in_host_memory) : device_(scene.device()) {
-    const std::lock_guard lock(device_->mutex);
+    const DeviceLock lock(*device_);
     buffer_ = make_buffer(device_->context, bytes, in_host_memory);
 }
 
 DeviceMemory::~DeviceMemory() {
+    if (!device_->is_of_this_process()) return;
     const std::lock_guard lock(device_->mutex);
     buffer_ = {};
 }
 
 Column<std::byte> DeviceMemory::download() const {
-    const std::lock_guard lock(device_->mutex);
+    const DeviceLock lock(*device_);
     Column<std::byte> copy(bytes());
     download_bytes(device_->context, buffer_, 0, std::span(copy.data(), copy.size()));
     return copy;
@@ -359,9 +406,11 @@ Column<std::byte> DeviceMemory::download() const {
 // Writes what `count` Rays in one memory meet, as Hits into the other; waits. Throws Error for memory of another
 // device.
 void trace(Scene& scene, const DeviceMemory& rays, DeviceMemory& hits, std::size_t count, Query query) {
+    for (const DeviceMemory* memory : {&rays, static_cast<const DeviceMemory*>(&hits)})
+        const DeviceLock lock(*memory->device_);
+    const Scene::Turn turn(scene);
     if (rays.device_ != scene.device() || hits.device_ != scene.device())
         throw Error("trace: rays and hits must be arrays of the scene's device");
-    const Scene::Turn turn(scene);
     turn.accel().sync();
     Commands commands(rays.device_->context, "trace for Python");
     turn.accel().trace(commands, turn.accel().view(),
@@ -375,7 +424,10 @@ void trace(Scene& scene, const DeviceMemory& rays, DeviceMemory& hits, std::size
 
 void bind_device_memory(nb::module_& m) {
     nb::class_<DeviceMemory>(m, "DeviceMemory")
-        .def(nb::init<Scene&, std::uint64_t, bool>(), nb::call_guard<nb::gil_scoped_release>())
+        .def("__init__",
+             [](DeviceMemory* place, Scene& scene, std::uint64_t bytes, bool in_host_memory) {
+                 unlocked([&] { new (place) DeviceMemory(scene, bytes, in_host_memory); });
+             })
         .def("mapped",
              [](nb::object self) -> nb::object {
                  const auto& memory = nb::cast<DeviceMemory&>(self);

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 
 #include "bindings/python/parallel.h"
 
@@ -15,29 +14,11 @@ namespace twinray::python {
 namespace {
 
 constexpr uint invalid = 0xffffffffu;
-constexpr uint most_geometries = 1u << 24;  // custom indices have 24 bits
 
 Level level_of(const std::string& name) {
     for (const Level level : all_levels)
         if (name_of(level) == name) return level;
     throw Error("level '" + name + "' is not one of fast, watertight, refined, certified");
-}
-
-std::map<std::string, std::shared_ptr<Device>>& devices() {
-    static auto& all = *new std::map<std::string, std::shared_ptr<Device>>;  // no driver is called at static ends
-    return all;
-}
-std::mutex& devices_mutex() {
-    static auto& mutex = *new std::mutex;
-    return mutex;
-}
-
-ContextDesc desc_for(const std::string& request, std::vector<std::string>& log) {
-    ContextDesc desc;
-    desc.device = request;
-    desc.pipeline_folder = user_pipeline_folder();
-    desc.log = [&log](std::string_view message) { log.emplace_back(message); };
-    return desc;
 }
 
 dvec3 world_vertex(const Transform& transform, vec3 p) {
@@ -86,29 +67,17 @@ std::vector<Ray> rays_of(const RayRows& rows) {
     return rays;
 }
 
-Device::Device(const std::string& request) : context(desc_for(request, log)) {}
-
-std::shared_ptr<Device> device_for(const std::string& request) {
-    const std::lock_guard lock(devices_mutex());
-    std::shared_ptr<Device>& device = devices()[request];
-    if (!device) device = std::make_shared<Device>(request);
-    return device;
-}
-
-void forget_devices() {
-    const std::lock_guard lock(devices_mutex());
-    devices().clear();
-}
-
-Scene::Scene(const std::string& accel, const std::string& device, const std::string& level) : level_(level_of(level)) {
-    device_ = device_for(device);
-    const Lock lock(device_->mutex);
-    choice_ = choose_accel(device_->context.properties(), accel, {.level = level_});
-    accel_ = make_accel(device_->context, choice_, {.level = level_});
+Scene::Scene(const std::string& accel, const std::string& device, const std::string& level)
+    : request_(device), accel_name_(accel), level_(level_of(level)) {
+    make_empty();
 }
 
 Scene::~Scene() {
-    const Lock lock(device_->mutex);
+    if (!device_ || !device_->is_of_this_process()) {
+        leave();
+        return;
+    }
+    const std::lock_guard lock(device_->mutex);
     forget_lister();
     points_.reset();
     accel_.reset();
@@ -149,40 +118,58 @@ uint Scene::keep(AccelHandle handle, std::shared_ptr<KeptMesh> mesh, const Trans
 }
 
 uint Scene::add(Mesh&& mesh, const Transform& transform) {
-    const Lock lock(device_->mutex);
+    const Lock lock(*this);
     mesh.name = "geometry " + std::to_string(parts_.size());
+    const std::optional<Transform> flat = flatten(mesh, transform);
+    const Transform placed = flat.value_or(transform);
     auto kept = std::make_shared<KeptMesh>(KeptMesh{std::move(mesh), {}});
-    const AccelHandle handle = accel_->push(*kept, transform, options_of_next());
-    return keep(handle, std::move(kept), transform);
+    const AccelHandle handle = accel_->push(*kept, placed, options_of_next());
+    const uint geometry = keep(handle, std::move(kept), placed);
+    parts_[geometry]->is_flat = flat.has_value();
+    return geometry;
+}
+
+Scene::Part& Scene::movable(uint geometry, const char* action) {
+    Part& moved = part(geometry, action);
+    if (moved.is_flat)
+        throw Error(std::string(action) + ": geometry " + std::to_string(geometry) +
+                    " was flattened by its transform; add its mesh again");
+    return moved;
 }
 
 uint Scene::add_instance(uint of, const Transform& transform) {
-    const Lock lock(device_->mutex);
-    const Part original = part(of, "add_instance");
+    const Lock lock(*this);
+    const Part original = movable(of, "add_instance");
+    if (Mesh own = *original.mesh; flatten(own, transform)) return add(Mesh(*original.mesh), transform);
     const InstanceOptions options = options_of_next();
-    const AccelHandle handle =
-        accel_->push_instances_of(original.handle, std::span(&transform, 1), std::span(&options, 1));
-    return keep(handle, original.mesh, transform);
+    return keep(push_instance(*accel_, original.handle, transform, options), original.mesh, transform);
 }
 
 std::vector<uint> Scene::add_file(const std::string& file, std::optional<dvec3>& origin) {
     twinray::Scene loaded = load_scene(file, origin);
     origin = loaded.origin;
-    const Lock lock(device_->mutex);
+    const Lock lock(*this);
     for (const std::string& warning : loaded.warnings) device_->log.push_back(warning);
     std::vector<std::optional<uint>> first_of(loaded.meshes.size());
     std::vector<uint> added;
-    for (const Instance& instance : loaded.instances) {
-        std::optional<uint>& first = first_of[instance.mesh];
-        added.push_back(first ? add_instance(*first, instance.transform)
-                              : add(std::move(loaded.meshes[instance.mesh]), instance.transform));
-        if (!first) first = added.back();
+    const std::size_t before = parts_.size();
+    try {
+        for (const Instance& instance : loaded.instances) {
+            std::optional<uint>& first = first_of[instance.mesh];
+            added.push_back(first ? add_instance(*first, instance.transform)
+                                  : add(std::move(loaded.meshes[instance.mesh]), instance.transform));
+            if (!first) first = added.back();
+        }
+    } catch (...) {
+        for (const uint geometry : added) accel_->erase(parts_[geometry]->handle);
+        parts_.resize(before);
+        throw;
     }
     return added;
 }
 
 void Scene::remove(uint geometry) {
-    const Lock lock(device_->mutex);
+    const Lock lock(*this);
     accel_->erase(part(geometry, "remove").handle);
     parts_[geometry].reset();
     forget_lister();
@@ -190,8 +177,8 @@ void Scene::remove(uint geometry) {
 }
 
 void Scene::set_transform(uint geometry, const Transform& transform) {
-    const Lock lock(device_->mutex);
-    Part& moved = part(geometry, "set_transform");
+    const Lock lock(*this);
+    Part& moved = movable(geometry, "set_transform");
     accel_->update_transform(moved.handle, transform);
     if (lister_) lister_->update_transform(moved.listed, transform);
     moved.transform = transform;
@@ -199,8 +186,8 @@ void Scene::set_transform(uint geometry, const Transform& transform) {
 }
 
 void Scene::update_vertices(uint geometry, std::vector<vec3>&& positions) {
-    const Lock lock(device_->mutex);
-    Part& moved = part(geometry, "update_vertices");
+    const Lock lock(*this);
+    Part& moved = movable(geometry, "update_vertices");
     accel_->update_vertices(moved.handle, positions);
     if (lister_) lister_->update_vertices(moved.listed, positions);
     moved.mesh->positions = std::move(positions);
@@ -208,30 +195,30 @@ void Scene::update_vertices(uint geometry, std::vector<vec3>&& positions) {
     changed();
 }
 
-std::vector<uint> Scene::geometries() const {
-    const Lock lock(device_->mutex);
+std::vector<uint> Scene::geometries() {
+    const Lock lock(*this);
     std::vector<uint> alive;
     for (uint i = 0; i < parts_.size(); ++i)
         if (parts_[i]) alive.push_back(i);
     return alive;
 }
 
-std::size_t Scene::triangle_count() const {
-    const Lock lock(device_->mutex);
+std::size_t Scene::triangle_count() {
+    const Lock lock(*this);
     std::size_t count = 0;
     for (const auto& part : parts_) count += part ? part->mesh->triangles.size() : 0;
     return count;
 }
 
-std::vector<std::uint64_t> Scene::first_faces() const {
-    const Lock lock(device_->mutex);
+std::vector<std::uint64_t> Scene::first_faces() {
+    const Lock lock(*this);
     std::vector<std::uint64_t> first{0};
     for (const auto& part : parts_) first.push_back(first.back() + (part ? part->mesh->triangles.size() : 0));
     return first;
 }
 
 Bounds Scene::bounds() {
-    const Lock lock(device_->mutex);
+    const Lock lock(*this);
     if (bounds_) return *bounds_;
     std::vector<PlacedMesh> placed;
     for (const auto& part : parts_) {
@@ -294,7 +281,7 @@ Bounds Scene::around() const {
 }
 
 Scene::Reach Scene::reach(uint geometry) {
-    const Lock lock(device_->mutex);
+    const Lock lock(*this);
     const Bounds box = around(part(geometry, "reach"));
     if (box.is_empty()) return {};
     const vec3 size = box.size();
@@ -318,7 +305,7 @@ void Scene::in_blocks(const RayRows& rows, const Trace& trace) {
 }
 
 Cast Scene::cast(const RayRows& rows, bool with_normals) {
-    const Lock lock(device_->mutex);
+    const Lock lock(*this);
     Cast found{Column<float>(rows.size()), {}, Places(rows.size(), with_normals)};
     in_blocks(rows, [&](std::size_t first, std::span<const Ray> rays, std::span<const double> ways) {
         put(found, first, accel_->closest_hits(rays, {.level = level_}));
@@ -334,7 +321,7 @@ Cast Scene::cast(const RayRows& rows, bool with_normals) {
 }
 
 Column<bool> Scene::occlusions(const RayRows& rows) {
-    const Lock lock(device_->mutex);
+    const Lock lock(*this);
     Column<bool> is_hit(rows.size());
     in_blocks(rows, [&](std::size_t from, std::span<const Ray> rays, std::span<const double>) {
         const std::vector<Hit> hits = accel_->any_hits(rays, {.level = level_});
@@ -350,18 +337,7 @@ AbstractAccel& Scene::lister() {
     if (lister_) return *lister_;
     Context& context = device_->context;
     auto software = make_accel(context, choose_accel(context.properties(), "sw", {}), {});
-    std::map<const Mesh*, AccelHandle> first_of;
-    for (std::size_t i = 0; i < parts_.size(); ++i) {
-        if (!parts_[i]) continue;
-        Part& part = *parts_[i];
-        const InstanceOptions options{.custom_index = static_cast<uint>(i)};
-        const auto found = first_of.find(part.mesh.get());
-        part.listed =
-            found == first_of.end()
-                ? software->push(*part.mesh, part.transform, options)
-                : software->push_instances_of(found->second, std::span(&part.transform, 1), std::span(&options, 1));
-        first_of.emplace(part.mesh.get(), part.listed);
-    }
+    push_parts(*software, &Part::listed);
     lister_ = std::move(software);
     return *lister_;
 }
@@ -373,7 +349,7 @@ HitsOfRays Scene::all_hits(std::span<const Ray> rays) {
 }
 
 Column<int> Scene::counts(const RayRows& rows) {
-    const Lock lock(device_->mutex);
+    const Lock lock(*this);
     Column<int> counts(rows.size());
     in_blocks(rows, [&](std::size_t first, std::span<const Ray> rays, std::span<const double>) {
         const HitsOfRays found = all_hits(rays);
@@ -383,7 +359,7 @@ Column<int> Scene::counts(const RayRows& rows) {
 }
 
 Listed Scene::list(const RayRows& rows, bool with_normals) {
-    const Lock lock(device_->mutex);
+    const Lock lock(*this);
     std::vector<std::uint64_t> first_hits{0};
     std::vector<Hit> hits;
     std::vector<double> far_t;  // of hits; of none where no ray began far off
@@ -414,7 +390,7 @@ PointQuery& Scene::points() {
 }
 
 Nearest Scene::closest(std::span<const dvec3> asked, bool with_normals) {
-    const Lock lock(device_->mutex);
+    const Lock lock(*this);
     const std::vector<uint> numbers = geometries();  // each has one instance, in the order of numbers
     const std::vector<ClosestPoint> points_found = points().closest(asked);
     const std::size_t count = points_found.size();
@@ -430,12 +406,12 @@ Nearest Scene::closest(std::span<const dvec3> asked, bool with_normals) {
 }
 
 std::vector<double> Scene::winding_numbers(std::span<const dvec3> asked) {
-    const Lock lock(device_->mutex);
+    const Lock lock(*this);
     return points().generalized_winding_numbers(asked);
 }
 
-std::vector<dvec3> Scene::world_triangles() const {
-    const Lock lock(device_->mutex);
+std::vector<dvec3> Scene::world_triangles() {
+    const Lock lock(*this);
     std::vector<dvec3> vertices;
     for (const auto& part : parts_) {
         if (!part) continue;
@@ -447,8 +423,8 @@ std::vector<dvec3> Scene::world_triangles() const {
     return vertices;
 }
 
-Backend Scene::backend() const {
-    const Lock lock(device_->mutex);
+Backend Scene::backend() {
+    const Lock lock(*this);
     const DeviceProperties& device = device_->context.properties();
     const auto* hardware = dynamic_cast<const HwTlas*>(accel_.get());
     return {device.name,
@@ -462,7 +438,7 @@ Backend Scene::backend() const {
 }
 
 std::vector<std::string> Scene::take_log() {
-    const Lock lock(device_->mutex);
+    const Lock lock(*this);
     return std::exchange(device_->log, {});
 }
 

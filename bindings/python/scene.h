@@ -17,6 +17,7 @@
 #include <vector>
 
 #include <sys/mman.h>
+#include <unistd.h>
 
 #include <twinray/queries.h>
 #include <twinray/tlas.h>
@@ -61,11 +62,13 @@ struct Numbers3 {
     float x, y, z;
 };
 
-// One context for all scenes of a device, kept until the end of the program.
+// One context for all scenes of a device, kept until the end of the program. It does not outlive a fork.
 struct Device {
     explicit Device(const std::string& request);
+    bool is_of_this_process() const { return process == getpid(); }
 
-    std::recursive_mutex mutex;
+    const pid_t process = getpid();
+    std::recursive_timed_mutex mutex;
     std::vector<std::string> log;  // warnings that nobody has taken yet
     Context context;
 };
@@ -73,6 +76,18 @@ struct Device {
 std::shared_ptr<Device> device_for(const std::string& request);
 // Scenes that are alive keep theirs.
 void forget_devices();
+
+// While it lives, no other thread uses the device. Throws Error for one of another process, and Interrupted.
+class DeviceLock {
+  public:
+    explicit DeviceLock(Device& device);
+    ~DeviceLock() { device_.mutex.unlock(); }
+    DeviceLock(const DeviceLock&) = delete;
+    DeviceLock& operator=(const DeviceLock&) = delete;
+
+  private:
+    Device& device_;
+};
 
 struct Backend {
     std::string device, driver, kind, accel, why, path, level, lists;
@@ -120,8 +135,23 @@ struct Nearest {
     Places places;
 };
 
+// All that is pushed: meshes, and the geometries that place them, by number. `count` numbers were given.
+struct Content {
+    struct Geometry {
+        uint number, mesh;
+        Transform transform;
+        bool is_flat;
+    };
+    std::vector<Mesh> meshes;
+    std::vector<Geometry> geometries;
+    uint count = 0;
+};
+
+// In a child process it opens the device once more, and pushes what it holds there.
 class Scene {
   public:
+    static constexpr uint most_geometries = 1u << 24;  // custom indices have 24 bits
+
     // accel: "auto", "sw" or "hw"; device: as ContextDesc::device; level: as name_of(Level).
     Scene(const std::string& accel, const std::string& device, const std::string& level);
     ~Scene();
@@ -136,14 +166,18 @@ class Scene {
     void set_transform(uint geometry, const Transform& transform);
     // Of all instances of the mesh.
     void update_vertices(uint geometry, std::vector<vec3>&& positions);
-    std::vector<uint> geometries() const;
-    std::size_t triangle_count() const;
-    std::vector<std::uint64_t> first_faces() const;  // by number, and their count at the end
-    Bounds bounds();                                 // in world space
+    std::vector<uint> geometries();
+    std::size_t triangle_count();
+    std::vector<std::uint64_t> first_faces();  // by number, and their count at the end
+    Bounds bounds();                           // in world space
     struct Reach {
         float farthest = 0, extent = 0;
     };
     Reach reach(uint geometry);  // its largest coordinate in world space and its largest side, or a little more
+    Content content();
+    // For a scene that holds nothing yet. Throws Error for numbers that name nothing and as AbstractAccel::push does;
+    // the scene is of no use then.
+    void restore(Content&& content);
 
     Cast cast(const RayRows& rows, bool with_normals);
     Column<bool> occlusions(const RayRows& rows);
@@ -153,11 +187,12 @@ class Scene {
     Nearest closest(std::span<const dvec3> points, bool with_normals);
     std::vector<double> winding_numbers(std::span<const dvec3> points);  // generalized ones, where meshes are open
     // Three vertices each; of mirrored ones the last two are exchanged, so that fronts stay fronts.
-    std::vector<dvec3> world_triangles() const;
+    std::vector<dvec3> world_triangles();
 
-    Backend backend() const;
+    Backend backend();
     std::vector<std::string> take_log();
-    const std::shared_ptr<Device>& device() const { return device_; }
+    // The one of this process.
+    std::shared_ptr<Device> device();
 
     // How many rows of the view factors that are being computed, or were last, are done, and how many there are; any
     // time.
@@ -166,16 +201,20 @@ class Scene {
     };
     Progress& progress() { return progress_; }
 
+    class Lock : DeviceLock {
+      public:
+        explicit Lock(Scene& scene) : DeviceLock(scene.open_device()) {}
+    };
     // While it lives, no other thread uses the scene's device.
     class Turn {
       public:
-        explicit Turn(Scene& scene) : scene_(scene), lock_(scene.device_->mutex) {}
+        explicit Turn(Scene& scene) : scene_(scene), lock_(scene) {}
         AbstractAccel& accel() const { return *scene_.accel_; }
         Level level() const { return scene_.level_; }
 
       private:
         Scene& scene_;
-        std::lock_guard<std::recursive_mutex> lock_;
+        Lock lock_;
     };
 
   private:
@@ -188,14 +227,22 @@ class Scene {
         std::shared_ptr<KeptMesh> mesh;
         Transform transform;
         AccelHandle listed = {};  // in lister_, while that is there
+        bool is_flat = false;     // by the transform that it was added with; see twinray::flatten()
     };
-    using Lock = std::lock_guard<std::recursive_mutex>;
 
+    void make_empty();
+    void leave();
+    // The one of this process. Throws Error where there is none.
+    Device& open_device();
+    void push_parts(AbstractAccel& accel, AccelHandle Part::*handle);
     Part& part(uint geometry, const char* action);
+    Part& movable(uint geometry, const char* action);  // throws Error for a flat one
     uint keep(AccelHandle handle, std::shared_ptr<KeptMesh> mesh, const Transform& transform);
     void changed();
     void forget_lister();
     InstanceOptions options_of_next() const;
+    static AccelHandle push_instance(AbstractAccel& accel, AccelHandle pushed, const Transform& transform,
+                                     const InstanceOptions& options);
     Numbers3 normal_of(uint geometry, uint primitive) const;
     // None: 2^32 - 1 both.
     void put(const Places& places, std::size_t i, uint geometry, uint primitive, Numbers2 uv) const;
@@ -208,8 +255,11 @@ class Scene {
     HitsOfRays all_hits(std::span<const Ray> rays);
     PointQuery& points();
 
-    std::shared_ptr<Device> device_;
+    std::string request_;  // of the device
+    std::string accel_name_;
     Level level_;
+    std::shared_ptr<Device> device_;
+    std::atomic<pid_t> process_ = getpid();  // of the device
     AccelChoice choice_;
     std::unique_ptr<AbstractAccel> accel_;
     std::vector<std::optional<Part>> parts_;  // by number

@@ -8,10 +8,6 @@ import pytest
 import twinray
 
 
-def pytest_configure(config):
-    config.addinivalue_line("filterwarnings", "ignore:twinray runs on a CPU")
-
-
 @pytest.fixture(params=["sw", "hw"])
 def accel(request):
     try:

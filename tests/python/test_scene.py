@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: MIT
 """twinray.Scene: names, shapes and dtypes of Open3D's RaycastingScene, and right answers."""
 
+import copy
 import doctest
 import os
 import re
 import subprocess
 import sys
 import threading
-import warnings
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -164,7 +164,7 @@ def test_any_first_and_all_agree(offset):
     assert (np.diff(listed["t_hit"])[np.diff(listed["ray_ids"]) == 0] >= 0).all()
 
 
-def test_float64_far_from_0_keeps_its_precision(accel):
+def test_float64_far_from_0_keeps_its_precision(accel, caplog):
     offset = np.array([500000.25, 5600000.5, 120])
     vertices, triangles = cube()
     near, far = scene_of((vertices, triangles), accel=accel), scene_of((vertices + offset, triangles), accel=accel)
@@ -179,8 +179,9 @@ def test_float64_far_from_0_keeps_its_precision(accel):
     assert closest[1] - offset == pytest.approx([1, 0.25, 0.5], abs=1e-9)
     matrix = np.eye(4)
     matrix[:3, 3] = offset + [2, 0, 0]
-    with pytest.warns(UserWarning, match="geometry 1 stands so far .* float32 moves it by up to 0.33; give Scene an"):
-        assert near.add_instance(0, matrix) == 1  # is where float32 puts it: this scene counts from 0
+    caplog.clear()
+    assert near.add_instance(0, matrix) == 1  # is where float32 puts it: this scene counts from 0
+    assert re.search("geometry 1 stands so far .* float32 moves it by up to 0.33; give Scene an", caplog.text)
     turned = np.eye(4)
     turned[:3, :3] = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]
     turned[:3, 3] = offset - turned[:3, :3] @ offset  # about the corner at the offset
@@ -304,30 +305,32 @@ def test_bounds_are_those_of_the_triangles(accel):
     assert np.isinf(scene.bounds()).all()
 
 
-def test_poses_far_from_the_origin_are_told_once(tmp_path):
+def test_poses_far_from_the_origin_are_told_once(tmp_path, caplog):
     pose = np.eye(4)
     pose[:3, 3] = [5e5, 5.6e6, 120]
     told = "stands so far"
     for size in (1, 1000):
         scene = scene_of(cube(size), accel="sw")
-        with pytest.warns(UserWarning, match=told):
+        caplog.clear()
+        for _ in range(2):
             scene.set_transform(0, pose)
-        with warnings.catch_warnings():
-            warnings.simplefilter("error")
-            scene.set_transform(0, pose)
+        (message,) = caplog.messages
+        assert told in message
     vertices, triangles = cube()
     lines = [f"v {x} {y} {z}" for x, y, z in vertices + pose[:3, 3]]
     (tmp_path / "far.obj").write_text("\n".join(lines + [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in triangles]))
-    with pytest.warns(UserWarning, match=told):
-        scene_of(cube(), accel="sw").add_file(tmp_path / "far.obj")
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        twinray.Scene(accel="sw").add_file(tmp_path / "far.obj")
-        near = twinray.Scene(accel="sw", origin=pose[:3, 3])
-        near.add_triangles(*cube(), transform=pose)
-        parts = scene_of(cube(), accel="sw")
-        for place in (1, 100, 1000):  # a small part in a large scene
-            parts.add_instance(0, np.diag([0.1, 0.1, 0.1, 1]) + [[0, 0, 0, place], [0] * 4, [0] * 4, [0] * 4])
+    caplog.clear()
+    scene_of(cube(), accel="sw").add_file(tmp_path / "far.obj")
+    (message,) = caplog.messages
+    assert told in message
+    caplog.clear()
+    twinray.Scene(accel="sw").add_file(tmp_path / "far.obj")
+    near = twinray.Scene(accel="sw", origin=pose[:3, 3])
+    near.add_triangles(*cube(), transform=pose)
+    parts = scene_of(cube(), accel="sw")
+    for place in (1, 100, 1000):  # a small part in a large scene
+        parts.add_instance(0, np.diag([0.1, 0.1, 0.1, 1]) + [[0, 0, 0, place], [0] * 4, [0] * 4, [0] * 4])
+    assert not caplog.messages
 
 
 def test_files_far_from_0_keep_their_precision(tmp_path):
@@ -497,13 +500,14 @@ def test_without_vulkan_the_first_scene_says_so():
 
 def test_a_cpu_driver_is_told_once():
     code = "import twinray; s = [twinray.Scene() for _ in range(3)]; print(s[0].backend['kind'])"
-    ended = in_another_process(code)
-    assert ended.stderr.count("runs on a CPU") == (1 if ended.stdout == "CPU\n" else 0), ended
+    ended = in_another_process(code, PYTHONWARNINGS="error")
+    assert ended.returncode == 0 and ended.stderr.count("runs on a CPU") == (ended.stdout == "CPU\n"), ended
 
 
 def test_the_backend_is_told():
     backend = twinray.Scene("sw").backend
-    assert set(backend) == {"device", "driver", "kind", "accel", "why", "path", "level", "lists"}
+    assert set(backend) == {"device", "driver", "kind", "accel", "why", "path", "level", "lists", "note"}
+    assert bool(backend["note"]) == (backend["kind"] == "CPU")
     assert backend["accel"] == "sw" and backend["level"] == "watertight" and backend["device"]
     assert any(device["name"] == backend["device"] for device in twinray.devices())
 
@@ -533,3 +537,22 @@ def test_the_five_lines_of_the_readme(capsys):
     [lines] = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.S)
     exec(lines, {})
     assert capsys.readouterr().out == "[2.] [0]\n" and len(lines.splitlines()) == 5
+
+
+def test_a_transform_that_flattens_leaves_what_is_left():
+    scene = twinray.Scene()
+    flat = scene.add_triangles(*cube(), transform=np.diag([2, 1, 0, 1]))
+    found = scene.cast_rays([[1.5, 0.5, 3, 0, 0, -1], [2.5, 0.5, 3, 0, 0, -1]])
+    assert np.isclose(found["t_hit"][0], 3, atol=1e-6) and np.isinf(found["t_hit"][1])
+    for flattened in (scene, copy.deepcopy(scene)):
+        for call in (
+            lambda: flattened.set_transform(flat, np.eye(4)),
+            lambda: flattened.add_instance(flat),
+            lambda: flattened.update_vertices(flat, cube()[0]),
+        ):
+            with pytest.raises(twinray.Error, match="geometry 0 was flattened by its transform; add its mesh again"):
+                call()
+    whole = scene.add_triangles(*cube(), transform=np.array([[1, 0, 0, 10], [0, 1, 0, 0], [0, 0, 1, 0]]))
+    scene.add_instance(whole, np.array([[1, 0, 0, 20], [0, 0, 0, 0], [0, 0, 1, 0]]))
+    assert np.isclose(scene.cast_rays([20.5, -3, 0.5, 0, 1, 0])["t_hit"], 3, atol=1e-6)
+    assert len(scene) == 3

@@ -10,7 +10,7 @@ from conftest import needed
 
 trimesh = needed("trimesh")
 
-from twinray.trimesh import RayMeshIntersector  # noqa: E402
+from twinray.trimesh import RayMeshIntersector, use  # noqa: E402
 
 
 @pytest.fixture
@@ -94,3 +94,35 @@ def test_scales_and_lengths_do_not_matter():
         expected = found if expected is None else expected
         assert (found == expected).mean() > 0.995  # float32's rounding moves a few to a neighbour
         assert ((found >= 0) == (expected >= 0)).mean() > 0.995
+
+
+def engines(*meshes):
+    return [type(mesh.ray) is RayMeshIntersector for mesh in meshes]
+
+
+def test_use_makes_it_the_engine_of_all_new_meshes():
+    before = trimesh.creation.box()
+    with use(level="refined") as used:
+        boxes = trimesh.util.concatenate([before, trimesh.creation.box(transform=[[1, 0, 0, 5], *np.eye(4)[1:]])])
+        parts = [before.copy(), copy.deepcopy(before), boxes.submesh([[0, 1, 2]], append=True), *boxes.split()]
+        assert len(parts) == 5 and all(engines(boxes, *parts)) and not any(engines(before))
+        assert all(part.ray.scene.backend["level"] == "refined" for part in parts[:2])
+        assert boxes.contains([[5, 0, 0], [9, 0, 0]]).tolist() == [True, False]
+        pickled = pickle.loads(pickle.dumps(boxes))
+        with use(level="fast"):
+            assert trimesh.creation.box().ray.scene.backend["level"] == "fast"
+        assert trimesh.creation.box().ray.scene.backend["level"] == "refined"
+    after = trimesh.creation.box()
+    assert not any(engines(after, before.copy(), boxes.copy())) and all(engines(boxes, pickled))
+    used.undo()
+    once = use()
+    assert all(engines(trimesh.creation.box()))
+    once.undo()
+    assert not any(engines(trimesh.creation.box()))
+
+
+def test_meshes_are_pickled_and_copied_with_their_engine(ball):
+    ball.ray.intersects_any([[0, 0, 4]], [[0, 0, -1]])
+    pickled = pickle.loads(pickle.dumps(ball))
+    assert engines(pickled) == [True] and pickled.ray.mesh is pickled
+    assert pickled.ray.intersects_any([[0, 0, 4]], [[0, 0, -1]]).all()

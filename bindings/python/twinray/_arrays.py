@@ -129,9 +129,13 @@ def arrays_of_mesh(mesh):
         return np.asarray(mesh.vertices), np.asarray(mesh.triangles)
     if hasattr(mesh, "vertex") and hasattr(mesh, "triangle"):
         return mesh.vertex.positions.cpu().numpy(), mesh.triangle.indices.cpu().numpy()
-    if hasattr(mesh, "points") and hasattr(mesh, "regular_faces"):
+    if hasattr(mesh, "points") and hasattr(type(mesh), "regular_faces"):  # it raises where faces are not of one size
         surface = mesh.triangulate()
-        return np.asarray(surface.points), np.asarray(surface.regular_faces)
+        return np.asarray(surface.points), np.asarray(surface.faces).reshape(-1, 4)[:, 1:]
+    if hasattr(mesh, "extract_surface"):
+        raise TypeError(
+            f"vertex_positions: a {type(mesh).__name__} is no surface; give its .extract_surface(), or what that finds"
+        )
     raise TypeError(
         f"vertex_positions: {type(mesh).__name__} is no mesh of trimesh, Open3D or PyVista; give triangle_indices"
     )

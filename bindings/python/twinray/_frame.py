@@ -39,6 +39,12 @@ class Frame:
         self._is_given = origin is not None
         self._of_mesh = {}  # by geometry
 
+    def copy(self):
+        """Another one, that goes its own way."""
+        other = Frame(self.origin if self._is_given else None)
+        other.origin, other._of_mesh = self.origin, dict(self._of_mesh)
+        return other
+
     def placed(self, positions, matrix):
         """Of a new mesh: positions in float32, its matrix (3, 4) in float32, and what they are counted from."""
         mesh_origin = near_point(positions)

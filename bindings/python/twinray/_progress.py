@@ -3,8 +3,17 @@
 
 from __future__ import annotations
 
+import threading
+from contextlib import nullcontext
+
 _MOST_STEPS = 100
 _SECONDS = 0.1  # from one look to the next
+
+
+class _NoBar:
+    @staticmethod
+    def update(count):
+        pass
 
 
 def _bar(total, name):
@@ -16,23 +25,28 @@ def _bar(total, name):
 
 
 def in_blocks(count, least, name, work):
-    """Calls work(first, last) for blocks of at least so many of `count` things."""
+    """Calls work(first, last) for blocks of at least so many of `count` things; without a name there is no bar."""
     step = max(least, -(-count // _MOST_STEPS))
-    with _bar(count, name) as bar:
+    with nullcontext(_NoBar) if name is None else _bar(count, name) as bar:
         for first in range(0, count, step):
             work(first, min(first + step, count))
             bar.update(min(step, count - first))
 
 
 def watched(scene, name, work):
-    """The result of work(), which another thread does, while its rows are counted here."""
-    from concurrent.futures import ThreadPoolExecutor, TimeoutError  # takes a third of `import twinray`
+    """The result of work(), while another thread counts its rows. This one works, since it alone hears of Ctrl-C."""
+    has_ended = threading.Event()
 
-    with _bar(None, name) as bar, ThreadPoolExecutor(1) as pool:
-        future = pool.submit(work)
-        while True:
-            try:
-                return future.result(_SECONDS)
-            except TimeoutError:
-                done, bar.total = scene._core.progress()
-                bar.update(done - bar.n)
+    def count(bar):
+        while not has_ended.wait(_SECONDS):
+            done, bar.total = scene._core.progress()
+            bar.update(done - bar.n)
+
+    with _bar(None, name) as bar:
+        counting = threading.Thread(target=count, args=(bar,))
+        counting.start()
+        try:
+            return work()
+        finally:
+            has_ended.set()
+            counting.join()

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-import warnings
+import logging
 from typing import Any, Literal
 
 import numpy as np
@@ -33,7 +33,8 @@ HIT_CLASSES = (
 PAIR_CLASSES = ("separate", "vertex_touch", "edge_touch", "coplanar_touch", "coplanar_overlap", "crossing")
 
 
-_RAYS_OF_BLOCK = 1 << 22  # at least, where progress is shown
+_log = logging.getLogger("twinray")
+_RAYS_OF_BLOCK = 1 << 22  # at least
 _RAYS_OF_WARNING = 1 << 16  # about, that look for points on surfaces
 
 
@@ -81,10 +82,11 @@ def _tell_of_own_surfaces(scene, points, vectors):
     nearest = np.min(t * np.linalg.norm(vectors, axis=1), axis=1)
     here = int((nearest <= 16 * rounding_of([np.abs(some).max(), *(scene._core.bounds().ravel())])).sum())
     if here:
-        warnings.warn(
-            f"visible: {here} of {len(some)} points that were looked at lie on the scene, and their rays meet the "
-            "surface that they begin on; give normals, or tnear",
-            stacklevel=3,
+        _log.warning(
+            "visible: %d of %d points that were looked at lie on the scene, and their rays meet the surface that they "
+            "begin on; give normals, or tnear",
+            here,
+            len(some),
         )
 
 
@@ -132,10 +134,7 @@ def visible(
         part = slice(first, last)
         seen[part] = _core.visible(scene._core, rows[part], across, sides[part], near).reshape(-1, len(across))
 
-    if progress:
-        in_blocks(len(rows), 1 + _RAYS_OF_BLOCK // max(1, len(across)), "visible", fill)
-    else:
-        fill(0, len(rows))
+    in_blocks(len(rows), 1 + _RAYS_OF_BLOCK // max(1, len(across)), "visible" if progress else None, fill)
     if normals is None and near == 0:
         _tell_of_own_surfaces(scene, rows[~seen.all(axis=1)], across)
     return seen

@@ -6,9 +6,10 @@ One file, since it is one class, half of which are docstrings.
 
 from __future__ import annotations
 
+import logging
 import os
 import threading
-import warnings
+import weakref
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -25,7 +26,18 @@ if TYPE_CHECKING:
 
 INVALID_ID: int = 0xFFFFFFFF  #: in place of the number of a geometry or a triangle, where there is none
 
+_CPU_NOTE = "right, but tens to hundreds of times slower than on a GPU"
+_log = logging.getLogger("twinray")
 _told_of_cpu: set[str] = set()
+_scenes: weakref.WeakSet[Scene] = weakref.WeakSet()
+
+
+def _renew_locks():
+    for scene in _scenes:
+        scene._adding = threading.Lock()
+
+
+os.register_at_fork(after_in_child=_renew_locks)  # a thread that held one is not there
 
 
 class Scene:
@@ -52,6 +64,9 @@ class Scene:
     so that scenes far from 0, as in UTM, keep their precision. Rays in float64 that begin more than 16 extents away,
     as from a sun or a satellite, are brought near the scene in float64 first; ``t_hit`` counts from where they began
     and is float64 then. Rays go to the device in blocks of a million. All calls may come from several threads.
+
+    Pickles and copies hold the scene's meshes, not its device: a copy opens the device again, and so does a scene in a
+    child process that a fork made. Warnings go to the logger "twinray". Ctrl-C ends any call.
     """
 
     def __init__(
@@ -64,22 +79,39 @@ class Scene:
         for name, value in (("accel", accel), ("level", level)):
             if not isinstance(value, str):
                 raise TypeError(f"{name}: {value!r} is not a str")
+        self._open((accel, device, level), Frame(None if origin is None else vector_of(origin, "origin")))
+
+    def _open(self, options, frame):
+        accel, device, level = self._options = options
         if device is None:
             device = os.environ.get("TWINRAY_DEVICE", "")
-        self._frame = Frame(None if origin is None else vector_of(origin, "origin"))
+        self._frame = frame
         self._adding = threading.Lock()  # the first mesh says the origin
         self._told_of_far = False
         self._core = _core.Scene(accel, str(device), level)
+        _scenes.add(self)
         self._tell()
+
+    def __getstate__(self) -> dict[str, Any]:
+        with self._adding:
+            return {"options": self._options, "frame": self._frame, "content": self._core.content()}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self._open(state["options"], state["frame"].copy())
+        self._core.restore(*state["content"])
 
     @property
     def backend(self) -> dict[str, str]:
-        """What answers: dict of ``device``, ``driver``, ``kind``, ``accel``, ``why``, ``path``, ``level``, ``lists``.
+        """The device and the accelerator that answer: a dict of strings.
 
+        The keys are ``device``, ``driver``, ``kind``, ``accel``, ``why``, ``path``, ``level``, ``lists`` and ``note``.
         ``lists`` is the accelerator of `count_intersections` and `list_intersections`: "sw" always, since drivers may
-        count an edge twice. Where ``accel`` is "hw" their first call builds it beside the driver's.
+        count an edge twice. Where ``accel`` is "hw" their first call builds it beside the driver's. ``note`` says how
+        slow a CPU is as the device; it is empty for a GPU.
         """
-        return self._core.backend()
+        backend = self._core.backend()
+        is_cpu = backend["kind"] == "CPU"
+        return backend | {"note": _CPU_NOTE if is_cpu else ""}
 
     @property
     def origin(self) -> NDArray[np.float64]:
@@ -202,7 +234,8 @@ class Scene:
             A mesh of trimesh, Open3D or PyVista stands for both arrays.
         triangle_indices : array_like, (M, 3) uint32
         transform : array_like, (4, 4) or (3, 4), optional
-            From the mesh to the scene; columns are the images of the axes and of the origin.
+            From the mesh to the scene; columns are the images of the axes and of the origin. One that loses one
+            direction, as a scale of 1, 1, 0 does, flattens the geometry for good.
 
         Returns
         -------
@@ -214,7 +247,7 @@ class Scene:
         ValueError, TypeError
             Naming the argument, its shape or dtype, and what is wanted.
         Error
-            For an index that names no vertex, and a transform that cannot be inverted.
+            For an index that names no vertex, and a transform that leaves no area.
         """
         if triangle_indices is None:
             vertex_positions, triangle_indices = arrays_of_mesh(vertex_positions)
@@ -470,20 +503,22 @@ class Scene:
             rounding = rounding_of(farthest)
             if 0 < harmless * extent < rounding < np.inf:
                 self._told_of_far = True
-                warnings.warn(
-                    f"geometry {geometry} stands so far from the scene's origin {self.origin.tolist()} that float32 "
-                    f"moves it by up to {rounding:.2g}; give Scene an origin near it",
-                    stacklevel=3,
+                _log.warning(
+                    "geometry %d stands so far from the scene's origin %s that float32 moves it by up to %.2g; give "
+                    "Scene an origin near it",
+                    geometry,
+                    self.origin.tolist(),
+                    rounding,
                 )
                 return
 
     def _tell(self):
         for message in self._core.take_log():
-            warnings.warn(message, stacklevel=3)
+            _log.warning("%s", message)
         backend = self.backend
-        if backend["kind"] == "CPU" and backend["device"] not in _told_of_cpu:
+        if backend["note"] and backend["device"] not in _told_of_cpu:
             _told_of_cpu.add(backend["device"])
-            warnings.warn(f"twinray runs on a CPU, by Vulkan device '{backend['device']}'", stacklevel=3)
+            _log.warning("twinray runs on a CPU, by Vulkan device '%s': %s", backend["device"], backend["note"])
 
 
 def _interval(tnear, tfar):

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""trimesh's ray interface: ``mesh.ray = twinray.trimesh.RayMeshIntersector(mesh)``."""
+"""trimesh's ray interface: ``twinray.trimesh.use()``, or ``mesh.ray = twinray.trimesh.RayMeshIntersector(mesh)``."""
 
 from __future__ import annotations
 
+import functools
 from typing import Any, Literal
 
 import numpy as np
@@ -10,6 +11,60 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._arrays import rows_of
 from .scene import Scene
+
+_uses: list[Use] = []  # not undone yet, the latest last
+
+
+class Use:
+    """What `use` returns: at the end of a ``with`` block, or by `undo`, meshes get trimesh's own engine again."""
+
+    def __init__(self, options: dict[str, Any]) -> None:
+        self._options = options
+
+    def undo(self) -> None:
+        """Take it back; once more does nothing."""
+        if self in _uses:
+            _uses.remove(self)
+
+    def __enter__(self) -> Use:
+        return self
+
+    def __exit__(self, *_: Any) -> None:
+        self.undo()
+
+
+def use(
+    accel: Literal["auto", "sw", "hw"] = "auto",
+    device: str | int | None = None,
+    level: Literal["fast", "watertight", "refined", "certified"] = "watertight",
+) -> Use:
+    """Make twinray the ray engine of all meshes of trimesh that are made from now on, copies and parts of others, too.
+
+    ``with twinray.trimesh.use(): ...`` undoes that at its end. Meshes keep the engine that they were made with. Each
+    call counts until it is undone, and the latest one of them decides.
+
+    Parameters
+    ----------
+    accel, device, level
+        As of `twinray.Scene`.
+    """
+    from trimesh import Trimesh
+
+    if not hasattr(Trimesh.__init__, "_is_twinrays"):
+        Trimesh.__init__ = _with_twinray(Trimesh.__init__)
+    _uses.append(Use({"accel": accel, "device": device, "level": level}))
+    return _uses[-1]
+
+
+def _with_twinray(init):
+    @functools.wraps(init)
+    def made(mesh, *args, **options):
+        init(mesh, *args, **options)
+        for latest in _uses[-1:]:
+            mesh.ray = RayMeshIntersector(mesh, **latest._options)
+
+    made._is_twinrays = True
+    return made
 
 
 class RayMeshIntersector:
