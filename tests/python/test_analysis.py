@@ -143,8 +143,16 @@ def test_skies_are_radiances(name, count):
     if count == 145:
         assert np.isclose(np.rad2deg(np.arcsin(directions[0, 2])), 6)
         assert np.allclose(directions[1, :2] / np.cos(np.deg2rad(6)), [np.sin(np.deg2rad(12)), np.cos(np.deg2rad(12))])
+    within, _ = twinray.sky_patches(name, samples=64)
+    assert within.shape == (64, count, 3) and np.allclose(np.linalg.norm(within, axis=2), 1)
+    assert (within[..., 2] >= 0).all() and (within == twinray.sky_patches(name, samples=64, seed=1)[0]).all()
+    away = np.arccos(np.einsum("snk,nk->sn", within, directions).clip(-1, 1))
+    assert (away.max(axis=0) < 1.7 * np.sqrt(angles)).all() and (away.max(axis=0) > 0.3 * np.sqrt(angles)).all()
+    assert np.isclose((angles * within[..., 2].mean(axis=0)).sum(), np.pi, rtol=5e-3)
     with pytest.raises(twinray.Error, match="sky 'cie'"):
         twinray.sky_patches("cie")
+    with pytest.raises(ValueError, match="samples: 0"):
+        twinray.sky_patches(name, samples=0)
 
 
 def test_sensor_files_of_radiance(tmp_path):

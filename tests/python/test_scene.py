@@ -556,3 +556,28 @@ def test_a_transform_that_flattens_leaves_what_is_left():
     scene.add_instance(whole, np.array([[1, 0, 0, 20], [0, 0, 0, 0], [0, 0, 1, 0]]))
     assert np.isclose(scene.cast_rays([20.5, -3, 0.5, 0, 1, 0])["t_hit"], 3, atol=1e-6)
     assert len(scene) == 3
+
+
+def test_certified_decides_the_ends_of_rays_exactly():
+    random = np.random.default_rng(7)
+    count = 500
+    corners = random.integers(-512, 512, (count, 3, 3)) / 64
+    corners += 64 * np.stack([np.arange(count), 0 * np.arange(count), 0 * np.arange(count)], axis=1)[:, None]
+    on_plane = corners[:, 0] / 4 + corners[:, 1] / 4 + corners[:, 2] / 2  # exact in float32, as rays are
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    step = (normal / np.linalg.norm(normal, axis=1, keepdims=True) * 256).round() / 256
+    rays = np.hstack([on_plane - step, step]).astype(np.float32)
+    scene = twinray.Scene("sw", level="certified", origin=[0, 0, 0])
+    scene.add_triangles(corners.reshape(-1, 3), np.arange(3 * count).reshape(-1, 3))
+    own = np.arange(count)
+    last_before, next_after = np.nextafter(np.float32(1), np.float32([0, 2]))
+    for interval, is_hit in (
+        ((0, 1), False),
+        ((0, next_after), True),
+        ((1, 2), False),
+        ((last_before, 2), True),
+    ):
+        found = scene.cast_rays(rays, tnear=interval[0], tfar=interval[1])["primitive_ids"]
+        assert ((found == own) == is_hit).all(), interval
+        blocked = scene.test_occlusions(rays, tnear=interval[0], tfar=min(interval[1], next_after))
+        assert (blocked == is_hit).all(), interval

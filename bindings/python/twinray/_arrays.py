@@ -110,6 +110,12 @@ def number_of(value, name, least=None):
     return number
 
 
+def count_of(value, name, least, most):
+    if not hasattr(value, "__index__") or not least <= value.__index__() <= most:
+        raise ValueError(f"{name}: {value!r}; wanted is an integer from {least} to {most}")
+    return value.__index__()
+
+
 def geometry_of(value, name):
     """The number of a geometry."""
     try:

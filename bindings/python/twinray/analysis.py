@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._arrays import Array, array_of, number_of, rows_of
+from ._arrays import Array, array_of, count_of, number_of, rows_of
 from ._frame import rounding_of
 from ._progress import in_blocks, watched
 from .scene import Scene
@@ -51,12 +51,6 @@ def _direction(value, name):
     if array.shape != (3,):
         raise ValueError(f"{name}: shape {array.shape}; wanted is (3,)")
     return [float(x) for x in array]
-
-
-def _count(value, name, least, most):
-    if not hasattr(value, "__index__") or not least <= value.__index__() <= most:
-        raise ValueError(f"{name}: {value!r}; wanted is an integer from {least} to {most}")
-    return value.__index__()
 
 
 def _groups(groups, scene):
@@ -187,8 +181,8 @@ def view_factors(
     scene = _scene_of(scene)
     error = None if target_error is None else number_of(target_error, "target_error", 0)
     arguments = (
-        scene._core, _groups(groups, scene), sides == "both", _count(rays, "rays", 1, 2**31), error,
-        _count(seed, "seed", 0, 2**32 - 1), estimator,
+        scene._core, _groups(groups, scene), sides == "both", count_of(rays, "rays", 1, 2**31), error,
+        count_of(seed, "seed", 0, 2**32 - 1), estimator,
     )  # fmt: skip
     if progress:
         found = watched(scene, "view factors", lambda: _core.view_factors(*arguments))
@@ -239,8 +233,8 @@ def illumination(
     """
     scene = _scene_of(scene)
     rows, _ = _core.illumination(
-        scene._core, _direction(direction, "direction"), _count(side, "side", 1, 65535), sides != "front",
-        _count(seed, "seed", 0, 2**63), _groups(groups, scene),
+        scene._core, _direction(direction, "direction"), count_of(side, "side", 1, 65535), sides != "front",
+        count_of(seed, "seed", 0, 2**63), _groups(groups, scene),
     )  # fmt: skip
     return {name: rows[:, i] for i, name in enumerate(("hits", "area", "low", "high", "unobstructed", "surface"))}
 
@@ -261,8 +255,8 @@ def sky_light(
         Of the front, the sky view factor, with its 95 % interval.
     """
     rows = _core.sky_light(
-        _scene_of(scene)._core, _direction(zenith, "zenith"), _count(samples, "samples", 1, 2**20), sides != "front",
-        _count(seed, "seed", 0, 2**63),
+        _scene_of(scene)._core, _direction(zenith, "zenith"), count_of(samples, "samples", 1, 2**20), sides != "front",
+        count_of(seed, "seed", 0, 2**63),
     )  # fmt: skip
     return rows[:, 0], rows[:, 1], rows[:, 2]
 
@@ -278,8 +272,8 @@ def centroid(
     """
     scene = _scene_of(scene)
     mean, error, _, _ = _core.centroid(
-        scene._core, _direction(direction, "direction"), _count(side, "side", 1, 65535),
-        _count(seed, "seed", 0, 2**63),
+        scene._core, _direction(direction, "direction"), count_of(side, "side", 1, 65535),
+        count_of(seed, "seed", 0, 2**63),
     )  # fmt: skip
     return (None if mean is None else mean + scene.origin), (None if error is None else np.array(error))
 
@@ -342,7 +336,7 @@ def verify(scene: Scene | Any, rays: ArrayLike | None = None, *, count: int = 10
     """
     scene = _scene_of(scene)
     flat, _ = scene._rays_of(np.zeros((0, 6)) if rays is None else rays)
-    found = _core.verify(scene._core, *flat, _count(count, "count", 4, 2**31), _count(seed, "seed", 0, 2**63))
+    found = _core.verify(scene._core, *flat, count_of(count, "count", 4, 2**31), count_of(seed, "seed", 0, 2**63))
     found["rays"] = found["rays"][:, [0, 1, 2, 4, 5, 6]]
     if scene.origin.any():
         found["rays"] = found["rays"] + np.concatenate([scene.origin, np.zeros(3)])

@@ -10,24 +10,32 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
-from ._arrays import Array
+from ._arrays import Array, count_of
 
 
 def sky_patches(
     name: Literal["tregenza145", "reinhart577", "reinhart2305"] = "tregenza145",
+    samples: int | None = None,
+    seed: int = 1,
 ) -> tuple[Array, Array]:
-    """Give the middles and solid angles of the patches of a sky, as Radiance numbers them.
+    """Return directions to the patches of a sky, and their solid angles.
 
-    Of Tregenza ("Subdivision of the sky hemisphere for luminance measurements", 1987), and Reinhart's division of each
-    patch into 2 x 2 or 4 x 4.
+    The patches are Tregenza's ("Subdivision of the sky hemisphere for luminance measurements", 1987), and Reinhart's
+    division of each into 2 x 2 or 4 x 4. Their order is Radiance's: patch k is bin k + 1 of ``reinhartb.cal`` and row
+    k + 1 of ``gendaymtx``, whose row 0 is the ground.
 
     Parameters
     ----------
     name : {"tregenza145", "reinhart577", "reinhart2305"}
+    samples : int, optional
+        So many random directions of each patch, uniform in solid angle, instead of its middle. A patch that a roof line
+        cuts counts as seen or hidden as a whole by its middle; the spread of samples gives the error.
+    seed : int
+        For the random directions.
 
     Returns
     -------
-    directions : Array, (n, 3) float64
+    directions : Array, (n, 3) float64; with `samples` (samples, n, 3)
         Unit; z is up, x east and y north. Patches go by row from the horizon up, in a row from north by east.
     solid_angles : Array, (n,) float64
         In steradians; together the hemisphere's 2 pi.
@@ -35,7 +43,22 @@ def sky_patches(
     if not isinstance(name, str):
         raise TypeError(f"name: {name!r} is not a str")
     rows = _core.sky_patches(name)
-    return rows[:, :3].view(Array), rows[:, 3].view(Array)
+    middles, angles = rows[:, :3], rows[:, 3]
+    if samples is None:
+        return middles.view(Array), angles.view(Array)
+    count = count_of(samples, "samples", 1, 2**20)
+    return _within_patches(middles, count, count_of(seed, "seed", 0, 2**63)).view(Array), angles.view(Array)
+
+
+def _within_patches(middles, count, seed):
+    _, row, sizes = np.unique(middles[:, 2].round(9), return_inverse=True, return_counts=True)
+    height = np.pi / 2 / (len(sizes) - 0.5)  # the last row is a cap of half of it
+    low, high = (np.sin(np.minimum(height * (row + top), np.pi / 2)) for top in (0, 1))
+    up, across = np.random.default_rng(seed).random((2, count, len(middles)))
+    z = low + up * (high - low)
+    azimuth = np.arctan2(middles[:, 0], middles[:, 1]) + (across - 0.5) * 2 * np.pi / sizes[row]
+    flat = np.sqrt(1 - z * z)
+    return np.stack([flat * np.sin(azimuth), flat * np.cos(azimuth), z], axis=-1)
 
 
 def read_sensors(file: str | os.PathLike[str]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
