@@ -64,12 +64,29 @@ void forget_devices() {
     all.devices.clear();
 }
 
+bool TurnMutex::try_lock_until(Clock::time_point end) {
+    if (owner_ != std::this_thread::get_id()) {
+        const std::unique_lock next(next_, end);
+        if (!next || !held_.try_lock_until(end)) return false;
+        owner_ = std::this_thread::get_id();
+    }
+    ++depth_;
+    return true;
+}
+
+void TurnMutex::unlock() {
+    if (--depth_ > 0) return;
+    owner_ = std::thread::id();
+    held_.unlock();
+}
+
 DeviceLock::DeviceLock(Device& device) : device_(device) {
     if (!device.is_of_this_process())
         throw Error("what process " + std::to_string(device.process) +
                     " keeps on a device is of no use here: a device does not outlive a fork. Make it anew in this "
                     "process, or start processes by spawn or forkserver");
-    while (!device.mutex.try_lock_for(std::chrono::milliseconds(100))) look_for_interruption();
+    while (!device.mutex.try_lock_until(TurnMutex::Clock::now() + std::chrono::milliseconds(100)))
+        look_for_interruption();
 }
 
 void Scene::make_empty() {

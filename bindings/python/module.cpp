@@ -392,7 +392,7 @@ DeviceMemory::DeviceMemory(Scene& scene, std::uint64_t bytes, bool in_host_memor
 
 DeviceMemory::~DeviceMemory() {
     if (!device_->is_of_this_process()) return;
-    const std::lock_guard lock(device_->mutex);
+    const LastLock lock(*device_);
     buffer_ = {};
 }
 
@@ -441,7 +441,7 @@ void bind_device_memory(nb::module_& m) {
             [](const DeviceMemory& memory) { return given<std::uint8_t>(unlocked([&] { return memory.download(); })); })
         .def("export_fd",
              [](const DeviceMemory& memory) {
-                 const ExportedMemory exported = memory.exported();
+                 const ExportedMemory exported = unlocked([&] { return memory.exported(); });
                  return nb::make_tuple(exported.fd, exported.bytes);
              })
         .def("device_uuid", [](const DeviceMemory& memory) {
@@ -469,6 +469,11 @@ nb::list devices() {
 }
 
 }  // namespace
+
+LastLock::LastLock(Device& device) : device_(device) {
+    const nb::gil_scoped_release released;
+    device_.mutex.lock();
+}
 
 NB_MODULE(_core, m) {
     nb::exception<Error>(m, "Error", PyExc_RuntimeError);

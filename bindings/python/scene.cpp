@@ -77,7 +77,7 @@ Scene::~Scene() {
         leave();
         return;
     }
-    const std::lock_guard lock(device_->mutex);
+    const LastLock lock(*device_);
     forget_lister();
     points_.reset();
     accel_.reset();

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <cstdlib>
 #include <limits>
@@ -13,6 +14,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <thread>
 #include <type_traits>
 #include <vector>
 
@@ -62,13 +64,29 @@ struct Numbers3 {
     float x, y, z;
 };
 
+// A recursive mutex that threads get in turn: one that waits comes before one that asks again.
+class TurnMutex {
+  public:
+    using Clock = std::chrono::steady_clock;
+    bool try_lock_until(Clock::time_point end);
+    void lock() { static_cast<void>(try_lock_until(Clock::time_point::max())); }
+    bool try_lock() { return try_lock_until(Clock::now()); }
+    void unlock();
+
+  private:
+    std::timed_mutex next_;  // of the one that waits for `held_`
+    std::timed_mutex held_;
+    std::atomic<std::thread::id> owner_;
+    int depth_ = 0;  // of the owner
+};
+
 // One context for all scenes of a device, kept until the end of the program. It does not outlive a fork.
 struct Device {
     explicit Device(const std::string& request);
     bool is_of_this_process() const { return process == getpid(); }
 
     const pid_t process = getpid();
-    std::recursive_timed_mutex mutex;
+    TurnMutex mutex;
     std::vector<std::string> log;  // warnings that nobody has taken yet
     Context context;
 };
@@ -84,6 +102,19 @@ class DeviceLock {
     ~DeviceLock() { device_.mutex.unlock(); }
     DeviceLock(const DeviceLock&) = delete;
     DeviceLock& operator=(const DeviceLock&) = delete;
+
+  private:
+    Device& device_;
+};
+
+// For destructors, which Python calls with its own lock held. It waits for the device without that lock, since the thread
+// that uses the device may need it to look for signals.
+class LastLock {
+  public:
+    explicit LastLock(Device& device);
+    ~LastLock() { device_.mutex.unlock(); }
+    LastLock(const LastLock&) = delete;
+    LastLock& operator=(const LastLock&) = delete;
 
   private:
     Device& device_;

@@ -164,6 +164,32 @@ def test_copies_far_from_the_origin():
     assert scene.bounds()[1, 2] == 101
 
 
+def test_scenes_end_while_another_thread_uses_the_device():
+    code = """
+import logging, threading, time, numpy as np, twinray
+logging.disable()
+scene = twinray.Scene("sw")
+scene.add_triangles(np.random.rand(3000, 3), np.arange(3000).reshape(-1, 3))
+held = [twinray.Scene("sw"), twinray.Scene("sw"), scene.device_array(64, np.uint8), scene.device_array(64, np.uint8)]
+rays = np.random.rand(100_000, 6).astype(np.float32)  # for longer than a look at signals waits
+stop = threading.Event()
+
+def trace():
+    while not stop.is_set():
+        scene.cast_rays(rays)
+
+thread = threading.Thread(target=trace)
+thread.start()
+while held:
+    time.sleep(0.1)
+    held.pop()
+stop.set()
+thread.join()
+print("ended")
+"""
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120).stdout == "ended\n"
+
+
 LONG = {
     "view_factors": "twinray.view_factors(scene, rays=1 << 20, groups=np.arange(len(faces)) % 50)",
     "view_factors with a bar": "twinray.view_factors(scene, rays=1 << 20, progress=True)",

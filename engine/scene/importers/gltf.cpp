@@ -124,7 +124,10 @@ class ShapeReader {
 // triangles are dropped.
 void read_gltf_shapes(GltfFile& file, std::vector<GltfInstance> instances, Scene& scene, Rig& rig) {
     ShapeReader reader(file, instances, scene, rig);
-    for (GltfInstance& found : instances) found.instance.mesh = reader.mesh_of(found);
+    for (GltfInstance& found : instances) {
+        look_for_interruption();
+        found.instance.mesh = reader.mesh_of(found);
+    }
     std::erase_if(instances, [](const GltfInstance& found) { return found.instance.mesh == EMPTY; });
     std::ranges::stable_sort(instances, {}, [](const GltfInstance& found) { return found.instance.mesh; });
     for (GltfInstance& found : instances) {

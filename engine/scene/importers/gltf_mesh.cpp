@@ -180,11 +180,13 @@ class MeshReader {
 
     GltfMesh read() {
         std::size_t skipped = 0;
-        for (std::size_t i = 0; i < source_.primitives.size(); ++i)
+        for (std::size_t i = 0; i < source_.primitives.size(); ++i) {
+            look_for_interruption();
             if (makes_triangles(source_.primitives[i]))
                 add(source_.primitives[i], text(name_, " primitive ", i));
             else
                 ++skipped;
+        }
         if (skipped)
             file_.warn(text(name_, ": skipped ", skipped, " primitives of points, lines or without positions"));
         return {std::move(mesh_), std::move(motion_), std::move(variants_)};

@@ -182,8 +182,10 @@ std::vector<GltfNode> flatten_nodes(GltfFile& file) {
         flat.push_back(std::move(node));
     };
     for (const int root : shown_roots(file, parents)) add(root, -1);
-    for (std::size_t i = 0; i < flat.size(); ++i)
+    for (std::size_t i = 0; i < flat.size(); ++i) {
+        look_for_interruption();
         for (const int child : nodes[flat[i].index].children) add(child, static_cast<std::int32_t>(i));
+    }
     return flat;
 }
 
