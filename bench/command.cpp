@@ -163,7 +163,7 @@ void bench_scene(const Session& session, const BenchScene& scene) {
     Setup setup = set_up(session);
     const RunOptions& run = session.run;
     session.out << "bench " << scene.name << ": " << count_triangles(scene.scene) << " triangles, "
-                << run.width * run.width << " rays a set, medians of " << run.rounds << " interleaved rounds, on "
+                << run.width * run.width << " rays per set, medians of " << run.rounds << " interleaved rounds, on "
                 << setup.context->properties().name << '\n';
     const Measured measured = measure(*setup.context, setup.line_up, scene, run);
     const Results results{scene, setup.line_up, measured.builds};

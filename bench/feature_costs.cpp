@@ -180,8 +180,8 @@ std::vector<nlohmann::json> records_of(const nlohmann::json& base, const Feature
     return records;
 }
 
-// An accelerator keeps this, and its builds take so long, for a thing that a scene may not need.
-struct Keeping {
+// The memory that an accelerator keeps, and its build times, with one thing that a scene may not need.
+struct MemoryCost {
     std::string name;  // "needed", "may move", "vertices moved", "layout bvh2", "level refined"
     MemoryUsage usage;
     std::vector<double> build_ms;  // of each round: the sync that led to it
@@ -228,7 +228,7 @@ void move_vertices(SwTlas& accel, const Scene& scene, std::span<const AccelHandl
             accel.update_vertices(handles[pushed++], scene.meshes[scene.instances[i].mesh].positions);
 }
 
-void measure_round(Context& context, const Scene& scene, const Configuration& configuration, Keeping& keeping) {
+void measure_round(Context& context, const Scene& scene, const Configuration& configuration, MemoryCost& cost) {
     SwTlas accel(context, configuration.options);
     const std::vector<AccelHandle> handles = push_scene(accel, scene);
     double ms = sync_ms(accel);
@@ -237,8 +237,8 @@ void measure_round(Context& context, const Scene& scene, const Configuration& co
         move_vertices(accel, scene, handles);
         ms = sync_ms(accel);
     }
-    keeping.build_ms.push_back(ms);
-    keeping.usage = accel.memory_usage();
+    cost.build_ms.push_back(ms);
+    cost.usage = accel.memory_usage();
 }
 
 // In the order of the columns.
@@ -251,28 +251,28 @@ std::vector<std::pair<const char*, double>> shares_of(const MemoryUsage& usage, 
 
 // SwTlas keeps the scene as it is, at level watertight in layout compressed4, whose instances may not move, then the
 // same with one thing more. Levels that the device lacks are left out.
-std::vector<Keeping> measure_keepings(Context& context, const BenchScene& scene, std::size_t rounds) {
+std::vector<MemoryCost> measure_memory_costs(Context& context, const BenchScene& scene, std::size_t rounds) {
     const std::vector<Configuration> configurations = configurations_on(context.properties());
-    std::vector<Keeping> keepings;
+    std::vector<MemoryCost> costs;
     for (const Configuration& configuration : configurations)
-        keepings.push_back({.name = configuration.name, .usage = {}, .build_ms = {}});
+        costs.push_back({.name = configuration.name, .usage = {}, .build_ms = {}});
     for (std::size_t round = 0; round < rounds + 1; ++round)
         for (std::size_t i = 0; i < configurations.size(); ++i)
-            measure_round(context, scene.scene, configurations[i], keepings[i]);
+            measure_round(context, scene.scene, configurations[i], costs[i]);
     // Drivers compile kernels in the first round.
-    for (Keeping& keeping : keepings) keeping.build_ms.erase(keeping.build_ms.begin());
-    return keepings;
+    for (MemoryCost& cost : costs) cost.build_ms.erase(cost.build_ms.begin());
+    return costs;
 }
 
 // Bytes a triangle of all meshes, instances not counted.
-void print_keepings(std::ostream& out, std::span<const Keeping> keepings, std::size_t triangles) {
+void print_memory_costs(std::ostream& out, std::span<const MemoryCost> costs, std::size_t triangles) {
     std::vector<std::vector<std::string>> rows = {{"bytes/triangle"}};
     for (const auto& [name, _] : shares_of({}, triangles)) rows.front().emplace_back(name);
     rows.front().insert(rows.front().end(), {"build ms", "min"});
-    for (const Keeping& keeping : keepings) {
-        const Spread ms = spread_of(keeping.build_ms);
-        std::vector<std::string> row = {keeping.name};
-        for (const auto& [_, bytes] : shares_of(keeping.usage, triangles)) row.push_back(number_text(bytes, 4));
+    for (const MemoryCost& cost : costs) {
+        const Spread ms = spread_of(cost.build_ms);
+        std::vector<std::string> row = {cost.name};
+        for (const auto& [_, bytes] : shares_of(cost.usage, triangles)) row.push_back(number_text(bytes, 4));
         row.insert(row.end(), {number_text(ms.median, 3), number_text(ms.min, 3)});
         rows.push_back(std::move(row));
     }
@@ -280,19 +280,19 @@ void print_keepings(std::ostream& out, std::span<const Keeping> keepings, std::s
 }
 
 // One for each, added to the fields of `base`.
-std::vector<nlohmann::json> records_of(const nlohmann::json& base, std::span<const Keeping> keepings,
+std::vector<nlohmann::json> records_of(const nlohmann::json& base, std::span<const MemoryCost> costs,
                                        std::size_t triangles) {
     std::vector<nlohmann::json> records;
-    for (const Keeping& keeping : keepings) {
-        const Spread ms = spread_of(keeping.build_ms);
+    for (const MemoryCost& cost : costs) {
+        const Spread ms = spread_of(cost.build_ms);
         nlohmann::json record = base;
         record.update({{"schema", record_schema},
-                       {"keeping", keeping.name},
-                       {"rounds", keeping.build_ms.size()},
+                       {"configuration", cost.name},
+                       {"rounds", cost.build_ms.size()},
                        {"build_ms", ms.median},
                        {"build_ms_min", ms.min},
                        {"build_ms_max", ms.max}});
-        for (const auto& [name, bytes] : shares_of(keeping.usage, triangles))
+        for (const auto& [name, bytes] : shares_of(cost.usage, triangles))
             record[std::string(name) + "_bytes_per_triangle"] = bytes;
         records.push_back(std::move(record));
     }
@@ -310,7 +310,7 @@ void bench_feature_costs(const Session& session, const BenchScene& scene) {
                                      .seed = run.seed,
                                      .width = run.width};
     session.out << "bench " << scene.name << ": features that " << name_of(options.layout) << ' '
-                << name_of(options.level) << " does not need, one more in each line, medians of " << options.rounds
+                << name_of(options.level) << " does not need, one more per line, medians of " << options.rounds
                 << " interleaved rounds, on " << context.properties().name << '\n';
     nlohmann::json base = base_record(session, context);
     const dvec3& origin = scene.scene.origin;
@@ -327,13 +327,13 @@ void bench_feature_costs(const Session& session, const BenchScene& scene) {
     if (run.times_builds) {
         const std::size_t triangles = std::max<std::size_t>(count_mesh_triangles(scene.scene), 1);
         // Each round builds every one of them: beyond 9 the medians stand.
-        const std::vector<Keeping> keepings =
-            measure_keepings(context, scene, std::min<std::size_t>(options.rounds, 9));
+        const std::vector<MemoryCost> costs =
+            measure_memory_costs(context, scene, std::min<std::size_t>(options.rounds, 9));
         session.out << '\n';
-        print_keepings(session.out, keepings, triangles);
-        record_all(session, records_of(base, keepings, triangles));
+        print_memory_costs(session.out, costs, triangles);
+        record_all(session, records_of(base, costs, triangles));
     }
-    if (!agree) fail("bench: programs with more features than needed found other hits");
+    if (!agree) fail("bench: kernels with more features than needed found other hits");
 }
 
 }  // namespace twinray::bench

@@ -97,7 +97,7 @@ LineUp make_line_up(Context& context, Context* pipeline, const LineUpOptions& op
     if (options.has_embree)
         for (auto& backend : embree_line_up([&](const std::string& name) { return is_named(name, options.only); }))
             line_up.push_back(std::move(backend));
-    if (line_up.empty()) fail("bench: no backend's name has a part '", joined(options.only), "'");
+    if (line_up.empty()) fail("bench: no backend's name contains '", joined(options.only), "'");
     return line_up;
 }
 

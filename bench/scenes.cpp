@@ -72,7 +72,7 @@ Transform random_placement(uint count, uint index) {
 
 Scene instances(const std::string& name, std::string_view sizes) {
     const std::size_t cross = sizes.find('x');
-    if (cross == std::string_view::npos) fail("scene '", name, "': instances:KxN wants two numbers, as 1000x5120");
+    if (cross == std::string_view::npos) fail("scene '", name, "': instances:KxN needs two numbers, such as 1000x5120");
     const uint count = number(name, sizes.substr(0, cross), 1, 1'000'000);
     Scene scene = of_mesh(make_displaced_sphere(geodesic_frequency(triangle_number(name, sizes.substr(cross + 1)))));
     scene.instances.clear();

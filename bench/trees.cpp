@@ -178,7 +178,7 @@ void bench_trees(const Session& session, const BenchScene& scene) {
     Context context(session.device);
     session.out << "bench " << scene.name << ": trees over " << count_triangles(scene.scene)
                 << " triangles as one mesh, " << run.width * run.width
-                << " rays a set at level watertight, what a ray takes on average\n";
+                << " rays per set at level watertight, averages per ray\n";
     const std::vector<TreeFigures> trees = measure_trees(context, scene, run.kinds, run.width, run.seed);
     print_trees(session.out, trees);
     nlohmann::json base = base_record(session);

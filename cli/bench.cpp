@@ -26,26 +26,27 @@ struct BenchOptions {
 
 Section backends_section(BenchOptions& options) {
     bench::LineUpOptions& line_up = options.run.line_up;
-    return {
-        "Backends",
-        {{.name = "--backends",
-          .value = words(line_up.only, "PART,..."),
-          .help = "those with one of these parts in their names, as sw,embree8; all if not given",
-          .former_name = "--contestants"},
-         {.name = "--levels", .value = choices(line_up.levels, names_of(all_levels)), .help = "of the triangle test"},
-         {.name = "--layouts",
-          .value = choices(line_up.layouts, names_of(all_layouts)),
-          .help = "of the software accelerator's trees"},
-         {.name = "--build-qualities",
-          .value = choices(line_up.build_qualities, names_of(all_build_qualities)),
-          .help = "of the software accelerator's trees"},
-         {.name = "--ray-orders",
-          .value = choices(line_up.ray_orders, names_of(all_ray_orders)),
-          .help = "in which accelerators trace"},
-         {.name = "--no-embree", .value = flag(options.no_embree), .help = "leave Embree out"},
-         {.name = "--no-build",
-          .value = flag(options.no_build),
-          .help = "time traces alone; --feature-costs, without memory"}}};
+    return {"Backends",
+            {{.name = "--backends",
+              .value = words(line_up.only, "PART,..."),
+              .help = "only backends whose name contains one of these parts, such as sw,embree8; without it, all",
+              .former_name = "--contestants"},
+             {.name = "--levels",
+              .value = choices(line_up.levels, names_of(all_levels)),
+              .help = "levels of precision of the triangle test"},
+             {.name = "--layouts",
+              .value = choices(line_up.layouts, names_of(all_layouts)),
+              .help = "memory layouts of the software accelerator's trees"},
+             {.name = "--build-qualities",
+              .value = choices(line_up.build_qualities, names_of(all_build_qualities)),
+              .help = "build qualities of the software accelerator's trees"},
+             {.name = "--ray-orders",
+              .value = choices(line_up.ray_orders, names_of(all_ray_orders)),
+              .help = "orders in which accelerators trace the rays"},
+             {.name = "--no-embree", .value = flag(options.no_embree), .help = "do not measure Embree"},
+             {.name = "--no-build",
+              .value = flag(options.no_build),
+              .help = "measure only traces; with --feature-costs, do not measure memory"}}};
 }
 
 Section rays_section(BenchOptions& options) {
@@ -53,15 +54,17 @@ Section rays_section(BenchOptions& options) {
     return {"Rays and rounds",
             {{.name = "--ray-kinds",
               .value = choices(options.kinds, names_of(bench::all_ray_kinds)),
-              .help = "kinds of rays; the first three if not given, with --growth the first two",
+              .help = "kinds of rays; without it, the first three, or the first two with --growth",
               .former_name = "--rays"},
              {.name = "--width",
               .value = number(run.width, {.least = 8, .most = 4096, .step = 8}),
-              .help = "pixels a side of the square of primary rays, a multiple of 8"},
-             {.name = "--rounds", .value = number(run.rounds, {1, 1000}), .help = "of which medians are taken"},
+              .help = "side length in pixels of the square image that primary rays sample, a multiple of 8"},
+             {.name = "--rounds",
+              .value = number(run.rounds, {1, 1000}),
+              .help = "number of rounds; results are medians over rounds"},
              {.name = "--max-seconds",
               .value = number(run.max_seconds, {.least = 0, .is_above = true}),
-              .help = "of one trace: whoever needs more traces fewer rays, evenly chosen"}}};
+              .help = "longest time of one trace; slower backends trace an even sample of the rays"}}};
 }
 
 bench::RunOptions run_options_of(const BenchOptions& options) {
@@ -98,39 +101,39 @@ void run(const BenchOptions& options) {
 Command bench_command() {
     const auto options = std::make_shared<BenchOptions>();
     const Section what = {
-        "What is measured",
+        "Measurement",
         {{.name = "--scene",
           .value = word(options->scene, "SCENE"),
-          .help = "a file (.gltf, .glb, .obj, .ply, .stl), or made: sphere:N, soup:N, instances:KxN, with N triangles "
-                  "and K instances"},
+          .help = "scene file (.gltf, .glb, .obj, .ply, .stl), or a generated scene: sphere:N, soup:N or "
+                  "instances:KxN, with N triangles and K instances"},
          {.name = "--moves",
           .value = number(options->moves, {1, 1 << 22}),
-          .help = "refit of so many instances that move, against a rebuild"},
+          .help = "compare refit with rebuild for N moving instances"},
          {.name = "--growth",
           .value = optional_list(options->is_growth, options->growth, {20, 5e7}),
-          .help = "spheres of so many triangles, one after the other"},
+          .help = "measure spheres with these numbers of triangles, one after the other"},
          {.name = "--feature-costs",
           .value = flag(options->is_feature_costs),
-          .help = "what each feature costs that the scene does not need, on the first layout and level, and what an "
-                  "accelerator keeps in memory",
+          .help = "measure the cost of each feature that the scene does not need, for the first layout and level, and "
+                  "the memory that an accelerator keeps",
           .needs = {"--scene"},
           .former_name = "--ladder"},
          {.name = "--trees",
           .value = flag(options->is_trees),
-          .help = "memory, surface-area cost, end-point overlap and steps a ray of the software accelerator's trees, "
-                  "in each layout and build quality: counts, not times",
+          .help = "print memory, surface area cost, end-point overlap and steps per ray of the software accelerator's "
+                  "trees, for each layout and build quality; these are counts, not times",
           .needs = {"--scene"}}}};
     return {.name = "bench",
             .group = "Checking",
-            .summary = "measure build times and trace rates of both accelerators, with their errors",
+            .summary = "measure build times and trace rates of both accelerators, and their errors",
             .description =
-                "Builds and traces a scene by both accelerators, and by Embree where it is built in, taking "
-                "turns in rounds, and tells medians, ratios within a round, memory, and how often hits "
-                "differ from exact ones.",
+                "Builds and traces a scene with both accelerators, and with Embree if it is built in. The backends "
+                "take turns in rounds. Prints medians, ratios within a round, memory, and how often hits differ from "
+                "exact ones.",
             .sections = {what, rays_section(*options), backends_section(*options), common_options(options->common)},
             .alternatives = {{.names = {"--scene", "--moves", "--growth"}, .is_required = true}},
             .examples = {{"twinray bench --scene sphere:100000 --levels watertight,certified",
-                          "what certainty costs on a sphere of a hundred thousand triangles"}},
+                          "cost of certified hits on a sphere of a hundred thousand triangles"}},
             .run = [options] {
                 run(*options);
                 return 0;

@@ -12,11 +12,15 @@
 namespace twinray::cli {
 
 Option only_option(std::vector<std::string>& patterns) {
-    return {.name = "--only", .value = words(patterns, "CASE,..."), .help = "case ids with * and ?, as N07,B*"};
+    return {.name = "--only",
+            .value = words(patterns, "CASE,..."),
+            .help = "case ids, with * and ? as wildcards, such as N07,B*"};
 }
 
 Option list_option(bool& lists) {
-    return {.name = "--list", .value = flag(lists), .help = "run nothing: list the cases, or those of --only"};
+    return {.name = "--list",
+            .value = flag(lists),
+            .help = "list the cases, or those that --only selects, and run nothing"};
 }
 
 std::vector<frame::Case> cases_of_conformance() {
@@ -37,7 +41,7 @@ std::vector<frame::Case> cases_of_report(std::span<const std::filesystem::path> 
 void check_choice(std::span<const std::string> patterns, std::span<const frame::Case> cases, const std::string& where) {
     for (const std::string& pattern : patterns)
         if (std::ranges::none_of(cases, [&](const frame::Case& row) { return frame::matches(row.id, pattern); }))
-            throw UsageError(text("--only ", pattern, " fits no case; all are in ", where));
+            throw UsageError(text("--only ", pattern, " matches no case; see ", where));
 }
 
 void list_cases(std::span<const std::string> patterns, std::span<const frame::Case> cases) {

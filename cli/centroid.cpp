@@ -37,7 +37,7 @@ void print(const CentroidOptions& options, const Analysed& analysed, const Centr
         if (result.standard_error) std::cout << ", standard error " << text_of(*result.standard_error);
         std::cout << '\n';
     } else {
-        std::cout << "no ray hits anything: there is no mean\n";
+        std::cout << "no ray hits anything, so there is no mean\n";
     }
 }
 
@@ -103,16 +103,17 @@ Command centroid_command() {
     rays.options.front().is_required = true;
     return {.name = "centroid",
             .group = "Analyses",
-            .summary = "find the mean of what is seen along a direction",
+            .summary = "find the mean of the points that are visible along a direction",
             .description =
-                "Sends parallel rays over the whole scene, one through each cell of a grid, and averages "
-                "the points that they hit.",
+                "Sends parallel rays over the whole scene, one through each cell of a grid, and averages the points "
+                "that they hit.",
             .positionals = {scene_argument(options->analysis.scene)},
-            .sections = {rays, analysis_output(options->analysis, "the points as CSV: x,y,z"),
+            .sections = {rays, analysis_output(options->analysis, "write the hit points as CSV: x,y,z"),
                          picture_options(options->analysis.pictures,
-                                         "none; points that rays hit and their mean are marked in the .png"),
+                                         "nothing; the .png marks the points that rays hit and their mean"),
                          common_options(options->analysis.common)},
-            .examples = {{"twinray centroid statue.ply --direction 0 0 -1", "as seen by one who looks along -z"}},
+            .examples = {{"twinray centroid statue.ply --direction 0 0 -1",
+                          "the mean visible point for a viewer who looks along -z"}},
             .run = [options] {
                 run(*options);
                 return 0;

@@ -182,41 +182,41 @@ Command collide_command() {
         "Pairs",
         {{.name = "--broad",
           .value = flag(options->is_broad),
-          .help = "pairs of instances whose boxes overlap, instead of triangles"},
+          .help = "find pairs of instances whose boxes overlap, instead of triangles"},
          {.name = "--self",
           .value = flag(options->contacts.self),
-          .help = "also pairs within an instance, but for neighbours that only share vertices",
+          .help = "also find pairs within an instance, except neighbours that only share vertices",
           .excludes = {"--broad"}},
          {.name = "--weld",
           .value = flag([options] { options->contacts.shared = SharedVertices::by_position; }),
-          .help = "vertices at one position are one, as where faces have normals of their own",
+          .help = "treat vertices at the same position as one, for meshes with separate normals per face",
           .needs = {"--self"}},
          {.name = "--max-pairs",
           .value = number(options->max_pairs, {1, std::uint64_t{UINT32_MAX}}),
-          .help = "of boxes that overlap: 17 bytes of device memory each"},
-         output_option(file(options->output),
-                       "the pairs as CSV: instance_a, instance_b and, without --broad, "
-                       "triangle_a, triangle_b, class"),
-         accel_option(options->accel, "whose boxes --broad takes, and what traces pictures; answers are the same")}};
-    return {
-        .name = "collide",
-        .group = "Analyses",
-        .summary = "find the triangles, or the instances, of a scene that touch or overlap",
-        .description =
-            "Finds all pairs of triangles of different instances that touch or intersect, and tells "
-            "how: crossing, touching at a vertex or along an edge, coplanar. Classes are exact: what "
-            "float64 cannot decide is decided in larger arithmetic.",
-        .positionals = {scene_argument(options->scene)},
-        .sections = {pairs,
-                     picture_options(options->pictures,
-                                     "the worst contact of each face, or with --broad how many "
-                                     "boxes that of its instance overlaps"),
-                     common_options(options->common)},
-        .examples = {{"twinray collide machine.gltf -o pairs.csv", "which parts of a machine are in each other's way"}},
-        .run = [options] {
-            run(*options);
-            return 0;
-        }};
+          .help = "largest number of overlapping pairs of boxes; each takes 17 bytes of device memory"},
+         output_option(
+             file(options->output),
+             "write the pairs as CSV: instance_a, instance_b and, without --broad, triangle_a, triangle_b, class"),
+         accel_option(options->accel, "accelerator for --broad and for pictures, which does not change the results")}};
+    return {.name = "collide",
+            .group = "Analyses",
+            .summary = "find triangles or instances of a scene that touch or overlap",
+            .description =
+                "Finds all pairs of triangles of different instances that touch or intersect, and classifies each "
+                "pair: crossing, touching at a vertex or along an edge, coplanar. The classes are exact: if float64 "
+                "cannot decide, arithmetic of higher precision does.",
+            .positionals = {scene_argument(options->scene)},
+            .sections =
+                {pairs,
+                 picture_options(
+                     options->pictures,
+                     "the worst contact of each face, or with --broad how many boxes the box of its instance overlaps"),
+                 common_options(options->common)},
+            .examples = {{"twinray collide machine.gltf -o pairs.csv", "the parts of a machine that collide"}},
+            .run = [options] {
+                run(*options);
+                return 0;
+            }};
 }
 
 }  // namespace twinray::cli

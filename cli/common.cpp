@@ -23,30 +23,32 @@ Section common_options(CommonOptions& options) {
         options.pipelines = words.front();
         return nullptr;
     };
-    return {
-        "Device and output",
-        {{.name = "--device",
-          .value = word(options.device, "DEVICE"),
-          .help = "index or a part of the name, as `twinray devices` shows them; the fastest if not given"},
-         {.name = "--seed", .value = number(options.seed), .help = "of what is random: the same, the same results"},
-         json_option(options.json),
-         {.name = "--strict",
-          .value = flag(options.strict),
-          .help = "what is not understood of a scene's file is an error, not a warning"},
-         {.name = "--quiet", .value = flag(options.quiet), .help = "no progress, no warnings"},
-         {.name = "--validation", .value = flag(options.validation), .help = "run under the Vulkan validation layer"},
-         {.name = "--pipelines",
-          .value = {.kind = Value::Kind::folder, .metavar = "FOLDER", .least = 1, .most = 1, .store = pipelines},
-          .help = "keeps compiled pipelines between runs; \"\": none does; twinray's folder in the user's cache if "
-                  "not given"}}};
+    return {"Device and output",
+            {{.name = "--device",
+              .value = word(options.device, "DEVICE"),
+              .help = "index of the device or part of its name, as `twinray devices` prints them; without it, the "
+                      "fastest device"},
+             {.name = "--seed",
+              .value = number(options.seed),
+              .help = "seed of the random numbers; the same seed gives the same results"},
+             json_option(options.json),
+             {.name = "--strict",
+              .value = flag(options.strict),
+              .help = "treat unsupported parts of a scene's file as errors, not as warnings"},
+             {.name = "--quiet", .value = flag(options.quiet), .help = "print no progress and no warnings"},
+             {.name = "--validation", .value = flag(options.validation), .help = "enable the Vulkan validation layer"},
+             {.name = "--pipelines",
+              .value = {.kind = Value::Kind::folder, .metavar = "FOLDER", .least = 1, .most = 1, .store = pipelines},
+              .help = "folder in which compiled pipelines are kept between runs; \"\" keeps none; without it, "
+                      "twinray's folder in the user's cache"}}};
 }
 
 Option json_option(std::filesystem::path& path) {
-    return {.name = "--json", .value = file(path), .help = "append the results, one JSON object a line"};
+    return {.name = "--json", .value = file(path), .help = "append the results to this file, one JSON object per line"};
 }
 
 Option scene_argument(std::filesystem::path& path) {
-    Option scene{.value = file(path), .help = ".gltf, .glb, .obj, .ply or .stl", .is_required = true};
+    Option scene{.value = file(path), .help = "scene file: .gltf, .glb, .obj, .ply or .stl", .is_required = true};
     scene.value.metavar = "SCENE";
     return scene;
 }
@@ -59,26 +61,26 @@ Option accel_option(std::string& request, const std::string& what) {
     return {.name = "--accel",
             .value = choice(request, {"auto", "sw", "hw"}),
             .help = what +
-                    ": software (sw, SwTlas), hardware (hw, HwTlas), or hardware where the device has it and is no CPU "
-                    "(auto); `twinray devices` says which that is"};
+                    ": sw (software, SwTlas), hw (hardware, HwTlas), or auto: hw if the device supports it and is not "
+                    "a CPU, else sw; `twinray devices` prints what auto selects"};
 }
 
 Option level_option(Level& level, const std::string& help) {
     return {.name = "--level",
             .value = choice(level, names_of(all_levels)),
             .help = help +
-                    ": fast may lose rays at edges, at 0.9 to 1 of the time of watertight, which loses none; refined "
-                    "computes t, u, v in float64, at 1.02 to 1.11 of the time; certified decides hits and their order "
-                    "in float64, at 1.1 to 1.4, by software alone"};
+                    ": watertight loses no ray at edges; fast may lose some and takes 0.9 to 1 of its time; refined "
+                    "also computes t, u and v in float64 (1.02 to 1.11 of the time); certified decides hits and their "
+                    "order in float64 (1.1 to 1.4 of the time, software accelerator only)"};
 }
 
 std::vector<Option> tree_options(AccelOptions& options) {
     return {{.name = "--layout",
              .value = choice(options.layout, names_of(all_layouts)),
-             .help = "of the software accelerator's trees"},
+             .help = "memory layout of the software accelerator's trees"},
             {.name = "--build-quality",
              .value = choice(options.build_quality, names_of(all_build_qualities)),
-             .help = "of the software accelerator's trees"}};
+             .help = "build quality of the software accelerator's trees"}};
 }
 
 ContextDesc context_desc(const CommonOptions& options) {
@@ -115,7 +117,7 @@ void heed_warnings(const Scene& scene, const std::string& name, const CommonOpti
     if (!options.quiet || options.strict)
         for (const std::string& warning : scene.warnings) std::cerr << "twinray: warning: " << warning << '\n';
     if (options.strict && !scene.warnings.empty())
-        fail("'", name, "': ", scene.warnings.size(), " warning(s), of which --strict allows none");
+        fail("'", name, "': ", scene.warnings.size(), " warning(s), which --strict treats as errors");
 }
 
 Scene load_scene(const std::filesystem::path& file, const CommonOptions& options) {

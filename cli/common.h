@@ -37,14 +37,14 @@ struct CommonOptions {
 Section common_options(CommonOptions& options);
 
 Option json_option(std::filesystem::path& file);
-// The positional SCENE, of which everything is asked.
+// The positional SCENE, of which every question is about.
 Option scene_argument(std::filesystem::path& file);
 // "-o, --output".
 Option output_option(Value value, const std::string& help);
 // --accel auto|sw|hw, for choose_accel(). `what`: "what traces".
-Option accel_option(std::string& request, const std::string& what = "what traces");
+Option accel_option(std::string& request, const std::string& what = "accelerator that traces");
 // --level, which says what each costs.
-Option level_option(Level& level, const std::string& help = "of the triangle test");
+Option level_option(Level& level, const std::string& help = "precision of the triangle test");
 // --layout and --build-quality
 std::vector<Option> tree_options(AccelOptions& options);
 
@@ -68,7 +68,7 @@ void check_writable(const std::filesystem::path& file);  // its folder exists: b
 
 // Appends one line; does nothing for an empty path.
 void append_json(const std::filesystem::path& file, const nlohmann::json& record);
-// What records of a scene begin with: "schema", "device", "scene" and "origin".
+// The fields with which records of a scene begin: "schema", "device", "scene" and "origin".
 nlohmann::json base_record(const char* schema, const Context& context, const std::filesystem::path& file,
                            const Scene& scene);
 nlohmann::json describe(const AccelChoice& choice);  // "backend" and "backend_why"

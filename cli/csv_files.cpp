@@ -25,13 +25,13 @@ std::vector<uint> read_face_groups(const std::filesystem::path& file, std::size_
         const auto checked = [&](double value, const char* of) {
             if (!(value >= 0) || !(value < static_cast<double>(face_count)) || value != std::floor(value))
                 fail("groups file '", file.string(), "', line ", number, ": ", of, ' ', std::setprecision(17), value,
-                     "; both are whole numbers from 0 to ", static_cast<std::int64_t>(face_count) - 1,
-                     ", as there are so many faces");
+                     "; both must be whole numbers from 0 to ", static_cast<std::int64_t>(face_count) - 1,
+                     ", because the scene has that many faces");
             return static_cast<uint>(value);
         };
         const uint face = checked(line[0], "face"), group = checked(line[1], "group");
         if (groups[face] != no_group)
-            fail("groups file '", file.string(), "', line ", number, ": face ", face, " is there twice");
+            fail("groups file '", file.string(), "', line ", number, ": face ", face, " occurs twice");
         groups[face] = group;
     });
     for (std::size_t face = 0; face < face_count; ++face)

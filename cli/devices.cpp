@@ -52,7 +52,7 @@ void print_capabilities(const DeviceProperties& device, CapabilityOn capability_
     }
 }
 
-// What --accel auto takes; null where nothing works.
+// The choice of --accel auto; null if no accelerator works.
 nlohmann::json auto_choice(const DeviceProperties& device) {
     return missing_for_software(device).empty() ? describe(choose_accel(device, "auto")) : nlohmann::json();
 }
@@ -101,7 +101,7 @@ void print_devices(const std::filesystem::path& json) {
         if (missing_for_software(device).empty())
             std::cout << "     --accel auto traces " << text_of(choose_accel(device, "auto")) << '\n';
         std::cout << "     float64 in shaders  " << (device.shader_float64 ? "yes" : "no") << '\n'
-                  << "     kernels are shaped for  " << name_of(tuning_for(device).row) << '\n';
+                  << "     kernels are tuned for  " << name_of(tuning_for(device).row) << '\n';
         append_json(json, describe_device(i, device));
     }
     for (const std::string& rejection : choice.rejections) std::cout << "not the default: device " << rejection << '\n';
@@ -151,29 +151,29 @@ Command devices_command() {
         std::filesystem::path json;
     };
     const auto options = std::make_shared<DevicesOptions>();
-    return {.name = "devices",
-            .group = "Tracing",
-            .summary = "list the Vulkan devices and what each accelerator can do there",
-            .description =
-                "Lists every Vulkan device with what the software accelerator (SwTlas) and the hardware "
-                "accelerator (HwTlas, on VK_KHR_acceleration_structure) can do there, and what a device "
-                "lacks, and which of the two --accel auto takes. The device that commands take unless --device names "
-                "another is marked with a star.",
-            .sections = {{"Output",
-                          {{.name = "--requirements",
-                            .value = flag(options->requirements),
-                            .help = "instead, what each part of twinray needs of a device (Vulkan version, features, "
-                                    "extensions, limits) and why, and which of the devices has it"},
-                           json_option(options->json)}}},
-            .examples = {{"twinray devices", "what there is"},
-                         {"twinray devices --requirements", "what is needed for what"}},
-            .run = [options] {
-                if (options->requirements)
-                    print_requirements(usable_devices(), options->json);
-                else
-                    print_devices(options->json);
-                return 0;
-            }};
+    return {
+        .name = "devices",
+        .group = "Tracing",
+        .summary = "list the Vulkan devices and what each accelerator supports on them",
+        .description =
+            "Lists every Vulkan device, with what the software accelerator (SwTlas) and the hardware accelerator "
+            "(HwTlas, on VK_KHR_acceleration_structure) support on it, what the device lacks, and which accelerator "
+            "--accel auto selects. A star marks the default device, which commands use unless --device names another.",
+        .sections = {{"Output",
+                      {{.name = "--requirements",
+                        .value = flag(options->requirements),
+                        .help = "print instead what each part of twinray requires of a device (Vulkan version, "
+                                "features, extensions, limits), why, and which devices meet it"},
+                       json_option(options->json)}}},
+        .examples = {{"twinray devices", "the devices of this machine"},
+                     {"twinray devices --requirements", "the requirements of each part, and which devices meet them"}},
+        .run = [options] {
+            if (options->requirements)
+                print_requirements(usable_devices(), options->json);
+            else
+                print_devices(options->json);
+            return 0;
+        }};
 }
 
 }  // namespace twinray::cli

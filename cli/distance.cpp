@@ -34,7 +34,8 @@ struct QueryBox {
 // Throws Error where there is no triangle.
 QueryBox query_box(const Scene& scene) {
     const Bounds bounds = bounds_of(scene);
-    if (bounds.is_empty()) fail("distance: the scene has no triangle around which points could be");
+    if (bounds.is_empty())
+        fail("distance: the scene has no triangles, so there is no box for --random, --grid or --slice");
     const dvec3 lo(bounds.lo), hi(bounds.hi), size = hi - lo;
     const double margin = 0.1 * std::max({size.x, size.y, size.z});
     return {lo - margin, size + 2 * margin};
@@ -269,13 +270,17 @@ void run(const DistanceOptions& options) {
 
 // --points, --random, --grid: at most one of them.
 std::vector<Option> query_point_options(QueryPointOptions& options) {
-    return {{.name = "--points", .value = cli::file(options.file), .help = "points from a file of x,y,z lines"},
-            {.name = "--random",
-             .value = number(options.random, {1, most_points}),
-             .help = "so many, in the box of the scene and a tenth around it"},
-            {.name = "--grid",
-             .value = number(options.grid, {1, most_cells}),
-             .help = "the centres of N x N x N cells of that box, x fastest"}};
+    return {
+        {.name = "--points",
+         .value = cli::file(options.file),
+         .help = "read the points from this file, one x,y,z per line"},
+        {.name = "--random",
+         .value = number(options.random, {1, most_points}),
+         .help =
+             "generate N random points in the box of the scene, enlarged by a tenth of its largest side on all sides"},
+        {.name = "--grid",
+         .value = number(options.grid, {1, most_cells}),
+         .help = "use the centres of N x N x N cells of that box; x varies fastest"}};
 }
 
 Section slice_options(SliceOptions& options) {
@@ -283,18 +288,18 @@ Section slice_options(SliceOptions& options) {
     return {"Slice",
             {{.name = "--slice",
               .value = file(options.file, {".png"}),
-              .help = "written: distances in a plane through the scene"},
+              .help = "write a picture of the distances in a plane through the scene"},
              {.name = "--slice-axis",
               .value = choice(options.desc.axis, axes),
-              .help = "the axis that the plane is perpendicular to",
+              .help = "axis perpendicular to the plane",
               .needs = {"--slice"}},
              {.name = "--slice-at",
               .value = number(options.desc.at),
-              .help = "where on that axis the plane is; the middle of the scene if not given",
+              .help = "position of the plane on that axis; without it, the middle of the scene",
               .needs = {"--slice"}},
              {.name = "--slice-size",
               .value = number(options.desc.width, {16, 4096}),
-              .help = "pixels of the larger side",
+              .help = "pixels along the longer side",
               .needs = {"--slice"}}}};
 }
 
@@ -306,24 +311,24 @@ Command distance_command() {
         "Search",
         {{.name = "--signed",
           .value = flag(options->is_signed),
-          .help = "negative inside; needs closed meshes whose fronts look outward"},
+          .help = "make distances negative inside; the meshes must be closed and their fronts must face outward"},
          {.name = "--max-distance",
           .value = number(options->max_distance, {.least = 0}),
-          .help = "nothing is looked for beyond it",
+          .help = "do not search beyond this distance",
           .excludes = {"--signed"}},
          {.name = "--within",
           .value = number(options->within, {.least = 0}),
-          .help = "instead of the nearest, all triangles that are at most so far away",
+          .help = "find all triangles within this distance, instead of the nearest",
           .excludes = {"--signed", "--max-distance", "--slice"}},
          output_option(file(options->output, {".csv", ".npz"}),
-                       "of each point: its number, distance, nearest position, instance and triangle; with --within, "
-                       "which is .csv alone: point, instance, triangle, distance")}};
+                       "write for each point its number, distance, nearest position, instance and triangle; with "
+                       "--within, only as .csv: point, instance, triangle, distance")}};
     return {.name = "distance",
             .group = "Analyses",
-            .summary = "find what of a scene is near to points, and how far away",
+            .summary = "find the nearest triangles to points, and their distances",
             .description =
-                "Finds the nearest triangle of each point, or all triangles within a radius, in float64. "
-                "With --signed it tells inside from outside, exactly.",
+                "Finds the nearest triangle of each point, or all triangles within a radius, in float64. With --signed "
+                "it also determines exactly whether each point is inside or outside.",
             .positionals = {scene_argument(options->scene)},
             .sections = {{"Points", query_point_options(options->points)},
                          search,
@@ -331,7 +336,7 @@ Command distance_command() {
                          common_options(options->common)},
             .alternatives = {{.names = {"--points", "--random", "--grid"}}},
             .examples = {{"twinray distance part.stl --points probes.csv --signed -o distances.csv",
-                          "how deep probes are inside a part, or how far outside"}},
+                          "depth of each probe inside a part, or its distance outside"}},
             .run = [options] {
                 run(*options);
                 return 0;

@@ -21,10 +21,14 @@ std::vector<Option> face_group_options(FaceGroupOptions& options, const std::str
         options.by = FaceGrouping::custom;
         return store(words);
     };
-    return {{.name = "--by", .value = choice(options.by, groupings), .help = of_what, .needs = needs},
+    return {{.name = "--by",
+             .value = choice(options.by, groupings),
+             .help = of_what + " per face, mesh, instance or material",
+             .needs = needs},
             {.name = "--groups",
              .value = groups,
-             .help = of_what + ", told by a CSV of face,group: each face once, groups numbered from 0",
+             .help = of_what +
+                     " per group in a CSV file of face,group, which lists each face once; groups are numbered from 0",
              .needs = needs,
              .excludes = {"--by"}}};
 }

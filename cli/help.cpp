@@ -66,22 +66,22 @@ void run(const CompletionOptions& options) {
 
 Command help_command(const std::vector<std::string>& names) {
     const auto options = std::make_shared<HelpOptions>();
-    Option command{.value = choice(options->command, names), .help = "which; if not given, all are listed"};
+    Option command{.value = choice(options->command, names), .help = "command to describe; without it, all are listed"};
     command.value.metavar = "COMMAND";
     return {.name = "help",
             .group = "Help",
-            .summary = "tell all of a command, or list the commands",
-            .description = "Prints what `twinray COMMAND --help` prints, or the page for man.",
+            .summary = "print the help of a command, or list the commands",
+            .description = "Prints the same text as `twinray COMMAND --help`, or the man page.",
             .positionals = {command},
             .sections = {{"Man pages",
-                          {{.name = "--man", .value = flag(options->is_man), .help = "in roff, for man"},
+                          {{.name = "--man", .value = flag(options->is_man), .help = "print roff, for man"},
                            {.name = "--output",
                             .letter = 'o',
                             .value = folder(options->folder),
-                            .help = "written: the pages of all commands, and twinray.1",
+                            .help = "write the pages of all commands and twinray.1 to this folder",
                             .needs = {"--man"},
                             .excludes = {"COMMAND"}}}}},
-            .examples = {{"twinray help --man trace | man -l -", "a man page without installing it"}},
+            .examples = {{"twinray help --man trace | man -l -", "show a man page without installing it"}},
             .run = [options] {
                 run(*options);
                 return 0;
@@ -90,26 +90,26 @@ Command help_command(const std::vector<std::string>& names) {
 
 Command completion_command() {
     const auto options = std::make_shared<CompletionOptions>();
-    Option shell{.value = choice(options->shell, {"bash", "zsh", "fish"}), .help = "which", .is_required = true};
+    Option shell{
+        .value = choice(options->shell, {"bash", "zsh", "fish"}), .help = "shell to complete for", .is_required = true};
     shell.value.metavar = "SHELL";
-    return {
-        .name = "completion",
-        .group = "Help",
-        .summary = "print a script by which a shell completes commands, options and their values",
-        .description =
-            "Prints a script for bash, zsh or fish. Where twinray is installed, its scripts are in the places where "
-            "these shells look for them.",
-        .positionals = {shell},
-        .sections = {{"Output",
-                      {{.name = "--output",
-                        .letter = 'o',
-                        .value = file(options->file),
-                        .help = "written instead of standard output"}}}},
-        .examples = {{"source <(twinray completion bash)", "in this shell; in ~/.bashrc, in all of them"}},
-        .run = [options] {
-            run(*options);
-            return 0;
-        }};
+    return {.name = "completion",
+            .group = "Help",
+            .summary = "print a script with which a shell completes commands, options and values",
+            .description =
+                "Prints a script for bash, zsh or fish. An installed twinray already has its scripts in the folders "
+                "that these shells search.",
+            .positionals = {shell},
+            .sections = {{"Output",
+                          {{.name = "--output",
+                            .letter = 'o',
+                            .value = file(options->file),
+                            .help = "write the script to this file instead of standard output"}}}},
+            .examples = {{"source <(twinray completion bash)", "complete in this shell; in ~/.bashrc, in all shells"}},
+            .run = [options] {
+                run(*options);
+                return 0;
+            }};
 }
 
 }  // namespace twinray::cli

@@ -45,7 +45,7 @@ std::string name_in(const Names<T>& names, T wanted) {
     return std::ranges::find(names, wanted, &std::pair<std::string, T>::second)->first;
 }
 
-// What areas are divided by; 0: nothing is there to be divided.
+// The divisor of areas; 0 if there is nothing to divide.
 double unit_of(const LitArea& lit, Measure measure) {
     switch (measure) {
         case Measure::fraction: return lit.unobstructed;
@@ -69,7 +69,7 @@ void write(const IlluminationOptions& options, const Illumination& result) {
     csv.close();
 }
 
-// Of each face the value of its group.
+// The value of its group for each face.
 ScenePicture picture_of(const IlluminationOptions& options, const Faces& faces, const Illumination& result) {
     const std::string what = name_in(measures, options.measure);
     std::vector<double> values;
@@ -167,17 +167,19 @@ ScenePicture picture_of(const AnalysisOptions& analysis, const SkyOptions& optio
 
 // --sky and --sun, and those that need them.
 std::vector<Option> sky_options(SkyOptions& options) {
-    return {{.name = "--sky",
-             .value = number(options.sky, {1, most_samples}),
-             .help = "what a uniform sky above the horizon brings, by N rays a face"},
-            {.name = "--sun",
-             .value = cli::file(options.sun),
-             .help = "hours of sun, from a CSV of x,y,z,hours: in which directions its rays go, and for how long"},
-            {.name = "--up", .value = numbers(options.up, "X Y Z"), .help = "where the zenith is", .needs = {"--sky"}},
-            {.name = "--samples",
-             .value = number(options.samples, {1, most_samples}),
-             .help = "points of each face for each position of the sun",
-             .needs = {"--sun"}}};
+    return {
+        {.name = "--sky",
+         .value = number(options.sky, {1, most_samples}),
+         .help = "compute the light of a uniform sky above the horizon, with N rays per face"},
+        {.name = "--sun",
+         .value = cli::file(options.sun),
+         .help = "compute hours of sun from a CSV file of x,y,z,hours: the direction in which sunlight travels, and "
+                 "for how long"},
+        {.name = "--up", .value = numbers(options.up, "X Y Z"), .help = "direction of the zenith", .needs = {"--sky"}},
+        {.name = "--samples",
+         .value = number(options.samples, {1, most_samples}),
+         .help = "points per face for each position of the sun",
+         .needs = {"--sun"}}};
 }
 
 void run_sky(const AnalysisOptions& analysis, const SkyOptions& options, Sides sides) {
@@ -222,30 +224,31 @@ Command illumination_command() {
     for (Option& option : sky_options(options->sky)) light.options.push_back(std::move(option));
     light.options.push_back({.name = "--sides",
                              .value = choice(options->sides, sides_by_name),
-                             .help = "which sides of faces receive light"});
+                             .help = "sides of faces that receive light"});
     Section output = analysis_output(options->analysis,
-                                     "a CSV, one line a face: face, hits, area, ci_low, ci_high; with --sky or --sun "
-                                     "face, free_rays, sky or hours, ci_low, ci_high");
-    for (Option& option : face_group_options(options->groups, "what a line of the CSV is", {"--direction"}))
+                                     "write a CSV file with one line per face: face, hits, area, ci_low, ci_high; with "
+                                     "--sky or --sun: face, free_rays, sky or hours, ci_low, ci_high");
+    for (Option& option : face_group_options(options->groups, "one line of the CSV", {"--direction"}))
         output.options.push_back(std::move(option));
-    output.options.push_back({.name = "--measure",
-                              .value = choice(options->measure, measures),
-                              .help = "third column of the CSV: area across the light, fraction of what is turned to "
-                                      "the light, or irradiance: area across the light a unit of surface",
-                              .needs = {"--direction"}});
-    Section pictures = picture_options(options->analysis.pictures, "what the third column of the CSV holds");
+    output.options.push_back(
+        {.name = "--measure",
+         .value = choice(options->measure, measures),
+         .help = "third column of the CSV: lit area perpendicular to the light, fraction of the area that faces the "
+                 "light, or irradiance, which is lit area perpendicular to the light per unit of surface",
+         .needs = {"--direction"}});
+    Section pictures = picture_options(options->analysis.pictures, "the third column of the CSV");
     pictures.options.push_back(color_scale_option(options->analysis.pictures));
     return {.name = "illumination",
             .group = "Analyses",
-            .summary = "find what parallel light, the sky or the sun bring to each face",
+            .summary = "compute the parallel light, sky light or hours of sun of each face",
             .description =
-                "Tells how much of each face parallel light reaches, how much of a uniform sky it sees, or "
-                "for how many hours the sun shines on it, with 95 % intervals.",
+                "Computes how much of each face parallel light reaches, how much of a uniform sky it sees, or for how "
+                "many hours the sun shines on it, with 95 % confidence intervals.",
             .positionals = {scene_argument(options->analysis.scene)},
             .sections = {light, output, pictures, common_options(options->analysis.common)},
             .alternatives = {{.names = {"--direction", "--sky", "--sun"}, .is_required = true}},
             .examples = {{"twinray illumination house.glb --direction 0.3 -1 0.2 -o lit.csv --picture lit.png",
-                          "what the sun reaches, as a table and as a picture"}},
+                          "the faces that the sun reaches, as a table and as a picture"}},
             .run = [options] {
                 options->grid.direction.empty() ? run_sky(options->analysis, options->sky, options->sides)
                                                 : run(*options);

@@ -89,39 +89,41 @@ Command kernels_command() {
     return {
         .name = "kernels",
         .group = "Checking",
-        .summary = "what a driver's compiler makes of every kernel: registers, scratch, instructions",
+        .summary = "print register use, scratch and instruction counts of every kernel, even without the GPU",
         .description =
-            "Compiles every kernel that a program can get from the library, and those of the path tracer, and prints "
-            "what the driver tells of each (VK_KHR_pipeline_executable_properties): VGPR, registers of a lane; waves, "
-            "how many subgroups a unit keeps at a time; scratch, bytes of memory that stand in for registers, of a "
-            "subgroup; shared, bytes of a group; spills, how often a register is kept elsewhere; instructions. What it "
-            "does not tell is empty. Then what builds of the software accelerator record, and the bytes a triangle "
-            "that they move at least. Nothing runs: with --family, Mesa's drivers compile for GPUs that are not there, "
-            "over the shims of Debian's package mesa-drm-shim.",
-        .sections =
-            {{"Which",
-              {{.name = "--device",
-                .value = word(options->device, "DEVICE"),
-                .help = "index or a part of the name, as `twinray devices` shows them; the fastest if not "
-                        "given",
-                .excludes = {"--family"}},
-               {.name = "--family",
-                .value = families(options->families),
-                .help = "GPUs that need not be there: of AMD (navi10, navi21, navi31, gfx1201: RDNA 1 to 4), NVIDIA "
-                        "(turing, ampere, ada, blackwell) and Qualcomm (adreno740)"},
-               {.name = "--filter",
-                .value = word(options->filter, "TEXT"),
-                .help = "only kernels with this in their name or specialisation"}}},
-             {"Output",
-              {{.name = "--against",
-                .value = file(options->against),
-                .help = "what --json wrote earlier: says which kernels take more registers, scratch, shared "
-                        "memory or spills, or 2 % more instructions, and which are new; figures of another "
-                        "release of Mesa are not compared, and that is a fault"},
-               json_option(options->json)}}},
-        .examples = {{"twinray kernels --family navi31,ampere,adreno740", "three vendors, without any GPU"},
-                     {"twinray kernels --filter \"swtlas_trace closest\"", "what traces on this device"}},
-        .fault = "a kernel grew past its limit, or has none that can be compared",
+            "Compiles every kernel that the library or the path tracer can use and prints the driver's statistics "
+            "(VK_KHR_pipeline_executable_properties). VGPR: registers per lane. waves: subgroups that a unit holds at "
+            "a time. scratch: bytes per subgroup of memory in place of registers. shared: bytes per workgroup. spills: "
+            "times that a register is saved elsewhere. instructions: their number. A figure that the driver does not "
+            "report is left empty. Then prints what builds of the software accelerator record, and the least number of "
+            "bytes per triangle that they move. No kernel runs. With --family, Mesa's drivers compile for GPUs that "
+            "this machine does not have, with the shims of Debian's package mesa-drm-shim.",
+        .sections = {{"Selection",
+                      {{.name = "--device",
+                        .value = word(options->device, "DEVICE"),
+                        .help = "index of the device or part of its name, as `twinray devices` prints them; without "
+                                "it, the fastest device",
+                        .excludes = {"--family"}},
+                       {.name = "--family",
+                        .value = families(options->families),
+                        .help =
+                            "compile for these GPUs, which this machine need not have: AMD (navi10, navi21, navi31, "
+                            "gfx1201: RDNA 1 to 4), NVIDIA (turing, ampere, ada, blackwell) and Qualcomm (adreno740)"},
+                       {.name = "--filter",
+                        .value = word(options->filter, "TEXT"),
+                        .help = "compile only kernels whose name or specialisation contains this text"}}},
+                     {"Output",
+                      {{.name = "--against",
+                        .value = file(options->against),
+                        .help = "compare with this output of an earlier --json: list kernels that take more registers, "
+                                "scratch, shared memory or spills, or 2 % more instructions, and kernels that are new; "
+                                "figures from another release of Mesa cannot be compared and count as a fault"},
+                       json_option(options->json)}}},
+        .examples = {{"twinray kernels --family navi31,ampere,adreno740",
+                      "kernels for three vendors' GPUs, without any of them"},
+                     {"twinray kernels --filter \"swtlas_trace closest\"",
+                      "kernels that trace closest hits on this device"}},
+        .fault = "a kernel exceeds its limit, or no limit can be compared with it",
         .run = [options] { return run(*options); }};
 }
 

@@ -67,10 +67,10 @@ void trace_all(const LeaksOptions& options, const LeakTest& test, const nlohmann
 
 void print(const AccelChoice& choice, const LeakState& state) {
     const LeakCounts& counts = state.counts;
-    const char* whose = choice.is_software ? "ours" : "the driver's";
+    const char* whose = choice.is_software ? "twinray" : "the driver";
     std::cout << "  " << counts.rays << " rays: " << counts.leaks << " leaks, " << counts.double_hits
-              << " double hits of " << whose;
-    if (counts.unspecified) std::cout << "; " << counts.unspecified << " cannot be told: edge-on at the origin";
+              << " double hits by " << whose;
+    if (counts.unspecified) std::cout << "; " << counts.unspecified << " are undecided: edge-on at the origin";
     std::cout << "\n  true rate below " << std::setprecision(2) << counts.bound_95() << " (95 %); "
               << std::setprecision(3) << static_cast<double>(counts.rays) * 1e-6 / state.seconds << " Mrays/s\n";
 }
@@ -98,7 +98,7 @@ void append_record(const LeaksOptions& options, const Context& context, const Ac
     append_json(options.common.json, record);
 }
 
-// Returns the faults of ours.
+// Returns the faults of twinray.
 std::uint64_t run(const LeaksOptions& options) {
     if (!options.state.empty()) check_writable(options.state);
     const std::string file = options.scene.filename().string();
@@ -115,7 +115,7 @@ std::uint64_t run(const LeaksOptions& options) {
     const LeakTest test(*accel, mesh, options.level, options.common.seed);
     std::cout << "leaks " << file << ": closed, " << mesh.triangles.size() << " triangles; " << text_of(choice)
               << " at " << name_of(options.level) << " on " << context->properties().name << '\n';
-    if (goes_on) std::cout << "  goes on after " << state.counts.rays << " rays\n";
+    if (goes_on) std::cout << "  continues after " << state.counts.rays << " rays\n";
     trace_all(options, test, identity, state);
     print(choice, state);
     append_record(options, *context, choice, scene, state);
@@ -127,32 +127,32 @@ std::uint64_t run(const LeaksOptions& options) {
 Command leaks_command() {
     const auto options = std::make_shared<LeaksOptions>();
     Option scene = scene_argument(options->scene);
-    scene.help += ", in which every edge lies between two triangles";
+    scene.help += "; every edge must lie between two triangles";
     const Section rays = {"Rays",
                           {{.name = "--ray-count",
                             .value = number(options->rays, {.least = 1}),
-                            .help = "how many rays in all",
+                            .help = "total number of rays",
                             .former_name = "--rays"},
                            {.name = "--state",
                             .value = file(options->state),
-                            .help = "keep the state of the run in FILE, and go on from it if it is there",
+                            .help = "save the state of the run to FILE, and continue from it if FILE exists",
                             .former_name = "--resume"},
-                           accel_option(options->accel, "whose hits are counted"),
+                           accel_option(options->accel, "accelerator whose hits are counted"),
                            level_option(options->level)}};
-    return {.name = "leaks",
-            .group = "Checking",
-            .summary = "shoot rays from inside a closed mesh: none may get out, none hit twice",
-            .description =
-                "Rays start inside a closed mesh and are aimed at its vertices and at points of its edges, "
-                "where a test that is not watertight loses them. A ray that crosses an even number of "
-                "triangles has leaked or was hit twice; no reference is needed to see it. Prints the first "
-                "such rays bit by bit.",
-            .positionals = {scene},
-            .sections = {rays, common_options(options->common)},
-            .examples = {{"twinray leaks torus.ply --ray-count 1e8 --state torus.json",
-                          "a hundred million rays, in as many sittings as one likes"}},
-            .fault = "a ray leaks or hits twice by the software accelerator",
-            .run = [options] { return run(*options) > 0 ? 1 : 0; }};
+    return {
+        .name = "leaks",
+        .group = "Checking",
+        .summary = "test a closed mesh for leaks with rays from inside",
+        .description =
+            "Starts rays inside a closed mesh and aims them at its vertices and at points of its edges, where a test "
+            "that is not watertight loses rays. A ray that crosses an even number of triangles has leaked or hit a "
+            "triangle twice, so no reference is needed. Prints the first such rays exactly, as hexadecimal floats.",
+        .positionals = {scene},
+        .sections = {rays, common_options(options->common)},
+        .examples = {{"twinray leaks torus.ply --ray-count 1e8 --state torus.json",
+                      "a hundred million rays; interrupt and repeat the command to continue"}},
+        .fault = "the software accelerator leaks a ray or hits a triangle twice",
+        .run = [options] { return run(*options) > 0 ? 1 : 0; }};
 }
 
 }  // namespace twinray::cli

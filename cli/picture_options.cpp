@@ -23,26 +23,25 @@ Section picture_options(PictureOptions& options, const std::string& shows) {
         "Pictures",
         {{.name = "--picture",
           .value = files(options.files, {".png", ".html", ".glb"}),
-          .help =
-              "a picture of the scene (.png), a page with what marks mean (.html), or the scene (.glb); colours show " +
-              shows},
+          .help = "write a picture of the scene (.png), a page that explains its marks (.html), or the scene itself "
+                  "(.glb); colours show " +
+                  shows},
          {.name = "--view",
           .value = numbers(options.view, "X Y Z"),
-          .help = "in which direction the picture looks; if not given, that of the scene's first camera, or from "
-                  "the front right and above",
+          .help = "viewing direction; without it, that of the scene's first camera, or from the front right and above",
           .needs = {"--picture"}},
          {.name = "--camera",
           .value = numbers(options.camera, "X Y Z X Y Z"),
-          .help = "where the camera stands, then the point that it looks at; instead of --view",
+          .help = "position of the camera, then the point that it looks at; replaces --view",
           .needs = {"--picture"},
           .excludes = {"--view"}},
          {.name = "--picture-size",
           .value = numbers(options.size, "WIDTH HEIGHT", {least_size, most_size}),
-          .help = "of what is seen of the scene, in pixels",
+          .help = "size of the image of the scene, in pixels",
           .needs = {"--picture"}},
          {.name = "--cutaway",
           .value = flag(options.is_cutaway),
-          .help = "faces seen from their back are left out of the .png, so that rooms are seen from outside",
+          .help = "leave out faces seen from their back in the .png, to see into rooms from outside",
           .needs = {"--picture"}}}};
 }
 
@@ -50,7 +49,7 @@ Option color_scale_option(PictureOptions& options) {
     const Names<ColorScale> scales = {{"linear", ColorScale::linear}, {"log", ColorScale::log}};
     return {.name = "--color-scale",
             .value = choice(options.color_scale, scales),
-            .help = "of values; as fits them if not given",
+            .help = "scale of the colours; without it, the one that fits the values",
             .needs = {"--picture"}};
 }
 

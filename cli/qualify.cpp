@@ -111,27 +111,29 @@ Command qualify_command() {
         "Devices",
         {{.name = "--devices",
           .value = choice(options->devices, {"one", "all"}),
-          .help = "all: every device of the loader, lavapipe below Mesa 26 with vectors of 128, 256 and 512 bits, and "
-                  "SwiftShader where a browser brought it; each in a process of its own"},
+          .help = "all: check every device of the Vulkan loader, lavapipe below Mesa 26 with vectors of 128, 256 and "
+                  "512 bits, and SwiftShader if a browser installed it, each in its own process"},
          {.name = "--budget",
           .value = number(options->budget, {.least = 1}),
-          .help = "after every case at its least, more of the least certain ones for so many seconds a device"},
+          .help = "after every case has run once, spend this many seconds per device on the least certain cases"},
          only_option(options->only)}};
     const Section output = {
         "Output",
-        {output_option(folder(options->folder), "folder of report.jsonl and replays; with --devices all one for each"),
-         {.name = "--junit", .value = file(options->junit), .help = "written: JUnit XML"},
-         {.name = "--tap", .value = file(options->tap), .help = "written: Test Anything Protocol 14"},
-         {.name = "--sarif", .value = file(options->sarif), .help = "written: SARIF 2.1.0"}}};
+        {output_option(folder(options->folder),
+                       "folder for report.jsonl and replays; with --devices all, one subfolder per device"),
+         {.name = "--junit", .value = file(options->junit), .help = "write JUnit XML to this file"},
+         {.name = "--tap", .value = file(options->tap), .help = "write Test Anything Protocol 14 to this file"},
+         {.name = "--sarif", .value = file(options->sarif), .help = "write SARIF 2.1.0 to this file"}}};
     return {.name = "qualify",
             .group = "Checking",
-            .summary = "check drivers for continuous integration",
+            .summary = "check Vulkan drivers in continuous integration",
             .description =
-                "Runs the checks of the report, and those of the driver's own structures, without timing "
-                "anything. A fault of the driver is told, and fails with --strict alone; where Vulkan only "
-                "advises, it never does.",
+                "Runs the checks of `twinray report` and of `twinray verify --suite conformance`, without timing "
+                "anything. Faults of the driver are printed; they make the command fail only with --strict, and never "
+                "where Vulkan only recommends.",
             .sections = {what, output, common_options(options->common)},
-            .examples = {{"twinray qualify --devices all --strict --junit qualify.xml", "every driver that is here"}},
+            .examples = {{"twinray qualify --devices all --strict --junit qualify.xml",
+                          "check every driver on this machine"}},
             .fault = "a check failed",
             .run = [options] { return run(*options); }};
 }

@@ -27,18 +27,19 @@ Section analysis_output(AnalysisOptions& options, const std::string& output) {
 
 std::vector<Option> ray_grid_options(RayGridOptions& options) {
     const Names<GridPoints> points = {{"random", GridPoints::random}, {"centers", GridPoints::centers}};
-    return {{.name = "--direction",
-             .value = numbers(options.direction, "X Y Z"),
-             .help = "of the rays, in world space; of any length but 0"},
-            {.name = "--grid",
-             .value = number(options.side, {1, 65535}),
-             .help = "one ray through each of N x N cells across the direction",
-             .needs = {"--direction"}},
-            {.name = "--grid-points",
-             .value = choice(options.points, points),
-             .help = "where rays go through their cells; intervals are there for random ones",
-             .needs = {"--direction"},
-             .former_name = "--points"}};
+    return {
+        {.name = "--direction",
+         .value = numbers(options.direction, "X Y Z"),
+         .help = "direction of the rays in world space; its length may be anything but 0"},
+        {.name = "--grid",
+         .value = number(options.side, {1, 65535}),
+         .help = "number of cells per side: one ray goes through each of N x N cells perpendicular to the direction",
+         .needs = {"--direction"}},
+        {.name = "--grid-points",
+         .value = choice(options.points, points),
+         .help = "position of a ray in its cell; only random positions give confidence intervals",
+         .needs = {"--direction"},
+         .former_name = "--points"}};
 }
 
 RayGridDesc RayGridOptions::desc(const CommonOptions& common) const {
@@ -79,7 +80,7 @@ double seconds_of(const std::function<void()>& work) {
 
 std::string speed_text(std::uint64_t rays, double seconds) {
     return text(rays, " rays in ", seconds, " s with copies, ", static_cast<double>(rays) / seconds / 1e6,
-                " million a second");
+                " million per second");
 }
 
 std::string text_of(const dvec3& v) { return text("(", v.x, ", ", v.y, ", ", v.z, ")"); }

@@ -64,7 +64,7 @@ void run_conformance(const ReportOptions& options, Recorder& recorder) {
     run_conformance(options.common, options.only, options.suite == "full" && !options.budget, recorder);
 }
 
-// What a run must have in common with one that it goes on with.
+// Identifies a run; a run can only continue one with the same key.
 std::string key_of(const ReportOptions& options, const RecordedDevice& device) {
     std::string key = text(twinray_version, ", ", device.name, ", ", device.driver, ", suite ", options.suite,
                            ", seed ", options.common.seed);
@@ -102,7 +102,7 @@ std::vector<std::pair<report::Figure, std::string>> drawn_figures(const ReportOp
     return drawn;
 }
 
-// Of the first fault of each class of the driver's; returns the classes.
+// Writes them for the first fault of each class of the driver; returns the classes.
 std::vector<std::string> write_reproducers(const ReportOptions& options, std::span<const Record> records,
                                            frame::Devices& devices) {
     const std::filesystem::path folder = options.folder / "reproducers";
@@ -117,7 +117,7 @@ std::vector<std::string> write_reproducers(const ReportOptions& options, std::sp
     return classes;
 }
 
-// Exit status: 1 where there is a fault of ours.
+// Exit status: 1 where there is a fault of twinray.
 int run(const ReportOptions& options) {
     const std::vector<frame::Case> all = cases_of_report(options.scenes);
     check_choice(options.only, all, "`twinray report --list`");
@@ -200,51 +200,50 @@ int compare_reports(std::span<const std::filesystem::path> paths, const std::fil
 
 Command report_command() {
     const auto options = std::make_shared<ReportOptions>();
-    const Section cases = {
-        "Cases",
-        {{.name = "--suite",
-          .value = choice(options->suite, {"quick", "full"}),
-          .help = "quick takes about a minute on a CPU driver with two cores"},
-         {.name = "--budget",
-          .value = number(options->budget, {.least = 1}),
-          .help = "after every case at its least, the least certain ones with more effort until so much time is spent"},
-         {.name = "--resume",
-          .value = flag(options->resume),
-          .help = "go on with the run in the folder that was cut short"},
-         only_option(options->only),
-         list_option(options->lists),
-         {.name = "--scenes",
-          .value = file_list(options->scenes),
-          .help = "scenes of yours, on which each level is measured as case L11, ..."},
-         {.name = "--accels",
-          .value = choices(options->accels, names_of(frame::all_backends)),
-          .help = "which accelerators; all if not given",
-          .former_name = "--accel"},
-         {.name = "--levels",
-          .value = choices(options->levels, names_of(all_levels)),
-          .help = "which levels; all if not given"}}};
-    Section output = {
-        "Output and trees",
-        {output_option(folder(options->folder), "folder of report.jsonl, report.csv and report.html"),
-         {.name = "--baseline",
-          .value = file(options->baseline),
-          .help = "report.jsonl, or --json, of an earlier run: says what changed; lines of other commands are "
-                  "counted"},
-         {.name = "--compare",
-          .value = paths(options->compared, 2, "REPORT REPORT ..."),
-          .help = "run nothing: say what changed from the first report (a folder or its JSON lines) to each other, "
-                  "beyond noise; ends with exit status 1 where something is worse"}}};
+    const Section cases = {"Cases",
+                           {{.name = "--suite",
+                             .value = choice(options->suite, {"quick", "full"}),
+                             .help = "suite of cases; quick takes about a minute on a CPU driver with two cores"},
+                            {.name = "--budget",
+                             .value = number(options->budget, {.least = 1}),
+                             .help = "after every case has run once, repeat the least certain cases with more effort "
+                                     "until this many seconds are spent"},
+                            {.name = "--resume",
+                             .value = flag(options->resume),
+                             .help = "continue the interrupted run in the output folder"},
+                            only_option(options->only),
+                            list_option(options->lists),
+                            {.name = "--scenes",
+                             .value = file_list(options->scenes),
+                             .help = "your own scenes; each level is measured on them as case L11, ..."},
+                            {.name = "--accels",
+                             .value = choices(options->accels, names_of(frame::all_backends)),
+                             .help = "accelerators to measure; without it, all",
+                             .former_name = "--accel"},
+                            {.name = "--levels",
+                             .value = choices(options->levels, names_of(all_levels)),
+                             .help = "levels to measure; without it, all"}}};
+    Section output = {"Output and trees",
+                      {output_option(folder(options->folder), "folder for report.jsonl, report.csv and report.html"),
+                       {.name = "--baseline",
+                        .value = file(options->baseline),
+                        .help = "print the changes since this report.jsonl, or --json output, of an earlier run; lines "
+                                "of other commands are counted"},
+                       {.name = "--compare",
+                        .value = paths(options->compared, 2, "REPORT REPORT ..."),
+                        .help = "run nothing; print the changes from the first report (a folder or its JSON lines) to "
+                                "each of the others, beyond noise; the exit status is 1 if something is worse"}}};
     for (Option& option : tree_options(options->trees)) output.options.push_back(std::move(option));
     return {.name = "report",
             .group = "Checking",
-            .summary = "measure error against run time over a suite of stiff and extreme cases",
+            .summary = "measure error against run time in a suite of stiff and extreme cases",
             .description =
-                "Runs a suite of cases on your driver, from NaN vertices and coincident triangles to long "
-                "rays and tiny scenes, and writes what they cost and how wrong the answers are: a page with "
-                "plots that needs no network, JSON lines and CSV.",
+                "Runs a suite of cases on your driver, from NaN vertices and coincident triangles to long rays and "
+                "tiny scenes. Writes their run times and errors as a page with plots that needs no network, as JSON "
+                "lines and as CSV.",
             .sections = {cases, output, common_options(options->common)},
-            .examples = {{"twinray report -o today", "the quick suite: today/report.html"},
-                         {"twinray report --compare yesterday today", "what changed beyond noise"}},
+            .examples = {{"twinray report -o today", "run the quick suite and write today/report.html"},
+                         {"twinray report --compare yesterday today", "print what changed beyond noise"}},
             .fault = "the software accelerator has a fault, or a compared report is worse",
             .run = [options] {
                 return options->compared.empty() ? run(*options)

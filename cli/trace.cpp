@@ -112,12 +112,13 @@ ScenePicture picture_of(const TraceOptions& options, const Scene& scene, std::sp
 void run(const TraceOptions& options) {
     const bool is_all = options.query == "all";
     if (is_all == options.counts.empty())
-        throw UsageError(is_all ? "--query all needs --counts: which hits are of which ray"
-                                : "--counts is for --query all");
-    if (is_all && options.cull != Cull::none) throw UsageError("--query all finds hits of both sides: not with --cull");
-    if (is_all && options.level != Level::watertight)
-        throw UsageError("--query all finds hits at --level watertight alone");
-    if (is_all && !options.pictures.files.empty()) throw UsageError("--picture shows one hit a ray: not --query all");
+        throw UsageError(is_all ? "--query all requires --counts, the number of hits of each ray"
+                                : "--counts requires --query all");
+    if (is_all && options.cull != Cull::none)
+        throw UsageError("--query all finds hits of both sides and excludes --cull");
+    if (is_all && options.level != Level::watertight) throw UsageError("--query all requires --level watertight");
+    if (is_all && !options.pictures.files.empty())
+        throw UsageError("--picture shows one hit per ray and excludes --query all");
     const MasksByName masks = read_masks(options.instance_masks);
     check_writable(options.hits);
     check_pictures(options.pictures);
@@ -157,63 +158,63 @@ Command trace_command() {
         "Rays and hits",
         {{.name = "--rays",
           .value = file(options->rays),
-          .help = "the rays: 32 bytes each, little endian: float32 origin (3), t_min, direction (3), t_max; or .npy: "
-                  "N x 8 numbers in that order, float64 too; or .csv or .txt: x y z dx dy dz a line",
+          .help = "file of rays: 32 bytes each, little-endian: float32 origin (3), t_min, direction (3), t_max; or "
+                  ".npy: N x 8 numbers in that order, float32 or float64; or .csv or .txt: x y z dx dy dz per line",
           .is_required = true},
          {.name = "--hits",
           .value = file(options->hits),
-          .help = "written: a hit for each ray, 32 bytes: uint32 hit, float32 t, uint32 primitive, custom index, "
-                  "float32 u, v, uint32 instance, 0; a miss has t = -1; .npy: the same as a NumPy array of records; "
-                  ".csv: a line each",
+          .help = "write one hit per ray to this file: 32 bytes: uint32 hit, float32 t, uint32 primitive, custom "
+                  "index, float32 u, v, uint32 instance, 0; a miss has t = -1; .npy: a NumPy array of such records; "
+                  ".csv: one line per ray",
           .is_required = true},
          {.name = "--query",
           .value = choice(options->query, {"closest", "any", "all"}),
-          .help = "the hit of smallest t, whether there is any, or all hits, ascending by t"},
+          .help = "closest: the hit with the smallest t; any: whether there is a hit; all: all hits in ascending order "
+                  "of t"},
          {.name = "--counts",
           .value = file(options->counts),
-          .help = "written with --query all: how many hits each ray has, uint32"}}};
+          .help = "write the number of hits of each ray, as uint32, to this file; requires --query all"}}};
     const Names<Cull> sides = {{"none", Cull::none}, {"back", Cull::back}, {"front", Cull::front}};
-    Section tracing = {"Tracing",
-                       {accel_option(options->accel),
-                        level_option(options->level),
-                        {.name = "--cull",
-                         .value = choice(options->cull, sides),
-                         .help = "triangles that are not hit: those seen from the back, or from the front"},
-                        {.name = "--mask",
-                         .value = number(options->mask, {0, 255}),
-                         .help = "8 bits: rays see the instances whose mask shares a bit with it"},
-                        {.name = "--instance-masks",
-                         .value = words(options->instance_masks, "NAME=BITS,..."),
-                         .help = "masks of instances by their names in the scene; all others have 255"}}};
+    Section tracing = {
+        "Tracing",
+        {accel_option(options->accel),
+         level_option(options->level),
+         {.name = "--cull", .value = choice(options->cull, sides), .help = "do not hit triangles seen from this side"},
+         {.name = "--mask",
+          .value = number(options->mask, {0, 255}),
+          .help = "mask of the rays, 8 bits: they hit instances whose mask has a bit in common with it"},
+         {.name = "--instance-masks",
+          .value = words(options->instance_masks, "NAME=BITS,..."),
+          .help = "masks of instances, by their names in the scene; all other instances have 255"}}};
     const Names<HitColor> colors = {{"distance", HitColor::distance},
                                     {"instance", HitColor::instance},
                                     {"facing", HitColor::facing},
                                     {"normal", HitColor::normal}};
-    Section pictures = picture_options(options->pictures, "the hits of rays");
+    Section pictures = picture_options(options->pictures, "the hits");
     pictures.options.push_back({.name = "--hit-color",
                                 .value = choice(options->rays_shown.color, colors),
-                                .help = "what the colour of a hit tells",
+                                .help = "quantity that the colour of a hit shows",
                                 .needs = {"--picture"}});
     pictures.options.push_back(color_scale_option(options->pictures));
     pictures.options.push_back({.name = "--labels",
                                 .value = flag(options->rays_shown.has_labels),
-                                .help = "number and distance beside each hit",
+                                .help = "print the number and distance of each hit beside it",
                                 .needs = {"--picture"}});
     pictures.options.push_back({.name = "--most-rays",
                                 .value = number(options->rays_shown.most_rays, {1, 1'000'000}),
-                                .help = "that are drawn, evenly chosen",
+                                .help = "largest number of rays to draw, chosen evenly",
                                 .needs = {"--picture"}});
     return {.name = "trace",
             .group = "Tracing",
             .summary = "trace a file of rays",
             .description =
-                "Reads a scene and a file of rays, traces all of them and writes a file of hits. t counts "
-                "in units of a ray's direction, which need not be normalised; indices begin at 0 and count "
-                "the triangles of the scene as they are in its file.",
+                "Reads a scene and a file of rays, traces the rays and writes a file of hits. t is in units of the "
+                "ray's direction, which need not be normalised. Indices begin at 0 and number the triangles in the "
+                "order of the scene's file.",
             .positionals = {scene_argument(options->scene)},
             .sections = {rays, tracing, pictures, common_options(options->common)},
             .examples = {{"twinray trace bunny.ply --rays rays.bin --hits hits.bin",
-                          "closest hits of all rays, with float32 arithmetic that loses no ray at an edge"}},
+                          "closest hits of all rays, at a level that loses no ray at edges"}},
             .run = [options] {
                 run(*options);
                 return 0;

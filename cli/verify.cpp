@@ -31,7 +31,7 @@ struct VerifyOptions {
     CommonOptions common;
     std::filesystem::path scene, rays;
     std::filesystem::path replay;                   // in place of a scene
-    std::filesystem::path replays;                  // folder; "" = only faults of ours are written
+    std::filesystem::path replays;                  // folder; "" = only faults of twinray are written
     std::filesystem::path reproducers, reproducer;  // folders of faults of the driver
 #ifdef TWINRAY_HAS_REPORT
     SuiteOptions suite;  // in place of a scene
@@ -52,17 +52,18 @@ std::uint64_t faults_of_ours(const VerifyOptions& options, const Comparison& com
 }
 
 std::string result_text(const VerifyOptions& options, std::uint64_t faults) {
-    if (options.level == Level::fast) return "no fault of ours: level fast may lose rays at edges and find them twice";
-    return faults ? text(faults, " faults of ours") : "no fault of ours";
+    if (options.level == Level::fast)
+        return "no fault of twinray: level fast may lose rays at edges and hit twice there";
+    return faults ? text(faults, " faults of twinray") : "no fault of twinray";
 }
 
-// Into the folder that was asked for; without one only faults of ours are written, to a folder of that name here.
+// Into the folder that was asked for; without one only faults of twinray are written, to a folder of that name here.
 std::filesystem::path replay_folder(const VerifyOptions& options, const Comparison& comparison) {
     if (!options.replays.empty()) return options.replays;
     return faults_of_ours(options, comparison) ? "twinray_replays" : "";
 }
 
-// What all replays of a run have in common.
+// The fields that all replays of a run share.
 replay::Replay replay_of(const VerifyOptions& options, const Scene& scene, const DeviceProperties& device) {
     return {.scene = std::filesystem::absolute(options.scene),
             .scene_hash = replay::hash_of(scene),
@@ -99,7 +100,7 @@ void write_reproducers(const VerifyOptions& options, const Scene& scene, const r
     }
 }
 
-// Returns the faults of ours.
+// Returns the faults of twinray.
 std::uint64_t run(const VerifyOptions& options) {
     const Scene scene = load_scene(options.scene, options.common);
     const std::unique_ptr<Context> context = make_context(options.common);
@@ -145,7 +146,7 @@ std::uint64_t run(const VerifyOptions& options) {
 bool run_replay(const VerifyOptions& options) {
     frame::Devices devices(context_desc(options.common));
     const bool is_fault = replay::show(options.replay, devices, std::cout);
-    std::cout << (is_fault ? "a fault of ours" : "no fault of ours") << '\n';
+    std::cout << (is_fault ? "a fault of twinray" : "no fault of twinray") << '\n';
     if (!options.reproducer.empty())
         std::cout << reproducer::write_reproducer(options.reproducer, options.replay, devices) << '\n';
     return is_fault;
@@ -161,53 +162,57 @@ Command verify_command() {
         "Rays",
         {{.name = "--rays",
           .value = file(options->rays),
-          .help = "compare these: 32 bytes each, as of `twinray trace`"},
-         {.name = "--random", .value = number(options->random), .help = "how many random rays", .excludes = {"--rays"}},
+          .help = "compare these rays, in the format of `twinray trace`"},
+         {.name = "--random",
+          .value = number(options->random),
+          .help = "number of random rays",
+          .excludes = {"--rays"}},
          {.name = "--aimed",
           .value = number(options->aimed),
-          .help = "how many rays aimed at vertices, and as many at edges",
+          .help = "number of rays aimed at vertices, and of rays aimed at edges",
           .excludes = {"--rays"}},
-         level_option(options->level, "of the triangle test, faults of which count but of fast")}};
+         level_option(options->level, "precision of the triangle test; faults count at every level but fast")}};
     const Section replays = {
         "Faulty rays",
         {{.name = "--replays",
           .value = folder(options->replays),
-          .help = text("written: a file for each fault of ours, and up to ", max_faults_of_driver,
-                       " of each class of the driver's; if not given, only those of ours, to twinray_replays")},
+          .help =
+              text("write a replay file to this folder for each fault of twinray, and for up to ", max_faults_of_driver,
+                   " faults of each class of the driver; without it, faults of twinray only, to twinray_replays")},
          {.name = "--replay",
           .value = file(options->replay),
-          .help = "instead of a scene: show a faulty ray of an earlier run step by step",
+          .help = "explain the faulty ray of this replay file step by step, instead of reading a scene",
           .excludes = {"--replays", "--reproducers"}},
          {.name = "--reproducers",
           .value = folder(options->reproducers),
-          .help = "written: for the first fault of each class of the driver's a folder with a C program that shows it, "
-                  "a scene of few triangles and a text for the driver's tracker"},
+          .help = "write a folder for the first fault of each class of the driver, with a C program that shows it, a "
+                  "scene of few triangles and a text for the driver's issue tracker"},
          {.name = "--reproducer",
           .value = folder(options->reproducer),
-          .help = "such a folder for the ray of --replay",
+          .help = "write such a folder for the ray of --replay",
           .needs = {"--replay"}}}};
-    Command command{.name = "verify",
-                    .group = "Checking",
-                    .summary = "compare both accelerators with exact answers, ray by ray",
-                    .description =
-                        "Traces random rays, and rays aimed at vertices and edges, with the hardware and the "
-                        "software accelerator, and checks each hit by a reference in float64 and, where that cannot "
-                        "tell, in rational arithmetic. Says how many hits agree, are ties, leaks, false or "
-                        "imprecise, and below which rate faults are (95 %).",
-                    .positionals = {scene},
-                    .sections = {rays, replays, common_options(options->common)},
-                    .examples = {{"twinray verify scene.gltf --random 1000000", "a million random rays on a scene"}},
-                    .fault = "the software accelerator has a fault",
-                    .run = [options] {
-                        if (options->scene.empty() == options->replay.empty())
-                            throw UsageError("one of SCENE and --replay FILE is required");
-                        if (options->random + options->aimed == 0)
-                            throw UsageError("--random 0 and --aimed 0 leave nothing to compare");
-                        return (options->replay.empty() ? run(*options) > 0 : run_replay(*options)) ? 1 : 0;
-                    }};
+    Command command{
+        .name = "verify",
+        .group = "Checking",
+        .summary = "compare both accelerators with exact answers, ray by ray",
+        .description =
+            "Traces random rays, and rays aimed at vertices and edges, with both accelerators. Checks each hit against "
+            "a reference in float64 and, if float64 cannot decide, in rational arithmetic. Prints how many hits agree, "
+            "are ties, leaks, false or imprecise, and an upper bound of the rate of faults (95 %).",
+        .positionals = {scene},
+        .sections = {rays, replays, common_options(options->common)},
+        .examples = {{"twinray verify scene.gltf --random 1000000", "trace a million random rays in a scene"}},
+        .fault = "the software accelerator has a fault",
+        .run = [options] {
+            if (options->scene.empty() == options->replay.empty())
+                throw UsageError("one of SCENE and --replay FILE is required");
+            if (options->random + options->aimed == 0)
+                throw UsageError("--random 0 and --aimed 0 leave nothing to compare");
+            return (options->replay.empty() ? run(*options) > 0 : run_replay(*options)) ? 1 : 0;
+        }};
 #ifdef TWINRAY_HAS_REPORT
     command.sections.insert(command.sections.end() - 1, suite_section(options->suite));
-    command.examples.push_back({"twinray verify --suite conformance", "what the driver's own structures do"});
+    command.examples.push_back({"twinray verify --suite conformance", "test the driver's own acceleration structures"});
     command.run = [options, run = command.run] {
         if (!options->scene.empty() + !options->replay.empty() + !options->suite.name.empty() != 1)
             throw UsageError("one of SCENE, --replay FILE and --suite conformance is required");

@@ -71,7 +71,7 @@ void run_conformance(const CommonOptions& options, const std::vector<std::string
         const std::vector<Record> records = read_json_lines(file).records;
         for (const Record& record : records) take(record);
         if (status == 0) return;
-        if (status < 128) fail("the cases of conformance could not be run: see above");
+        if (status < 128) fail("the conformance cases could not be run; see above");
         const std::string how = text("the driver ended the process: ", strsignal(status - 128));
         for (const conformance::Case& row : left) {
             const std::vector<Record> ended =
@@ -91,13 +91,13 @@ Section suite_section(SuiteOptions& options) {
         "Suite",
         {{.name = "--suite",
           .value = choice(options.name, {"conformance"}),
-          .help = "instead of a scene: cases about the driver's own structures, each with a control that must fail; "
-                  "with --strict a driver that fails what Vulkan demands is a fault, too"},
+          .help = "run cases on the driver's own acceleration structures, each with a control that must fail, instead "
+                  "of reading a scene; with --strict, a driver that breaks a requirement of Vulkan is also a fault"},
          only,
          list,
          {.name = "--full",
           .value = flag(options.is_full),
-          .help = "with 100 million rays, not 400,000",
+          .help = "trace 100 million rays instead of 400,000",
           .needs = {"--suite"}}}};
 }
 

@@ -38,7 +38,7 @@ struct ViewOptions {
 viewer::UpAxis up_of(const std::vector<double>& up) {
     if (up == std::vector<double>{0, 1, 0}) return viewer::UpAxis::y;
     if (up == std::vector<double>{0, 0, 1}) return viewer::UpAxis::z;
-    throw UsageError("--up: 0 1 0 or 0 0 1");
+    throw UsageError("--up must be 0 1 0 or 0 0 1");
 }
 
 viewer::State state_of(const ViewOptions& options) {
@@ -49,7 +49,7 @@ viewer::State state_of(const ViewOptions& options) {
     state.orbit.is_orthographic = options.is_orthographic;
     if (options.tree_depth >= 0) state.tree_depth = options.tree_depth;
     if (state.layer == Layer::path && state.shown == Shown::difference)
-        throw UsageError("--show difference compares hits: not with --layer path");
+        throw UsageError("--show difference compares hits and excludes --layer path");
     if (!options.pick.empty()) {
         if (options.pick[0] >= state.width || options.pick[1] >= state.height)
             throw UsageError(text("--pick ", options.pick[0], ' ', options.pick[1], ": the picture has ", state.width,
@@ -72,8 +72,8 @@ double difference_of(const Raster& raster, const std::filesystem::path& file) {
     const Image image =
         decode_image(std::span(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()), file.string());
     if (image.width != raster.width || image.height != raster.height)
-        fail("'", file.string(), "' has ", image.width, " x ", image.height, " pixels, the picture ", raster.width,
-             " x ", raster.height);
+        fail("'", file.string(), "' has ", image.width, " x ", image.height, " pixels, but the picture has ",
+             raster.width, " x ", raster.height);
     double sum = 0;
     for (std::size_t i = 0; i < raster.pixels.size(); ++i) {
         const Rgb pixel = raster.pixels[i];
@@ -160,7 +160,7 @@ int run(const ViewOptions& options) {
     const bool has_window = options.screenshot.empty() && options.headless == 0 && options.folder.empty() &&
                             options.reference.empty() && options.exported.empty();
     if (has_window && (!options.common.json.empty() || options.samples > 0))
-        throw UsageError("--json and --spp are for pictures without a window: --screenshot, --headless");
+        throw UsageError("--json and --spp require a picture without a window, as with --screenshot or --headless");
     for (const auto& file : {options.screenshot, options.record, options.exported}) check_writable(file);
     if (!options.folder.empty()) std::filesystem::create_directories(options.folder);
     const auto say = [](const std::string& line) { std::cout << line << std::endl; };
@@ -185,94 +185,103 @@ Command view_command() {
     Value layer = choice(options->state.layer, names_of(viewer::all_layers));
     layer.metavar = "NAME";
     const Section picture = {
-        "What is shown",
+        "Display",
         {{.name = "--layer",
           .value = layer,
-          .help = "what colours tell: path: the picture, path traced; eyelight: base colours, lit from the camera; of "
-                  "hits occlusion, uv, normal, geometry, primitive or depth; steps: of each ray through the software "
-                  "tree; of faces light, factors (view factors from the picked one) or collisions"},
+          .help = "quantity that the colours show. path: the path-traced picture; eyelight: base colours lit from the "
+                  "camera; "
+                  "occlusion, uv, normal, geometry, primitive, depth: properties of hits; steps: traversal steps of "
+                  "each ray in the software tree; light, factors (view factors from the picked face), collisions: "
+                  "analyses of faces"},
          {.name = "--show",
           .value = choice(options->state.shown, names_of(viewer::all_shown)),
-          .help = "the software accelerator, the driver's, both with a wipe between them, or where they disagree"},
+          .help = "hits of the software accelerator, of the driver, of both with a movable divider, or where they "
+                  "disagree"},
          level_option(options->state.level),
          {.name = "--wipe",
           .value = number(options->state.wipe, {.least = 0, .most = 1}),
-          .help = "where the wipe is, of the width"},
+          .help = "position of the divider, as a fraction of the width"},
          {.name = "--tree-depth",
           .value = number(options->tree_depth, {.least = -1, .most = 64}),
-          .help = "draw the boxes of the software tree so many levels below its root; -1: none"},
+          .help = "draw the boxes of the software tree this many levels below its root; -1 draws none"},
          {.name = "--tree-areas",
           .value = flag(options->state.has_area_colors),
-          .help = "give them the colour of their share of the root's area, which is how many rays meet them (SAH)",
+          .help = "colour these boxes by their share of the root's surface area, which estimates the rays that hit "
+                  "them (SAH)",
           .needs = {"--tree-depth"}},
          {.name = "--pick", .value = numbers(options->pick, "X Y"), .help = "explain the ray of this pixel"},
          {.name = "--time",
           .value = number(options->state.seconds, {.least = 0}),
-          .help = "of the animation, in seconds"},
+          .help = "time of the animation in seconds"},
          {.name = "--hour",
           .value = number(options->state.hour, {.least = 6, .most = 18}),
-          .help = "of the day, for --layer light"},
+          .help = "hour of the day for --layer light"},
          {.name = "--all-features",
           .value = flag(options->state.has_all_features),
-          .help = "of --layer path: kernels that have what any scene may need, to see what leaving out saves"},
+          .help = "for --layer path, use kernels with all features that any scene may need, to measure what leaving "
+                  "them out saves"},
          {.name = "--exposure",
           .value = number(options->state.exposure, {.least = -32, .most = 32}),
-          .help = "of --layer path, in stops"}}};
+          .help = "exposure of --layer path in stops"}}};
     const Section camera = {
         "Camera",
         {{.name = "--camera",
           .value = numbers(options->camera, "X Y Z X Y Z"),
-          .help =
-              "where the camera stands, then the point that it looks at; if not given, the scene's first camera, or "
-              "one that shows all of it"},
+          .help = "position of the camera, then the point that it looks at; without it, the scene's first camera, or "
+                  "one that shows the whole scene"},
          {.name = "--fov",
           .value = number(options->fov, {.least = 1, .most = 170}),
-          .help = "vertical field of view in degrees, of --camera"},
-         {.name = "--orthographic", .value = flag(options->is_orthographic), .help = "without perspective"},
-         {.name = "--up", .value = numbers(options->up, "X Y Z"), .help = "which axis is up: 0 1 0 or 0 0 1"},
+          .help = "vertical field of view of --camera in degrees"},
+         {.name = "--orthographic", .value = flag(options->is_orthographic), .help = "use an orthographic camera"},
+         {.name = "--up", .value = numbers(options->up, "X Y Z"), .help = "axis that points up: 0 1 0 or 0 0 1"},
          {.name = "--size",
           .value = numbers(options->size, "WIDTH HEIGHT", {1, 16384}),
-          .help = "of the picture, in pixels"}}};
+          .help = "size of the picture in pixels"}}};
     const Section without = {
         "Without a window",
-        {{.name = "--screenshot", .value = file(options->screenshot, {".png"}), .help = "write the picture and end"},
+        {{.name = "--screenshot",
+          .value = file(options->screenshot, {".png"}),
+          .help = "write the picture to this file and exit"},
          {.name = "--spp",
           .value = number(options->samples, {.least = 0, .most = 1u << 20u}),
-          .help = "samples of each pixel, of --layer path"},
+          .help = "samples per pixel of --layer path"},
          {.name = "--export",
           .value = file(options->exported, {".csv", ".glb"}),
-          .help = "write what the layer says of faces, as numbers or as a scene in its colours, and end"},
+          .help = "write the layer's values of faces to this file, as numbers or as a coloured scene, and exit"},
          {.name = "--headless",
           .value = number(options->headless, {.least = 1, .most = 1000000}),
-          .help = "so many frames, and end"},
+          .help = "render N frames and exit"},
          {.name = "--output",
           .letter = 'o',
           .value = folder(options->folder),
-          .help = "where frames, or the pictures of --play, are written"},
+          .help = "folder for the frames, or for the pictures of --play"},
          {.name = "--reference",
           .value = file(options->reference, {".png"}),
-          .help = "compare with this picture: exit status 1 where they differ, and only then --screenshot is written"},
+          .help = "compare with this picture; only if they differ, write --screenshot and end with exit status 1"},
          {.name = "--threshold",
           .value = number(options->threshold, {.least = 0, .most = 255}),
-          .help = "of the root mean square difference, of 255",
+          .help = "largest accepted root mean square difference, out of 255",
           .needs = {"--reference"}}}};
     const Section input = {
         "Input",
-        {{.name = "--play", .value = file(options->play), .help = "events from a file, as --record writes them"},
-         {.name = "--record", .value = file(options->record), .help = "write what is done in the window"}}};
+        {{.name = "--play",
+          .value = file(options->play),
+          .help = "play events from this file, as --record writes them"},
+         {.name = "--record", .value = file(options->record), .help = "write the events of the window to this file"}}};
     return {.name = "view",
             .group = "Tracing",
-            .summary = "show a scene in a window: picture, tree, disagreement, analyses",
+            .summary = "show a scene in a window: its picture, its trees, where accelerators disagree, analyses",
             .description =
-                "Left drags turn, middle or shift and left drags pan, the wheel goes nearer, a double click "
-                "centres, a click explains a pixel's ray; H shows all keys.",
+                "Shows a scene in a window. Drag with the left button to orbit, with the middle button, or with shift "
+                "and the left button, to pan. The wheel zooms, a double-click sets the orbit centre, and a click "
+                "explains the ray of a pixel. H shows all keys.",
             .positionals = {scene_argument(options->scene)},
             .sections = {picture, camera, without, input, common_options(options->common)},
-            .examples = {{"twinray view scene.glb", "a window"},
+            .examples = {{"twinray view scene.glb", "open a window"},
                          {"twinray view scene.glb --layer steps --tree-depth 4 --screenshot steps.png",
-                          "how much work each ray is, with boxes of the tree"},
+                          "show the work of each ray, and boxes of the tree"},
                          {"twinray view scene.glb --show difference --screenshot difference.png",
-                          "pixels where the driver's hits and twinray's differ"}},
+                          "show the pixels where the hits of twinray and the driver differ"}},
             .fault = "the picture differs from --reference",
             .run = [options] { return run(*options); }};
 }

@@ -49,8 +49,8 @@ PairExchanges compute_pairs(const Options& options, AbstractAccel& accel, const 
         std::count_if(faces.areas().begin(), faces.areas().end(), [](double area) { return area > 0; }));
     if (options.estimator == PairEstimator::automatic && count > most_paired_faces) {
         if (!options.common.quiet)
-            std::cout << count << " faces: pairs are looked at one by one up to " << most_paired_faces
-                      << ", here hits tell them all\n";
+            std::cout << count << " faces are more than " << most_paired_faces
+                      << ", the limit for exact pairs, so hits of rays estimate all entries\n";
         return {};
     }
     samples::Progress progress("pairs", faces.group_count(options.factors.grouping), options.common.quiet);
@@ -84,7 +84,7 @@ nlohmann::json json_of(const ViewFactorResiduals& residuals) {
             {"closure", residuals.closure}};
 }
 
-// What a run tells, whether it is printed or recorded.
+// The results of a run, for printing and for records.
 struct Summary {
     AccelChoice choice;
     MatrixTotals totals;
@@ -99,7 +99,7 @@ void print(const Summary& run, const Options& options) {
     const MatrixTotals& totals = run.totals;
     std::cout << run.rows << ' ' << name_of(options.factors.grouping) << " rows, " << totals.entries << " entries, "
               << totals.rays << " rays in " << run.seconds << " s ("
-              << static_cast<double>(run.rays) / run.seconds / 1e6 << " million a second) " << text_of(run.choice)
+              << static_cast<double>(run.rays) / run.seconds / 1e6 << " million per second) " << text_of(run.choice)
               << ", " << totals.hits << " met a face\nentries by estimator: " << totals.entries_by.at("contour")
               << " contour, " << totals.entries_by.at("area") << " area, " << totals.entries_by.at("hits") << " hits; "
               << run.rays_between_faces << " rays between points of faces, " << run.seconds_of_pairs
@@ -152,7 +152,7 @@ ScenePicture picture_of_view_factors(const PictureOptions& options, const ViewFa
     if (!shown.from) {
         ScenePicture picture = picture_of_values(options, by_face(groups, open_fractions(rows)), "open");
         picture.page.title = scene + ": open fraction";
-        picture.page.subtitle = "part of the diffuse radiation of a face that meets nothing";
+        picture.page.subtitle = "part of the diffuse radiation of a face that leaves the scene";
         return picture;
     }
     const std::vector<double> values = by_face(groups, factors_of(rows[*shown.from], rows.size()));
@@ -161,7 +161,7 @@ ScenePicture picture_of_view_factors(const PictureOptions& options, const ViewFa
         if (groups[face] == *shown.from) picture.colors[face] = categorical::vermilion;
     picture.page.legend.entries.push_back({categorical::vermilion, text("row ", *shown.from)});
     picture.page.title = text(scene, ": view factors of row ", *shown.from);
-    picture.page.subtitle = "part of its diffuse radiation that meets each group of faces";
+    picture.page.subtitle = "part of its diffuse radiation that reaches each group of faces";
     return picture;
 }
 
@@ -172,7 +172,7 @@ void write_matrix(const std::filesystem::path& file, const std::string& scene, F
         for (const ViewFactor& factor : row.factors) entries.push_back({row.group, factor.target, factor.value});
     const Raster raster = draw_matrix(rows.size(), entries,
                                       {.title = scene + ": view factors",
-                                       .subtitle = text("row: from which ", name_of(grouping), ", column: to which"),
+                                       .subtitle = text("row: emitting ", name_of(grouping), ", column: receiving"),
                                        .legend = {.title = "F", .scale = {}, .entries = {}}});
     write_png(file, raster.width, raster.height, raster.pixels);
 }
@@ -194,7 +194,7 @@ void check_outputs(const Options& options) {
 // Throws Error for a row that is not there.
 void check_shown(const ViewFactorPictureOptions& options, std::size_t row_count) {
     if (options.from && *options.from >= row_count)
-        fail("--from ", *options.from, ": there are ", row_count, " rows, the first is 0");
+        fail("--from ", *options.from, ": there are ", row_count, " rows, numbered from 0");
 }
 
 void run(const Options& options) {
@@ -243,11 +243,11 @@ void run(const Options& options) {
 std::vector<Option> view_factor_picture_options(ViewFactorPictureOptions& options) {
     return {{.name = "--from",
              .value = number(options.from),
-             .help = "the row whose view factors --picture shows, from 0",
+             .help = "row whose view factors --picture shows, numbered from 0",
              .needs = {"--picture"}},
             {.name = "--matrix",
              .value = file(options.matrix, {".png"}),
-             .help = "a picture of the matrix, on a logarithmic scale"}};
+             .help = "write a picture of the matrix on a logarithmic scale"}};
 }
 
 }  // namespace
@@ -261,46 +261,47 @@ Command viewfactors_command() {
         "Sampling",
         {{.name = "--rays-per-row",
           .value = number(factors.rays, {.least = 1}),
-          .help = "how many rays leave each row; with --target-error at most",
+          .help = "number of rays from each row; with --target-error, the largest number",
           .former_name = "--rays"},
          {.name = "--target-error",
           .value = number(factors.target_error, {.least = 0, .is_above = true}),
-          .help = "a row ends when the 95 % interval of each entry is within +- this"},
-         {.name = "--sides", .value = choice(factors.sides, sides), .help = "which sides of faces radiate"},
-         {.name = "--sequence", .value = choice(factors.sequence, sequences), .help = "of samples"},
+          .help = "stop a row when the 95 % confidence interval of each of its entries is within +- this"},
+         {.name = "--sides", .value = choice(factors.sides, sides), .help = "sides of faces that radiate"},
+         {.name = "--sequence", .value = choice(factors.sequence, sequences), .help = "sequence of the samples"},
          {.name = "--estimator",
           .value = choice(options->estimator, names_of(all_pair_estimators)),
           .help = "auto: contour integrals for pairs that nothing can come between, rays between points of both for "
-                  "those far apart, else rays that hit; or one of hits, area, contour for all"},
+                  "distant pairs, and hits of rays for all others; or hits, area or contour for all pairs"},
          accel_option(options->accel)}};
-    Section output = {"Matrix",
-                      {output_option(file(options->output, {".npz", ".csv"}),
-                                     "the matrix: a SciPy CSR matrix with intervals, or lines i,j,F,ci_low,ci_high")}};
-    for (Option& option : face_group_options(options->groups, "what a row is"))
-        output.options.push_back(std::move(option));
-    output.options.push_back({.name = "--project",
-                              .value = flag(options->projects),
-                              .help = "write the nearest matrix that fulfils reciprocity and closure instead of the "
-                                      "counted one"});
+    Section output = {
+        "Matrix",
+        {output_option(
+            file(options->output, {".npz", ".csv"}),
+            "write the matrix: a SciPy CSR matrix with confidence intervals, or lines i,j,F,ci_low,ci_high")}};
+    for (Option& option : face_group_options(options->groups, "one row")) output.options.push_back(std::move(option));
+    output.options.push_back(
+        {.name = "--project",
+         .value = flag(options->projects),
+         .help = "write the nearest matrix that satisfies reciprocity and closure, instead of the counted one"});
     output.options.push_back({.name = "--resume",
                               .value = flag(options->resumes),
-                              .help = "go on with the rows that an earlier run left beside the output",
+                              .help = "continue with the rows that an interrupted run left beside the output",
                               .needs = {"--output"}});
     Section pictures =
-        picture_options(options->pictures, "the open fraction, or with --from the view factors of one row");
+        picture_options(options->pictures, "the open fraction, or the view factors of one row with --from");
     pictures.options.push_back(color_scale_option(options->pictures));
     for (Option& option : view_factor_picture_options(options->shown)) pictures.options.push_back(std::move(option));
     return {.name = "viewfactors",
             .group = "Analyses",
-            .summary = "find view factors between faces, or groups of them, with their errors",
+            .summary = "compute view factors between faces or groups of faces, with confidence intervals",
             .description =
-                "Computes which part of the diffuse radiation that leaves each face, or group of faces, "
-                "meets each other one: the matrix of view factors, with a 95 % interval for each entry, and "
-                "how far it is from reciprocity and closure.",
+                "Computes the view-factor matrix: the part of the diffuse radiation that leaves each face, or group of "
+                "faces, and reaches each other one, with 95 % confidence intervals. Prints how far the matrix is from "
+                "reciprocity and closure.",
             .positionals = {scene_argument(options->scene)},
             .sections = {output, sampling, pictures, common_options(options->common)},
             .examples = {{"twinray viewfactors room.obj --by instance -o room.npz",
-                          "between the objects of a room, as a matrix for SciPy"}},
+                          "view factors between the objects of a room, as a matrix for SciPy"}},
             .run = [options] {
                 if (options->common.seed > UINT32_MAX)
                     throw UsageError(text("--seed is ", options->common.seed, ", but must be at most ", UINT32_MAX));

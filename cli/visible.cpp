@@ -41,7 +41,8 @@ Sensors read_sensors(const std::filesystem::path& file, const dvec3& origin) {
     return sensors;
 }
 
-// Of patches in the scene's axes. North is where -z goes along the ground, or y where the zenith is nearer to z.
+// Returns the directions of patches in the scene's axes. North is where -z goes along the ground, or y where the zenith
+// is nearer to z.
 std::vector<vec3> directions_of(std::span<const SkyPatch> sky, dvec3 up) {
     const double length = twinray::length(up);
     if (!(length > 0) || !std::isfinite(length)) fail("--up must be finite and not 0");
@@ -116,7 +117,7 @@ void run(const VisibleOptions& options) {
     if (!options.analysis.common.quiet)
         std::cout << analysed.head("visible", options.analysis) << "  " << speed_text(rays, seconds) << "\n  "
                   << sensors.points.size() << " sensors see " << mean << " of the light of " << options.patches
-                  << ", in the mean\n";
+                  << " on average\n";
     nlohmann::json record = {{"sensors", sensors.points.size()},
                              {"sky", options.patches},
                              {"n", rays},
@@ -131,32 +132,33 @@ void run(const VisibleOptions& options) {
 Command visible_command() {
     const auto options = std::make_shared<VisibleOptions>();
     const std::vector<std::string> skies(sky_names.begin(), sky_names.end());
-    Section asked = {"Sensors and patches",
-                     {{.name = "--sensors",
-                       .value = file(options->sensors),
-                       .help = "a file of Radiance's: a line x y z dx dy dz each, the place and where it looks",
-                       .is_required = true},
-                      {.name = "--patches",
-                       .value = choice(options->patches, skies),
-                       .help = "of the sky, by the names of Tregenza and Reinhart; north is along -z, or along y where "
-                               "the zenith is nearer to z"},
-                      {.name = "--up", .value = numbers(options->up, "X Y Z"), .help = "where the zenith is"},
-                      {.name = "--t-near",
-                       .value = number(options->t_near, {.least = 0}),
-                       .help = "how far from a sensor triangles begin to count"}}};
+    Section asked = {
+        "Sensors and patches",
+        {{.name = "--sensors",
+          .value = file(options->sensors),
+          .help = "sensor file of Radiance, with a line x y z dx dy dz for the position and direction of each sensor",
+          .is_required = true},
+         {.name = "--patches",
+          .value = choice(options->patches, skies),
+          .help = "sky subdivision, named after Tregenza or Reinhart; north is along -z, or along y if the zenith is "
+                  "nearer to z"},
+         {.name = "--up", .value = numbers(options->up, "X Y Z"), .help = "direction of the zenith"},
+         {.name = "--t-near",
+          .value = number(options->t_near, {.least = 0}),
+          .help = "distance from a sensor at which triangles begin to count"}}};
     return {.name = "visible",
             .group = "Analyses",
-            .summary = "find which patches of the sky sensors see",
-            .description = "Sends a ray from each sensor to the middle of each patch of the sky that is on its side.",
+            .summary = "find the sky patches that each sensor sees",
+            .description = "Sends a ray from each sensor to the centre of each sky patch in front of it.",
             .positionals = {scene_argument(options->analysis.scene)},
             .sections = {asked,
                          analysis_output(options->analysis,
-                                         ".npz: visible (sensors, patches) of 0 and 1, share, directions, "
-                                         "solid_angles; .csv: sensor, free_patches, share: of the light of a uniform "
-                                         "sky that would come if nothing stood in its way"),
+                                         "write .npz: visible (sensors, patches) of 0 and 1, share, directions, "
+                                         "solid_angles; or .csv: sensor, free_patches, share. share is the part of the "
+                                         "light of a uniform sky that reaches the sensor, relative to no obstruction"),
                          common_options(options->analysis.common)},
             .examples = {{"twinray visible street.glb --sensors windows.pts --patches reinhart577 -o windows.npz",
-                          "577 patches as each window sees them"}},
+                          "visibility of 577 patches from each window"}},
             .run = [options] {
                 run(*options);
                 return 0;

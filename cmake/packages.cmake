@@ -1,7 +1,10 @@
-# What `cpack` packs: the tree that `cmake --install` makes, as an archive and as a package for Debian.
+# `cpack` packs the tree that `cmake --install` makes, as an archive and as a Debian package.
 set(CPACK_GENERATOR TGZ DEB)
 set(CPACK_PACKAGE_VENDOR twinray)
-set(CPACK_PACKAGE_CONTACT "the twinray maintainers <maintainers@twinray.invalid>")
+# To publish the packages, pass -DCPACK_PACKAGE_CONTACT="NAME <ADDRESS>", the Debian package's maintainer.
+if(NOT CPACK_PACKAGE_CONTACT)
+    set(CPACK_PACKAGE_CONTACT "twinray developers")
+endif()
 set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
 set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/packages)
 set(CPACK_STRIP_FILES ON)

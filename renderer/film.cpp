@@ -123,13 +123,13 @@ void Film::add(std::size_t pixel, vec3 sum) { film_add(pixels[pixel], sum, lumin
 
 void Film::merge(const Film& other, const std::string& name, const std::string& other_name) {
     if (const std::string differs = difference(other.configuration, configuration); !differs.empty())
-        fail("'", other_name, "' is not of the same picture as '", name, "': ", differs);
+        fail("'", other_name, "' is not a film of the same picture as '", name, "': ", differs);
     if (other.width != width || other.height != height || other.block_size != block_size)
         fail("'", other_name, "': ", other.width, " x ", other.height, " pixels, but '", name, "' has ", width, " x ",
              height);
     if (const auto number = blocks.common(other.blocks))
         fail("'", other_name, "' and '", name, "' both hold samples ", std::uint64_t{*number} * block_size, " to ",
-             std::uint64_t{*number} * block_size + block_size - 1, " of each pixel; each sample may count once");
+             std::uint64_t{*number} * block_size + block_size - 1, " of each pixel; a sample may count only once");
     for (std::size_t i = 0; i < pixels.size(); ++i) merge_pixel(pixels[i], other.pixels[i]);
     blocks.unite(other.blocks);
 }

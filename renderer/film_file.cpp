@@ -77,7 +77,7 @@ void check(const std::filesystem::path& file, std::span<const std::byte> bytes) 
     uint sum = 0;
     std::memcpy(&sum, bytes.data() + bytes.size() - sizeof sum, sizeof sum);
     if (sum != crc32_of(bytes.first(bytes.size() - sizeof sum)))
-        fail("'", file.string(), "': damaged (its checksum does not fit)");
+        fail("'", file.string(), "': damaged (its checksum does not match)");
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ DeviceScene::DeviceScene(Context& context, const Scene& scene, const LocalLights
 
 void DeviceScene::move(const Scene& scene, const LocalLights& lights) {
     if (!lights.empty() && !features_.local_lights)
-        fail("a surface or light begins to shine in a scene that is dark at rest, which is not supported");
+        fail("a surface or light starts to emit in a scene that has no emission at rest; this is not supported");
     context_.wait_for_gpu();
     moving_.clear();
     Commands commands(context_, "path tracer move");
@@ -102,7 +102,7 @@ void DeviceScene::upload_lights(Commands& commands, const LocalLights& lights) {
         return values.empty() ? std::vector<T>(1) : values;
     };
     if (lights.by == LightChoice::tree && !features_.light_tree)
-        fail("lights are in a tree, and the kernels of this scene choose them by a table");
+        fail("lights are in a tree, but the kernels of this scene choose lights from a table");
     if (features_.local_lights) {
         if (!lights_) lights_.emplace(context_);
         const std::vector<SetKey> keys = lights_->put(lights);

@@ -25,7 +25,7 @@ TimeRange parse_range(const std::string& text) {
     std::istringstream in(text);
     if (!(in >> range.begin >> colon >> range.end) || colon != ':' || !(in >> std::ws).eof() ||
         !(range.begin <= range.end))
-        fail("--time-range '", text, "': must be A:B, seconds of which A is not above B");
+        fail("--time-range '", text, "': must be A:B in seconds, with A at most B");
     return range;
 }
 
@@ -50,7 +50,7 @@ std::size_t find_animation(const std::vector<AnimationInfo>& animations, const s
 std::optional<std::size_t> chosen_animation(const SequenceOptions& options, const Scene& scene) {
     if (!options.plays_animation()) return {};
     if (!scene.rig)
-        fail("--frames ", *options.frames, ": the scene has no animations; --turntable takes the camera round it");
+        fail("--frames ", *options.frames, ": the scene has no animations; --turntable moves the camera around it");
     return find_animation(animations_of(*scene.rig), options.animation.empty() ? "0" : options.animation);
 }
 
@@ -71,9 +71,7 @@ Sequence make_sequence(const SequenceOptions& options, const Scene& scene) {
     sequence.turntable = options.turntable;
     if (!sequence.animation) {
         if (options.fps || !options.time_range.empty())
-            fail(
-                "--fps and --time-range are of an animation, and with --turntable none is played unless --animation "
-                "names it");
+            fail("--fps and --time-range require an animation, and --turntable plays none unless --animation names it");
         return sequence;
     }
     const AnimationInfo animation = animations_of(*scene.rig)[*sequence.animation];

@@ -26,7 +26,7 @@ std::vector<std::string> stopped_lights(const Scene& scene) {
         if (!used[i] || !may_be_other_glass(material)) continue;
         const char* why = material.thickness > 0 ? "the boundary of a volume bends it" : "rough glass scatters it";
         sentences.push_back(text("light of ", names_of(scene.lights), " cannot pass material '", material.name,
-                                 "': ", why, ", and no path finds a light without size"));
+                                 "': ", why, ", and no path can reach a light without size"));
     }
     return sentences;
 }

@@ -189,7 +189,7 @@ Geometry read_mesh(Reader& reader, const SavedEntry& entry) {
     if (has_boxes && entry.scale != 1) fail("boxes at scale ", entry.scale, ", not 1");
     if (has_boxes) return Geometry(BoxesView{name, boxes});
     if (int exponent = 0; std::frexp(entry.scale, &exponent) != 0.5f || std::abs(exponent) > 101)
-        fail("scale ", entry.scale, " is no power of two between 2^-100 and 2^100");
+        fail("scale ", entry.scale, " is not a power of two between 2^-100 and 2^100");
     Geometry geometry(MeshView(name, positions, triangles), 1);
     geometry.scale = entry.scale;
     return geometry;

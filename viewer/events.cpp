@@ -127,7 +127,7 @@ std::vector<Event> read_events(const std::filesystem::path& file) {
         if (!line.empty() && line.back() == '\r') line.pop_back();
         if (line.empty() || line[0] == '#') continue;
         const std::optional<Event> event = event_of(line);
-        if (!event) fail("'", file.string(), "': line ", number, ": '", line, "' is no event");
+        if (!event) fail("'", file.string(), "': line ", number, ": '", line, "' is not an event");
         events.push_back(*event);
     }
     return events;

@@ -26,7 +26,7 @@ void write_csv(const std::filesystem::path& file, const Scene& scene, const Valu
 
 void write_values(const std::filesystem::path& file, const Scene& scene, const Values& values) {
     if (values.numbers.size() != count_triangles(scene))
-        fail("'", file.string(), "': only what layers light, factors and collisions say of faces is written there");
+        fail("'", file.string(), "': only the layers light, factors and collisions have values of faces to write");
     if (file.extension() == ".csv") return write_csv(file, scene, values);
     std::vector<Rgb> colors;
     for (const double number : values.numbers)

@@ -301,7 +301,7 @@ void Viewer::update_values() {
     if (state_.layer == Layer::collisions) values_ = contacts_of(*stage_, segments_);
     if (face) values_ = factors_from(*stage_, *face);
     values_of_ = key;
-    if (state_.layer == Layer::factors && !face) message_ = "click a face: view factors are those from it";
+    if (state_.layer == Layer::factors && !face) message_ = "click a face to see view factors from it";
 }
 
 void Viewer::draw_over(FacePicture& picture) {

@@ -6,8 +6,8 @@ namespace twinray::viewer {
 
 int run_window(const WindowDesc&) {
     fail(
-        "view: built without a window, for want of GLFW or Dear ImGui (Debian: libglfw3-dev libimgui-dev); "
-        "--screenshot and --headless need none");
+        "view: this twinray was built without a window, because GLFW or Dear ImGui was missing (Debian: libglfw3-dev "
+        "libimgui-dev); --screenshot and --headless work without one");
 }
 
 }  // namespace twinray::viewer

@@ -106,7 +106,8 @@ Orbit seen_from(Orbit orbit, Side side) {
 
 Orbit looking(const dvec3& eye, const dvec3& center, UpAxis up, double vertical_fov) {
     Orbit orbit{.center = center, .distance = length(eye - center), .vertical_fov = vertical_fov, .up = up};
-    if (!(orbit.distance > 0) || !std::isfinite(orbit.distance)) fail("--camera: it stands where it looks at");
+    if (!(orbit.distance > 0) || !std::isfinite(orbit.distance))
+        fail("--camera: its position is the point that it looks at");
     return with_backward(orbit, (eye - center) * (1 / orbit.distance));
 }
 

@@ -76,7 +76,7 @@ VkBool32 VKAPI_PTR ScreenDevice::on_message(VkDebugUtilsMessageSeverityFlagBitsE
 void ScreenDevice::create_instance(const ContextDesc& desc) {
     std::uint32_t count = 0;
     const char** needed = glfwGetRequiredInstanceExtensions(&count);
-    if (!needed) fail("window: this system has no Vulkan that shows pictures");
+    if (!needed) fail("window: no Vulkan driver of this system can present pictures");
     std::vector<const char*> extensions(needed, needed + count);
     const char* layer = "VK_LAYER_KHRONOS_validation";
     if (desc.validation)
@@ -127,7 +127,7 @@ void ScreenDevice::choose(const std::string& request) {
     if (choice.index < 0) {
         std::string why;
         for (const std::string& rejection : choice.rejections) why += "\n  " + rejection;
-        fail("window: no device runs twinray and shows pictures here", why);
+        fail("window: no device both runs twinray and presents pictures here", why);
     }
     physical_ = devices[static_cast<std::size_t>(choice.index)];
     family_ = static_cast<std::uint32_t>(family_of(physical_, surface_));
@@ -146,7 +146,7 @@ void ScreenDevice::choose_format() {
                 format_ = wanted;
                 return;
             }
-    fail("window: it has no format of 8 bits a channel");
+    fail("window: it has no format with 8 bits per channel");
 }
 
 void ScreenDevice::create_device(const ContextDesc& desc) {

@@ -388,7 +388,7 @@ void Viewer::press(const Key& key) {
         case Action::quit: is_closed_ = true; break;
     }
     if (!stage_->has_level(state_.level)) {
-        message_ = text("level ", name_of(state_.level), " needs float64, which the device lacks");
+        message_ = text("level ", name_of(state_.level), " requires float64, which the device lacks");
         state_.level = Level::watertight;
     }
     if (state_.shown != Shown::software && !stage_->hardware()) {

@@ -55,13 +55,13 @@ Button button_of(int button) {
 class Glfw {
   public:
     Glfw(unsigned width, unsigned height) {
-        if (!glfwInit()) fail("window: there is no display (--screenshot and --headless need none): ", reason());
+        if (!glfwInit()) fail("window: there is no display (--screenshot and --headless do not need one): ", reason());
         glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
         window_ = glfwCreateWindow(static_cast<int>(width), static_cast<int>(height), "twinray", nullptr, nullptr);
         if (!window_) {
             const std::string why = reason();
             glfwTerminate();
-            fail("window: cannot be opened: ", why);
+            fail("window: it cannot be opened: ", why);
         }
         glfwSetWindowUserPointer(window_, this);
         glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int, int action, int) { of(w).on_key(key, action); });
@@ -190,8 +190,8 @@ void sheet(const Viewer& viewer) {
         }
         ImGui::EndTable();
     }
-    line("left drag: turn   middle or Shift+left: pan   wheel: nearer");
-    line("right drag with W A S D Q E: fly   click: explain   double click: centre");
+    line("left drag: orbit   middle or Shift+left: pan   wheel: zoom");
+    line("right drag with W A S D Q E: fly   click: explain   double-click: set centre");
     ImGui::End();
 }
 

@@ -63,20 +63,20 @@ std::string synopsis_of(const Command& command) {
 
 std::vector<ExitStatus> exit_statuses_of(const Command& command) {
     const std::string failure =
-        "the work could not be done, and a line on standard error says why: no device, a file that cannot be read or "
-        "written, out of memory";
+        "the command failed; a line on standard error names the cause, such as no device, a file that cannot be read "
+        "or written, or no memory";
     return {{"0", "done" + (command.fault.empty() ? std::string() : ", and no fault was found")},
             {"1", command.fault.empty() ? failure : command.fault + "; or " + failure},
             {"2", "the command line is wrong"}};
 }
 
 std::vector<EnvironmentVariable> environment_variables() {
-    return {{"TWINRAY_DISABLE",
-             "ray_query, ray_tracing_pipeline or both, separated by a comma: features of the device that are left "
-             "unused"},
-            {"TWINRAY_TUNING",
-             "gpu or cpu_driver: the kind of device that kernels are shaped for, instead of what the device is known "
-             "to be; hits are the same"}};
+    return {
+        {"TWINRAY_DISABLE",
+         "comma-separated list of ray_query and ray_tracing_pipeline: features of the device that twinray does not "
+         "use"},
+        {"TWINRAY_TUNING",
+         "gpu or cpu_driver: the kind of device to tune kernels for, instead of the detected kind; hits are the same"}};
 }
 
 }  // namespace twinray::cli

@@ -79,7 +79,8 @@ std::string list_text(std::span<const Command> commands, std::size_t width) {
         page += item;
     }
     page += '\n';
-    add_paragraph(page, "'twinray help COMMAND' tells all of a command, 'twinray --version' which twinray this is.",
+    add_paragraph(page,
+                  "Run 'twinray help COMMAND' for the help of a command, and 'twinray --version' for the version.",
                   width, 0);
     return page;
 }

@@ -45,7 +45,7 @@ std::string items(const std::vector<Option>& options) {
     return roff;
 }
 
-// What ends every page.
+// The sections that end every page.
 std::string end(const Command& command, const std::string& see_also) {
     std::string roff = heading("EXIT STATUS");
     for (const auto& [status, meaning] : exit_statuses_of(command)) roff += item(status, meaning);
@@ -75,14 +75,14 @@ std::string man_page(std::span<const Command> commands, const std::string& versi
     roff += heading("NAME") + "twinray \\- ray tracing on Vulkan by two accelerators that check each other\n";
     roff += heading("SYNOPSIS") + ".B twinray\n.I COMMAND\n[OPTION]...\n";
     roff += heading("DESCRIPTION") +
-            "twinray traces rays on any Vulkan device, by the acceleration structures of the driver and by structures "
-            "and kernels of its own, tells where the two differ, and which of them is right.\n";
+            "twinray traces rays on any Vulkan device, with the driver's acceleration structures and with its own "
+            "structures and kernels. It shows where the two differ and which is right.\n";
     roff += heading("COMMANDS");
     for (const Command& command : commands) {
         roff += item(command.name, command.summary);
         see_also += (see_also.empty() ? "" : ",\n") + std::string(".BR twinray\\-") + escaped(command.name) + " (1)";
     }
-    return roff + end({.fault = "a fault was found, by a command that looks for them"}, see_also + '\n');
+    return roff + end({.fault = "a command that checks for faults found one"}, see_also + '\n');
 }
 
 }  // namespace twinray::cli

@@ -56,8 +56,8 @@ void check_values_follow(const Command& command, const std::vector<std::string>&
     for (std::size_t i = 0; i < arguments.size(); ++i) {
         const auto found = find(arguments[i]);
         if (found == options.end() || (*found)->value.least == 0) continue;
-        const std::string wanted = (*found)->name + " wants " + (*found)->value.metavar;
-        if (i + 1 == arguments.size()) refuse(wanted, ", and nothing follows");
+        const std::string wanted = (*found)->name + " needs " + (*found)->value.metavar;
+        if (i + 1 == arguments.size()) refuse(wanted, ", but nothing follows");
         if (find(arguments[i + 1]) != options.end()) refuse(wanted, ", but ", arguments[i + 1], " follows");
     }
 }
@@ -79,7 +79,7 @@ void check_known(const Command& command, const std::vector<std::string>& left) {
         const std::string nearest = nearest_to(name, names);
         refuse("there is no option ", name, nearest.empty() ? "" : "; did you mean " + nearest + "?");
     }
-    if (!left.empty()) refuse("'", left.front(), "' is one word too many");
+    if (!left.empty()) refuse("'", left.front(), "' is one argument too many");
 }
 
 std::vector<std::string> split(const std::string& list) {
@@ -96,7 +96,7 @@ void store(const Given& given) {
     if (value.least == 0) std::erase(words, std::string());
     if (value.most == 1 && words.size() > 1 && !value.is_repeatable) refuse(given.name(), " is given more than once");
     if (words.size() < value.least || (words.size() > value.most && !value.is_repeatable))
-        refuse(given.name(), " wants ", value.least, " values, ", value.metavar, ", not ", words.size());
+        refuse(given.name(), " needs ", value.least, " values, ", value.metavar, ", not ", words.size());
     if (value.is_list) {
         std::vector<std::string> parts;
         for (const std::string& word : words)

@@ -89,7 +89,7 @@ int index_of_device(const Family& family) {
     return found == devices.end() ? -1 : static_cast<int>(found - devices.begin());
 }
 
-// A shim ends a process in which it is told of a GPU that it does not know: a child asks.
+// A shim ends its process if it does not know the GPU, so a child process asks.
 bool has_device(const Family& family) {
     const pid_t child = fork();
     if (child == 0) {
@@ -125,10 +125,10 @@ bool is_in_effect(const Family& family) {
 int run_again(const Family& family, const std::vector<std::string>& arguments) {
     const std::string manifest = find_manifest(family.manifest);
     if (manifest.empty())
-        fail("family '", family.name, "' is not here: Mesa's driver ", family.driver,
-             " is not installed (Debian: apt-get install mesa-vulkan-drivers, which on Debian 12 has RADV alone)");
+        fail("family '", family.name, "' is not available: Mesa's driver ", family.driver,
+             " is not installed (Debian: apt-get install mesa-vulkan-drivers; Debian 12 has only RADV)");
     if (!can_be_loaded(family.shim))
-        fail("family '", family.name, "' is not here: ", family.shim,
+        fail("family '", family.name, "' is not available: ", family.shim,
              " is not installed (Debian: apt-get install mesa-drm-shim)");
     std::cout.flush();
     const pid_t child = fork();
@@ -138,16 +138,16 @@ int run_again(const Family& family, const std::vector<std::string>& arguments) {
     }
     const std::optional<int> status = exit_status_of(child);
     if (!status)
-        fail("family '", family.name, "': a signal ended the process that compiled for it, as where ", family.shim,
-             " is of another version of Mesa than its driver ", family.driver);
+        fail("family '", family.name, "': a signal ended the process that compiled for it; check that ", family.shim,
+             " and the driver ", family.driver, " are of the same version of Mesa");
     return *status;
 }
 
 std::string find_device(const Family& family) {
     if (!has_device(family))
-        fail("family '", family.name, "' is not here: this Mesa's ", family.shim, " or its driver ", family.driver,
+        fail("family '", family.name, "' is not available: this Mesa's ", family.shim, " or its driver ", family.driver,
              " does not know ", family.what, " (", family.variable, '=', family.value,
-             "), or they are of two versions of Mesa");
+             "), or they are of different versions of Mesa");
     return std::to_string(index_of_device(family));
 }
 

@@ -101,7 +101,7 @@ std::vector<KernelRow> read_rows(const std::filesystem::path& file) {
             const nlohmann::json json = parse_json<nlohmann::json>(line);
             if (json.contains("driver")) drivers[json.at("device")] = json.at("driver");
             if (!json.contains("kernel")) continue;
-            if (!drivers.contains(json.at("device"))) fail("no line before it names the driver of its device");
+            if (!drivers.contains(json.at("device"))) fail("no earlier line names the driver of its device");
             rows.push_back(row_of(json, drivers));
         } catch (const std::exception& failure) {
             fail("'", file.string(), "', line ", number, ": ", failure.what());
@@ -120,8 +120,8 @@ std::vector<std::string> not_comparable(std::span<const KernelRow> rows, std::sp
     std::set<std::string> faults;
     for (const KernelRow& row : rows)
         if (const KernelRow* limit = find_limit(row, limits); limit && !is_comparable(row, *limit))
-            faults.insert(
-                text(row.device, ": not compared: this is ", row.driver, ", the limits are of ", limit->driver));
+            faults.insert(text(row.device, ": not compared: the driver is ", row.driver, ", but the limits are from ",
+                               limit->driver));
     return {faults.begin(), faults.end()};
 }
 
@@ -130,7 +130,7 @@ std::vector<std::string> grown(std::span<const KernelRow> rows, std::span<const 
     for (const KernelRow& row : rows) {
         const KernelRow* limit = find_limit(row, limits);
         if (!limit)
-            faults.push_back(name_of(row) + ": there is no limit for it");
+            faults.push_back(name_of(row) + ": no limit is recorded");
         else if (is_comparable(row, *limit))
             compare(row, *limit, margin, faults);
     }

@@ -216,7 +216,7 @@ void AccelBackend::mark_vertices_dirty(AccelHandle handle) {
     if (pushed.held->geometry.triangle_count() == 0) return;
     if (!pushed.held->geometry.is_in_place())
         fail(name_, ": mark_vertices_dirty: mesh '", pushed.held->geometry.name,
-             "' is not in place in memory of the caller's");
+             "' does not use the caller's memory in place");
     pushed.held->vertices.read_again();
     edit(pushed.held, Dirty::moves);
 }
@@ -247,7 +247,7 @@ AccelBackend::PushedGeometry& AccelBackend::checked_for_vertices(AccelHandle han
         fail(name_, ": update_vertices: handle ", handle.id, " holds boxes, '", geometry.name, "', not triangles");
     if (geometry.is_in_place())
         fail(name_, ": update_vertices: mesh '", geometry.name,
-             "' is in place in memory of the caller's: write there, then mark_vertices_dirty()");
+             "' uses the caller's memory in place: write there, then call mark_vertices_dirty()");
     if (!pushed.held->vertices.on_device()) check_mesh_is_kept(*pushed.held, "update_vertices");
     if (const std::size_t n = geometry.vertex_count(); count != n)
         fail(name_, ": update_vertices: mesh '", geometry.name, "': ", count, " positions for its ", n,

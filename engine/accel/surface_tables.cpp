@@ -49,7 +49,7 @@ void check_attribute(const DeviceMesh& mesh, const DeviceAttribute& attribute) {
     const uint number = AttributeNames().number_of(attribute.name).value_or(ATTRIBUTES_NAMED);
     if (number < ATTRIBUTES_NAMED && (attribute.components != named_components[number] || attribute.is_per_face))
         fail("mesh '", mesh.name, "': '", attribute.name, "' has ", named_components[number],
-             " components a vertex, not ", attribute.components, attribute.is_per_face ? " a triangle" : "");
+             " components per vertex, not ", attribute.components, attribute.is_per_face ? " per triangle" : "");
 }
 
 // Checks that there is an array of so many numbers at the address.
@@ -97,7 +97,7 @@ std::optional<uint> AttributeNames::number_of(std::string_view name) const {
 uint AttributeNames::number_for(std::string_view mesh, std::string_view name) {
     if (const std::optional<uint> known = number_of(name)) return *known;
     if (names_.size() == most_names)
-        fail("mesh '", mesh, "': attribute '", name, "' is one too many: an accelerator has ",
+        fail("mesh '", mesh, "': attribute '", name, "' exceeds the limit: an accelerator has at most ",
              most_names - ATTRIBUTES_NAMED);
     names_.emplace_back(name);
     return static_cast<uint>(names_.size() - 1);

@@ -177,9 +177,9 @@ bool Faces::is_current(AbstractAccel& accel) const {
 
 void check_current(AbstractAccel& accel, const Faces& faces, const char* action) {
     if (!faces.is_current(accel))
-        fail(accel.name(), ": ", action, ": the faces are of ",
-             accel.view().accel == held_by(faces).accel ? "before its last sync; make them anew"
-                                                        : "another accelerator");
+        fail(
+            accel.name(), ": ", action, ": the faces are of ",
+            accel.view().accel == held_by(faces).accel ? "before its last sync; make new ones" : "another accelerator");
 }
 
 Faces::Faces(Context& context, const Scene& scene) : state_(std::make_unique<State>()) {

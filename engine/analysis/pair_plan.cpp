@@ -250,8 +250,8 @@ PairPlan plan_pairs(const FacePolygons& polygons, std::span<const std::vector<ui
     std::size_t faces = 0;
     for (const std::vector<uint>& group : members) faces += group.size();
     if (faces > most_paired_faces)
-        fail("view factors: ", faces, " faces; pairs are looked at one by one up to ", most_paired_faces,
-             ", beyond that hits alone can tell");
+        fail("view factors: ", faces, " faces; the estimators of pairs take at most ", most_paired_faces,
+             "; for more, use the estimator hits");
     const Planner planner(polygons, members, options);
     std::vector<Planner::Row> rows(members.size());
     constexpr std::size_t batch = 64;  // groups between two calls of `progress`

@@ -83,7 +83,7 @@ dvec3 unit_direction(dvec3 direction) {
 
 RayGridPlan plan_ray_grid(const Scene& scene, const RayGridDesc& desc) {
     if (desc.side < 1 || desc.side > largest_side)
-        fail("ray grid: ", desc.side, " cells a side; 1 to ", largest_side, " can be");
+        fail("ray grid: ", desc.side, " cells per side; must be 1 to ", largest_side);
     const Axes axes = axes_of(desc.direction);
     const PlaneExtent extent = extent_of(scene, axes);
     if (extent.is_empty()) return {};

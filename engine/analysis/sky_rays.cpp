@@ -11,7 +11,7 @@ namespace {
 
 uint faces_of_batch(uint samples, std::size_t faces) {
     if (samples < 1 || samples > rays_of_batch)
-        fail("rays from faces: ", samples, " of each; 1 to ", rays_of_batch, " can be");
+        fail("rays from faces: ", samples, " per face; must be 1 to ", rays_of_batch);
     return static_cast<uint>(std::min<std::size_t>(rays_of_batch / samples, faces));
 }
 

@@ -25,7 +25,7 @@ PairSearch::PairSearch(Context& context)
       pace_(context) {}
 
 void PairSearch::set_max_pairs(std::uint64_t count) {
-    if (count > most_pairs) fail("set_max_pairs: ", count, " pairs; at most ", most_pairs, " can be told apart");
+    if (count > most_pairs) fail("set_max_pairs: ", count, " pairs; at most ", most_pairs, " can be numbered");
     max_pairs_ = count;
 }
 

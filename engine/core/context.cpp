@@ -36,11 +36,12 @@ void check_needs(const DeviceProperties& enabled) {
 // Detects, where possible, an application that states what the driver supports instead of what it enabled.
 void check_claims(const DeviceProperties& told, const DeviceProperties& supported, const VulkanTable& vk) {
     if (const char* feature = feature_beyond(told, supported))
-        fail("adopted device '", told.name, "': ", feature, " is told to be enabled but the device has none");
+        fail("adopted device '", told.name, "': ", feature,
+             " is listed as enabled, but the device does not support it");
     const auto check_function = [&](bool is_told, const void* function, const char* extension) {
         if (is_told && !function)
             fail("adopted device '", told.name, "': ", extension,
-                 " is told to be enabled but the VkDevice was created without");
+                 " is listed as enabled, but the VkDevice was created without it");
     };
     check_function(told.acceleration_structure, reinterpret_cast<const void*>(vk.vkCreateAccelerationStructureKHR),
                    VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME);

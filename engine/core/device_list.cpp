@@ -21,7 +21,7 @@ DeviceList::DeviceList(Context& context, const char* name, std::uint64_t element
       pace_(context) {}
 
 void DeviceList::set_limit(std::uint64_t count) {
-    if (count > 0xffffffffu) fail(name_, ": a limit of ", count, "; at most ", 0xffffffffu, " can be told apart");
+    if (count > 0xffffffffu) fail(name_, ": a limit of ", count, "; at most ", 0xffffffffu, " can be numbered");
     limit_ = count;
 }
 

@@ -21,7 +21,7 @@ constexpr std::uint64_t groups_per_row = 32768;
 
 VkShaderModule create_shader_module(Context& context, std::span<const std::uint32_t> spirv,
                                     std::span<const SpecializationConstant> constants, const std::string& name) {
-    if (!spirv::is_module(spirv)) fail("shader '", name, "': its ", spirv.size(), " words are no SPIR-V module");
+    if (!spirv::is_module(spirv)) fail("shader '", name, "': its ", spirv.size(), " words are not a SPIR-V module");
     const std::vector<std::uint32_t> needed = prune_branches(freeze_constants(spirv, constants));
     VkShaderModuleCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;

@@ -60,7 +60,7 @@ Bytes PipelineStore::load(const std::function<void(std::string_view)>& log) cons
     try {
         Bytes pipelines = read_file(file_);
         if (is_of_driver(std::as_bytes(std::span(pipelines)), driver_)) return pipelines;
-        log(text("'", file_.string(), "': not pipelines of this driver; they are compiled anew"));
+        log(text("'", file_.string(), "': its pipelines are not of this driver; they are compiled again"));
     } catch (const std::exception& failure) {
         log(failure.what());
     }

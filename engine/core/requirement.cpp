@@ -34,8 +34,8 @@ struct Part {
 // Indexed by Requirement::Of.
 constexpr Part parts[] = {
     {"everything",
-     "Everything; no more need SwTlas below Level::refined, textures in buffers, animation, view factors, "
-     "illumination, centroids, collisions of boxes and the path tracer",
+     "Everything. SwTlas below Level::refined, textures in buffers, animation, view factors, illumination, "
+     "centroids, collisions of boxes and the path tracer need nothing more",
      "twinray needs ", ""},
     {"hardware", "HwTlas", "HwTlas needs ", ", SwTlas works without"},
     {"ray_queries", "Kernels that query HwTlas themselves (twinray/glsl/query.glsl, all hits of a ray)",
@@ -47,8 +47,8 @@ constexpr Part parts[] = {
     {"points", "Closest points, distances and winding numbers (PointQuery)", "PointQuery needs ",
      ", all else works without"},
     {"contacts", "Contacts of triangles (NarrowPhase)", "NarrowPhase needs ", ", BroadPhase works without"},
-    {"int64_kernels", "Kernels that have integers of 64 bits, of a host or chosen by KernelTuning",
-     "Kernels with integers of 64 bits need ", ", those without work"},
+    {"int64_kernels", "Kernels with 64-bit integers, of a host or chosen by KernelTuning",
+     "Kernels with 64-bit integers need ", ", the others work without"},
     {"primitive_culling", "Rays that skip triangles or boxes, in `twinray verify --suite conformance`",
      "Rays that skip triangles or boxes need ", ", the other cases run without"},
     {"images", "Textures as images (TextureStore)", "Textures as images need ", ", textures in buffers work without"},
@@ -61,13 +61,13 @@ std::vector<Requirement> limits_of(const DeviceProperties& device) {
     return {
         {text("groups of ", Limits::group_invocations,
               " invocations (maxComputeWorkGroupInvocations, maxComputeWorkGroupSize)"),
-         "its builds and bounds share out work in groups of that size; Vulkan guarantees 128", everything,
+         "its builds distribute work to groups of that size; Vulkan guarantees 128", everything,
          device.group_invocations >= Limits::group_invocations},
         {text(Limits::shared_bytes, " bytes of shared memory (maxComputeSharedMemorySize)"),
-         "its sort counts digits there, and traversals keep their stacks there; Vulkan guarantees as much", everything,
+         "its sort counts digits there and traversals keep their stacks there; Vulkan guarantees this", everything,
          device.shared_bytes >= Limits::shared_bytes},
         {text(Limits::push_constant_bytes, " bytes of push constants (maxPushConstantsSize)"),
-         "kernels get their arguments by them; Vulkan guarantees as much", everything,
+         "kernels get their arguments in them; Vulkan guarantees this", everything,
          device.push_constant_bytes >= Limits::push_constant_bytes},
     };
 }
@@ -84,18 +84,17 @@ std::string Requirement::sentence() const {
 }
 
 const char* never_required() {
-    return "integers of 64, 16 or 8 bits, floats of 16 bits, subgroup operations and subgroups of a known "
-           "size, and Vulkan above 1.2";
+    return "64-, 16- or 8-bit integers, 16-bit floats, subgroup operations, a known subgroup size, "
+           "and Vulkan above 1.2";
 }
 
 std::vector<Requirement> requirements_of(const DeviceProperties& device) {
     using enum Requirement::Of;
     const std::vector<Requirement> limits = limits_of(device);
     std::vector<Requirement> all = {
-        {"Vulkan 1.2", "its kernels and its timeline are written for it", everything,
-         device.api_version >= version_1_2},
-        {"a compute queue", "all that it does are compute shaders", everything, device.has_compute_queue, {Shader}},
-        {"timelineSemaphore", "it never waits for the GPU: a timeline tells what may be freed", everything,
+        {"Vulkan 1.2", "its kernels and its timeline semaphore use it", everything, device.api_version >= version_1_2},
+        {"a compute queue", "all its work runs in compute shaders", everything, device.has_compute_queue, {Shader}},
+        {"timelineSemaphore", "it never waits for the GPU: a timeline shows what may be freed", everything,
          device.timeline_semaphore},
         {"bufferDeviceAddress",
          "its kernels reach all data by address, without descriptor sets",
@@ -108,7 +107,7 @@ std::vector<Requirement> requirements_of(const DeviceProperties& device) {
     all.insert(all.end(), limits.begin(), limits.end());
     const Requirement of_parts[] = {
         {"VK_KHR_acceleration_structure", "the driver builds its structures", hardware, device.acceleration_structure},
-        {"VK_KHR_ray_query or VK_KHR_ray_tracing_pipeline", "it traces through one of them", hardware,
+        {"VK_KHR_ray_query or VK_KHR_ray_tracing_pipeline", "it traces with one of them", hardware,
          device.ray_query || device.ray_tracing_pipeline},
         {"VK_KHR_ray_query",
          "a compute kernel has no other way to the driver's structures",
@@ -122,20 +121,16 @@ std::vector<Requirement> requirements_of(const DeviceProperties& device) {
          device.ray_tracing_pipeline,
          {RayTracingKHR},
          {"SPV_KHR_ray_tracing"}},
-        {"shaderFloat64",
-         "they compute the hit that counts again in float64",
-         refinement,
-         device.shader_float64,
-         {Float64}},
+        {"shaderFloat64", "they compute the final hit again in float64", refinement, device.shader_float64, {Float64}},
         {"shaderFloat64", "it computes all distances in float64", points, device.shader_float64, {Float64}},
         {"shaderFloat64", "it decides in float64 which triangles meet", contacts, device.shader_float64, {Float64}},
         {"shaderInt64",
-         "they compute with them; twinray's own have variants that do not",
+         "they compute with such integers; twinray's own kernels also have variants without",
          int64_kernels,
          device.shader_int64,
          {Int64}},
         {"rayTraversalPrimitiveCulling",
-         "the flags of a ray that say so need it",
+         "the ray flags for this need it",
          primitive_culling,
          device.primitive_culling,
          {RayTraversalPrimitiveCullingKHR}},

@@ -50,7 +50,7 @@ void Context::State::give_up(std::uint64_t promised) noexcept {
     if (enqueue(std::span(&info, 1)) == VK_SUCCESS)
         promised_.pass(promised);
     else
-        warn("commands that were given up count as still to come: the device took no word of it");
+        warn("discarded commands still count as pending, because the device refused the submission that marks them");
 }
 
 void Context::State::wait_before_next_submission(SyncPoint point, VkPipelineStageFlags stages) {
@@ -129,9 +129,8 @@ void Context::State::check_submitted(SyncPoint point) const {
     if (!point.semaphore || point.semaphore != promised_timeline_) return;
     if (promised_.is_lost(point.value))
         fail(
-            "the commands into which a sync was recorded were given up: what it built is not there, and whoever was to "
-            "be "
-            "synced must be made anew");
+            "the commands into which a sync was recorded were discarded: its results do not exist, and the objects to "
+            "be synced must be created again");
     if (!promised_.is_passed(point.value)) fail("the commands into which a sync was recorded must be submitted first");
 }
 

@@ -125,8 +125,9 @@ void check_texels(const Texels& texels, const std::string& object) {
         fail(it, " has a level of more than 4 GiB");
     const std::size_t most = std::bit_width(std::max(texels.width, texels.height));
     if (texels.width == 0 || texels.height == 0 || texels.levels.empty())
-        fail(it, " has no texels; it needs one at least");
-    if (texels.levels.size() > most) fail(it, " has ", texels.levels.size(), " levels; at most ", most, " are there");
+        fail(it, " has no texels; it needs at least one");
+    if (texels.levels.size() > most)
+        fail(it, " has ", texels.levels.size(), " levels; at most ", most, " are possible");
     for (std::size_t level = 0; level < texels.levels.size(); ++level) {
         const TexelSize size = level_size(texels, level);
         const std::size_t bytes = std::size_t{size.width} * size.height * texel_bytes(texels);

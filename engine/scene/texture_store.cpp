@@ -170,10 +170,10 @@ Texels TextureStore::State::checked(Texels&& texels, const TextureOptions& optio
     check_texels(texels, name_ + ": " + action);
     const bool is_float = texels.format == TexelFormat::float16 || texels.format == TexelFormat::float32;
     if (options.is_srgb && is_float)
-        fail(name_, ": ", action, ": image '", texels.name, "' is sRGB in floats; only unorm8 and unorm16 can be");
+        fail(name_, ": ", action, ": image '", texels.name, "' is sRGB in floats; only unorm8 and unorm16 can be sRGB");
     if (has_images() && std::max(texels.width, texels.height) > longest_side_)
         fail(name_, ": ", action, ": image '", texels.name, "' of ", texels.width, " x ", texels.height,
-             "; the device's images have at most ", longest_side_, " a side");
+             "; the device's images have at most ", longest_side_, " per side");
     if (options.is_srgb && texels.format == TexelFormat::unorm16) texels = decoded_srgb16(std::move(texels));
     const bool is_srgb = is_decoded(options, texels);
     if (has_images() && (texels.channels == 3 || (is_srgb && texels.channels != 4)))
@@ -197,7 +197,7 @@ void TextureStore::State::check_format(const Texels& texels, const TextureOption
 
 TextureRef TextureStore::State::push(Texels&& texels, TextureOptions options) {
     if (has_images() && size() == ImageArray::max_images)
-        fail(name_, ": push: image '", texels.name, "'; ", size(), " images fit, and are there");
+        fail(name_, ": push: image '", texels.name, "'; there are already ", size(), " images, the most that fit");
     const std::string name = texels.name;
     Texels kept = checked(std::move(texels), options, "push");
     textures_.push_back({.name = name, .options = options, .form = {}, .image = {}, .texels = {}});

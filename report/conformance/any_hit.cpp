@@ -67,13 +67,13 @@ std::vector<Case> any_hit_cases() {
          "every triangle on the ray is offered once", Demand::must, doubles_candidates, offered_once},
         {"K59", topic, "the same in instances", "VK-GL-CTS any hit invocations",
          "every triangle on the ray is offered once", Demand::must, doubles_candidates, offered_of_instances},
-        {"K60", topic, "opaque geometries beside others", "VK-GL-CTS opacity", "the others alone are offered",
+        {"K60", topic, "opaque geometries beside others", "VK-GL-CTS opacity", "only the others are offered",
          Demand::must, forgets_geometry_flags, opaque_and_not},
         {"K61", topic, "random refusals", "VK-GL-CTS any hit, slang-rhi any hit",
          "the nearest that was not refused is hit", Demand::must, forgets_refusals, next_after_refusal},
-        {"K62", topic, "all refused, some opaque", "VK-GL-CTS any hit", "what is opaque is hit, nothing else",
-         Demand::must, forgets_refusals, all_refused},
-        {"K63", topic, "one of 24 layers confirmed", "VK-GL-CTS any hit", "that one is hit", Demand::must,
+        {"K62", topic, "all refused, some opaque", "VK-GL-CTS any hit", "only opaque triangles are hit", Demand::must,
+         forgets_refusals, all_refused},
+        {"K63", topic, "one of 24 layers confirmed", "VK-GL-CTS any hit", "that triangle is hit", Demand::must,
          forgets_refusals, through_layers},
     };
 }

@@ -93,12 +93,11 @@ std::vector<Case> box_cases() {
     using enum Misdeed;
     constexpr Topic topic = Topic::boxes;
     return {
-        {"K64", topic, "random boxes", "VK-GL-CTS AABB candidates", "every box that the ray passes is boxes_offered",
+        {"K64", topic, "random boxes", "VK-GL-CTS AABB candidates", "every box that the ray meets is offered",
          Demand::must, forgets_later_half, boxes_offered},
-        {"K65", topic, "the same in instances", "VK-GL-CTS AABB candidates",
-         "every box that the ray passes is boxes_offered", Demand::must, forgets_transforms,
-         boxes_offered_of_instances},
-        {"K66", topic, "rays that begin in boxes", "VK-GL-CTS AABB candidates", "those are boxes_offered", Demand::must,
+        {"K65", topic, "the same in instances", "VK-GL-CTS AABB candidates", "every box that the ray meets is offered",
+         Demand::must, forgets_transforms, boxes_offered_of_instances},
+        {"K66", topic, "rays that begin in boxes", "VK-GL-CTS AABB candidates", "these boxes are offered", Demand::must,
          forgets_later_half, offered_from_inside},
         {"K67", topic, "a t generated in each of eight boxes", "VK-GL-CTS intersection shaders, slang-rhi procedural",
          "the nearest is committed, at that t", Demand::must, moves_boxes, nearest_generated},
@@ -106,12 +105,13 @@ std::vector<Case> box_cases() {
          "the nearest that was not refused is committed", Demand::must, forgets_refusals, refused},
         {"K69", topic, "triangles and boxes behind each other", "VK-GL-CTS mixed geometries",
          "the nearest that was not refused is committed", Demand::must, moves_boxes, beside_triangles},
-        {"K70", topic, "opaque boxes and others", "VK-GL-CTS AABB opacity", "told of each candidate as it is",
-         Demand::must, forgets_geometry_flags, told_opacity, false, "intersection shaders are not told"},
-        {"K71", topic, "a t generated at t_min and at t_max", "VK-GL-CTS AABB limits", "both are inside", Demand::must,
-         moves_boxes, boxes_at_the_ends},
+        {"K70", topic, "opaque boxes and others", "VK-GL-CTS AABB opacity",
+         "each candidate is reported as opaque or not, as it is", Demand::must, forgets_geometry_flags, told_opacity,
+         false, "intersection shaders cannot tell"},
+        {"K71", topic, "a t generated at t_min and at t_max", "VK-GL-CTS AABB limits",
+         "both count as inside the interval", Demand::must, moves_boxes, boxes_at_the_ends},
         {"K72", topic, "t_min and t_max around some of the boxes", "VK-GL-CTS AABB limits",
-         "the nearest between is committed", Demand::must, forgets_limits, between_limits},
+         "the nearest box in between is committed", Demand::must, forgets_limits, between_limits},
     };
 }
 

@@ -111,7 +111,7 @@ void headers(CaseRun& run) {
         run.expect(std::ranges::equal(file.driver_uuid(), id.driverUUID), which + "not the driver's UUID");
         run.expect(file.serialized_bytes() == file.bytes.size(),
                    text(which, "says ", file.serialized_bytes(), " bytes, the query ", file.bytes.size()));
-        run.expect(file.deserialized_bytes() > 0, which + "wants no memory");
+        run.expect(file.deserialized_bytes() > 0, which + "needs no memory");
     }
     const std::vector<std::uint64_t> handles = driver.serialize(built.top.structure).handles();
     run.expect(driver.serialize(built.bottoms[0].structure).handle_count() == 0, "a bottom level has handles");
@@ -155,9 +155,9 @@ std::vector<Case> copy_cases() {
          copies_in_part, bottom_file},
         {"K30", Topic::serialization, "both levels to bytes and back, with new addresses", "VK-GL-CTS serialization",
          same, Demand::must, copies_in_part, files_of_both_levels},
-        {"K31", Topic::serialization, "what the header says", "VK-GL-CTS header of serialized structures",
+        {"K31", Topic::serialization, "contents of the header", "VK-GL-CTS header of serialized structures",
          "the driver's UUID, the sizes, the bottom levels", Demand::must, garbles_headers, headers},
-        {"K32", Topic::serialization, "the driver's own bytes", "VK-GL-CTS compatibility", "they are compatible",
+        {"K32", Topic::serialization, "bytes from the same driver", "VK-GL-CTS compatibility", "they are compatible",
          Demand::must, garbles_headers, own_file},
         {"K33", Topic::serialization, "bytes with another UUID", "VK-GL-CTS compatibility", "they are not compatible",
          Demand::should, takes_any_file, files_of_others},

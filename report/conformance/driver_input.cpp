@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint64_t input_alignment = 16;
 
-// What a build must pass over, far from everything else, so that it shows where it does not.
+// Items that a build must skip. They are far from everything else, so that a build that does not skip them is noticed.
 constexpr float passed_over = 64;
 
 template <class T>
@@ -45,14 +45,14 @@ void append_vertex(std::vector<std::byte>& bytes, VkFormat format, vec3 p) {
         case VK_FORMAT_R16G16B16A16_SNORM:
             for (const float value : {p.x, p.y, p.z, 1.0f}) append(bytes, snorm16(value));
             return;
-        default: fail("vertex format ", static_cast<int>(format), " is none that Vulkan demands");
+        default: fail("vertex format ", static_cast<int>(format), " is not one that Vulkan requires");
     }
 }
 
 void pad(std::vector<std::byte>& bytes, std::uint32_t count) { bytes.resize(bytes.size() + count, std::byte{0x55}); }
 
 std::uint64_t to_device(Commands& commands, const char* name, const std::vector<std::byte>& bytes) {
-    // Builds of nothing, too, want an address.
+    // Builds of nothing also need an address.
     Buffer buffer(commands.context(),
                   {.name = name, .bytes = std::max<std::uint64_t>(bytes.size(), 1), .alignment = input_alignment});
     commands.upload(buffer, std::span(bytes));

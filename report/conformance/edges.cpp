@@ -134,9 +134,9 @@ std::vector<Case> edge_cases() {
     using enum Misdeed;
     return {
         {"K79", Topic::edges, "rays at edges and vertices from inside a closed mesh", "VK-GL-CTS watertightness",
-         "each hits something", Demand::should, leaks, closed_mesh},
+         "every ray hits a triangle", Demand::should, leaks, closed_mesh},
         {"K80", Topic::edges, "the same in an instance that is turned and sheared", "VK-GL-CTS watertightness",
-         "each hits something", Demand::should, leaks, closed_instance},
+         "every ray hits a triangle", Demand::should, leaks, closed_instance},
         {"K81", Topic::edges, "rays straight at edges and vertices of a flat grid of one winding",
          "VK-GL-CTS single hit", "one triangle each, whichever", Demand::should, leaks, single_flat},
         {"K82", Topic::edges, "rays aslant at edges and vertices of a rough field of one winding",

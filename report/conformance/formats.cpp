@@ -86,8 +86,8 @@ std::vector<Case> format_cases() {
          control, vertex_formats},
         {"K16", topic, "vertices with bytes between them", "VK-GL-CTS vertex strides", same, Demand::must, control,
          vertex_strides},
-        {"K17", topic, "boxes with bytes between them", "VK-GL-CTS box strides", "those that a ray meets are offered",
-         Demand::must, control, box_strides},
+        {"K17", topic, "boxes with bytes between them", "VK-GL-CTS box strides",
+         "the boxes that a ray meets are offered", Demand::must, control, box_strides},
     };
 }
 

@@ -92,7 +92,7 @@ void empty_intervals(CaseRun& run) {
     run.check_hits(scene_of(random_triangles(run.draws(), usual_triangle_count)), shots);
 }
 
-// What lies behind is not hit.
+// Triangles behind the origin are not hit.
 void behind(CaseRun& run) {
     std::vector<Shot> shots = random_shots(run.draws(), run.rays());
     for (Shot& shot : shots) shot.ray.origin = run.draws().point(1);
@@ -107,16 +107,16 @@ std::vector<Case> limit_cases() {
     return {
         {"K73", topic, "rays that end, or begin, where a triangle was hit", "VK-GL-CTS t range",
          "no hit at t_min or t_max or beyond", Demand::must, forgets_limits, at_the_ends},
-        {"K74", topic, "the same, one step of float32 farther", "VK-GL-CTS t range", "the same hit again",
-         Demand::should, wavers, beyond_the_ends},
+        {"K74", topic, "the same, one float32 step farther", "VK-GL-CTS t range", "the same hit again", Demand::should,
+         wavers, beyond_the_ends},
         {"K75", topic, "random t_min and t_max", "VK-GL-CTS t range", "hits are those of float64", Demand::must,
          forgets_limits, random_limits},
         {"K76", topic, "the same, all candidates refused", "VK-GL-CTS t range",
-         "those between t_min and t_max are offered", Demand::must, forgets_limits, candidates_between},
+         "candidates between t_min and t_max are offered", Demand::must, forgets_limits, candidates_between},
         {"K77", topic, "t_min = t_max", "VK-GL-CTS t range", "nothing is hit", Demand::must, forgets_limits,
          empty_intervals},
-        {"K78", topic, "rays that begin among triangles", "VK-GL-CTS t range", "what lies behind is not hit",
-         Demand::must, forgets_later_half, behind},
+        {"K78", topic, "rays that begin among triangles", "VK-GL-CTS t range",
+         "triangles behind the origin are not hit", Demand::must, forgets_later_half, behind},
     };
 }
 

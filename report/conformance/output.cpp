@@ -35,7 +35,7 @@ void print_not_passed(std::ostream& out, const Record& record) {
         return;
     }
     if (record.fault_of == "twinray")
-        out << "a fault of ours, " << (frame::is_control(record) ? record.variant : "") << ": " << record.reason
+        out << "a fault of twinray, " << (frame::is_control(record) ? record.variant : "") << ": " << record.reason
             << '\n';
     else
         out << fact(record, "demand") << ' ' << fact(record, "what") << ": demanded: " << record.criterion << '\n';
@@ -53,8 +53,8 @@ void print_topic(std::ostream& out, const std::string& topic, std::span<const Re
     if (sum.cases == 0) return;
     out << "  " << std::left << std::setw(14) << topic << std::right << std::setw(3) << sum.passed << " of "
         << std::setw(2) << sum.cases << " pass, " << std::setw(9) << sum.items << " checks";
-    if (sum.must_failed) out << "; " << sum.must_failed << " fail what Vulkan demands";
-    if (sum.should_failed) out << "; " << sum.should_failed << " fail what it advises";
+    if (sum.must_failed) out << "; " << sum.must_failed << " break a requirement of Vulkan";
+    if (sum.should_failed) out << "; " << sum.should_failed << " break a recommendation of Vulkan";
     if (sum.not_run) out << "; " << sum.not_run << " not run";
     out << '\n';
     for (const Record& record : records)
@@ -69,8 +69,8 @@ void print(std::ostream& out, std::span<const Record> records) {
     Sum sum;
     for (const Record& record : records) sum.add(record);
     out << sum.passed << " of " << sum.cases << " cases pass over " << sum.items << " checks, and " << sum.controls
-        << " controls show their faults; " << sum.must_failed << " fail what Vulkan demands, " << sum.should_failed
-        << " what it advises, " << sum.not_run << " not run\n";
+        << " controls show their faults; " << sum.must_failed << " break a requirement of Vulkan, " << sum.should_failed
+        << " a recommendation, " << sum.not_run << " not run\n";
 }
 
 }  // namespace twinray::conformance

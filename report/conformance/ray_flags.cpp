@@ -115,8 +115,9 @@ std::vector<Case> ray_flag_cases() {
     return {
         {"K46", topic, "Opaque", kind, "nothing is offered", Demand::must, forgets_ray_flags, opaque},
         {"K47", topic, "NoOpaque", kind, "every triangle is offered", Demand::must, forgets_ray_flags, no_opaque},
-        {"K48", topic, "CullOpaque", kind, "nothing opaque is hit", Demand::must, forgets_ray_flags, culls_opaque},
-        {"K49", topic, "CullNoOpaque", kind, "nothing else is hit", Demand::must, forgets_ray_flags, culls_no_opaque},
+        {"K48", topic, "CullOpaque", kind, "no opaque triangle is hit", Demand::must, forgets_ray_flags, culls_opaque},
+        {"K49", topic, "CullNoOpaque", kind, "only opaque triangles are hit", Demand::must, forgets_ray_flags,
+         culls_no_opaque},
         {"K50", topic, "CullBackFacingTriangles", kind + ", culling", "backs are not hit", Demand::must,
          forgets_ray_flags, culls_back},
         {"K51", topic, "CullFrontFacingTriangles", kind + ", culling", "fronts are not hit", Demand::must,
@@ -124,11 +125,11 @@ std::vector<Case> ray_flag_cases() {
         {"K52", topic, "TerminateOnFirstHit", kind, "any hit, and no candidate after it", Demand::must,
          forgets_ray_flags, terminates},
         {"K53", topic, "SkipClosestHitShader", kind, "hits of a query do not change", Demand::must, leaks,
-         skips_closest_hit, false, "the flag leaves out the stage that tells of hits"},
+         skips_closest_hit, false, "the flag skips the stage that reports hits"},
         {"K54", topic, "SkipTriangles", kind, "no triangle is hit", Demand::must, forgets_ray_flags, skips_triangles,
          true},
         {"K55", topic, "SkipAABBs", kind, "no box is offered", Demand::must, forgets_ray_flags, skips_boxes, true},
-        {"K56", topic, "flags that may stand together", kind, "each does what it does alone", Demand::must,
+        {"K56", topic, "flags that may be combined", kind, "each works as it does alone", Demand::must,
          forgets_ray_flags, together},
     };
 }

@@ -45,7 +45,7 @@ void fill(Record& record, const Tally& tally, double seconds) {
 
 std::string reason_of(const Tally& tally) {
     if (!tally.what.empty()) return tally.what;
-    return text(tally.faults, " of ", tally.n, " are not as they should be");
+    return text(tally.faults, " of ", tally.n, " are wrong");
 }
 
 std::uint64_t seed_of(const Case& row, std::uint64_t seed, std::uint64_t round) {
@@ -90,7 +90,7 @@ class Runner {
         if (!guarded(record, [&] { run_case(row, record); })) return false;
         Record control = blank(row, way_, settings_);
         control.variant = control_variant(row);
-        control.criterion = "control: must show faults, which proves that the case sees them";
+        control.criterion = "control: must show faults, which proves that the case detects them";
         return guarded(control, [&] { run_control(row, control); });
     }
 

@@ -65,8 +65,8 @@ void print(std::ostream& out, const char* who, bool is_hit, uint instance, uint 
 
 std::vector<Answer> print_answers(std::ostream& out, const Stage& stage, frame::Devices& devices) {
     std::vector<Answer> answers;
-    out << "What the accelerators of " << devices.context(frame::Backend::software).properties().name
-        << " answer at level " << stage.replay.level << "\n";
+    out << "Answers of the accelerators on " << devices.context(frame::Backend::software).properties().name
+        << " at level " << stage.replay.level << "\n";
     for (const frame::Backend backend : frame::all_backends) {
         const frame::Configuration configuration{backend, level_of(stage.replay)};
         const std::string name(name_of(backend));
@@ -85,7 +85,7 @@ std::vector<Answer> print_answers(std::ostream& out, const Stage& stage, frame::
 std::vector<TriangleId> print_truth(std::ostream& out, const Stage& stage) {
     const Ray& ray = stage.replay.ray;
     const ReferenceHit closest = stage.reference.closest_hit(ray);
-    out << "What is true\n";
+    out << "Correct answer\n";
     print(out, "float64", closest.hit, closest.instance, closest.primitive, closest.t);
     out << (is_certain(stage.reference, ray, closest) ? ", for certain\n" : "; rounding could decide otherwise\n");
     const auto exact = stage.exact_reference.closest_hit(ray);
@@ -102,21 +102,21 @@ std::vector<TriangleId> print_truth(std::ostream& out, const Stage& stage) {
     return exact->triangles;
 }
 
-// What the class of an answer means.
+// Explains the class of an answer.
 const char* meaning(HitClass kind) {
     switch (kind) {
         case HitClass::agree: return "it is the reference's answer";
-        case HitClass::tie: return "another triangle at the same distance, within rounding: either is right";
+        case HitClass::tie: return "another triangle at the same distance, within rounding; both are correct";
         case HitClass::boundary:
         case HitClass::boundary_hw_miss:
             return "a silhouette or a rim is nearer to the ray than float32 rounding, which may decide either way";
         case HitClass::unspecified:
-            return "Vulkan promises nothing here: unshared edges, or t at an end of the interval";
-        case HitClass::invalid_input: return "nobody may trace this ray, so that it must miss";
+            return "Vulkan guarantees nothing here: unshared edges, or t at an end of the interval";
+        case HitClass::invalid_input: return "this ray is invalid, so it must miss";
         case HitClass::sw_leak:
         case HitClass::hw_leak:
-            return "no rounding of the ray excuses it: triangles that share their edges close the way, and the ray "
-                   "slipped between them";
+            return "rounding of the ray does not explain it: triangles that share their edges close the way, and the "
+                   "ray slipped between them";
         case HitClass::sw_false:
         case HitClass::hw_false:
             return "the ray misses the reported triangle by more than rounding, or t is out of range";
@@ -187,11 +187,11 @@ void print_path(std::ostream& out, const char* tree, const std::vector<Box>& pat
     }
 }
 
-// What the tests in float32 are to the level that was asked.
+// Explains how the float32 tests relate to the level of the replay.
 const char* arithmetic_of(Level level) {
     switch (level) {
-        case Level::fast: return "as SwTlas computes them at watertight; fast has others (Moeller-Trumbore)";
-        case Level::certified: return "which only leave out what is far; certified decides as the exact lines do";
+        case Level::fast: return "as SwTlas computes them at watertight; fast uses Moeller-Trumbore tests instead";
+        case Level::certified: return "which only reject distant triangles; certified decides as the exact lines do";
         default: return "as SwTlas computes them";
     }
 }
@@ -243,13 +243,13 @@ void Explainer::print_test(std::ostream& out, exact::TriangleId triangle) const 
     if (intersect_triangle_signed(leaf->v0, leaf->v1, leaf->v2, space, hit))
         out << "    float32: hit at t = " << hit.t << ", u = " << hit.u << ", v = " << hit.v << '\n';
     else
-        out << "    float32: the ray passes, or begins in the triangle's plane or behind it\n";
+        out << "    float32: the ray misses, or begins in the triangle's plane or behind it\n";
     if (const auto crossing = exact::crossing(line, active->vertices64())) {
         const char* where[] = {"inside", "on an edge", "at a vertex"};
         out << "    exactly: hit at t = " << exact::rounded(crossing->t) << ", "
             << where[static_cast<std::size_t>(crossing->incidence)] << '\n';
     } else {
-        out << "    exactly: the ray passes\n";
+        out << "    exactly: the ray misses\n";
     }
 }
 
@@ -284,11 +284,11 @@ bool show(const std::filesystem::path& file, frame::Devices& devices, std::ostre
     const Explainer explainer(stage.scene, stage.reference, replay.ray, level_of(replay));
     out << "Triangle tests in float32, " << arithmetic_of(level_of(replay)) << ", in units of the mesh's size\n";
     for (const TriangleId& triangle : involved) explainer.print_test(out, triangle);
-    out << "Boxes, of SwTlas's binary trees, which layout compressed4 rounds outwards; those of the driver cannot be "
-           "seen\n";
+    out << "Boxes of SwTlas's binary trees, which layout compressed4 rounds outwards; the driver's boxes are not "
+           "accessible\n";
     for (const TriangleId& triangle : involved) explainer.print_boxes(out, triangle);
 
-    out << "RayResult\n";
+    out << "Result\n";
     bool is_fault = false;
     for (const Answer& answer : answers) {
         out << "  " << std::left << std::setw(12) << name_of(answer.configuration.backend)

@@ -28,7 +28,7 @@ struct Group {
     bool is_disturbed() const {
         return std::ranges::any_of(records, [](const Record* r) { return r->time && r->time->is_disturbed(); });
     }
-    // The worst of them: of ours before of the driver's, before what passed.
+    // The worst of them: a fault of twinray, then one of the driver, then a pass.
     const Record& worst() const {
         const auto rank = [](const Record* record) {
             return !record->pass ? 0 : *record->pass ? 1 : record->fault_of == "twinray" ? 3 : 2;
@@ -184,7 +184,7 @@ void write_not_run(std::ostream& out, const PageInput& input) {
     for (const Record& record : input.records)
         if (!record.was_run) groups[{record.backend + ' ' + record.level, record.reason}].insert(record.case_id);
     if (groups.empty()) {
-        out << "<p>Every case ran on every accelerator and level that was asked for.</p>\n";
+        out << "<p>Every case ran on every selected accelerator and level.</p>\n";
         return;
     }
     out << "<div class=\"wide\"><table><tr><th>on</th><th>cases</th><th>why</th></tr>\n";

@@ -45,7 +45,7 @@ struct Suspicion {
 // So many of n, before and now.
 struct Counted {
     std::uint64_t before = 0, n_before = 0, now = 0, n_now = 0;
-    // Of the rate: above 0 where it rose.
+    // The change of the rate: above 0 if it rose.
     double rise() const {
         return static_cast<double>(now) * static_cast<double>(n_before) -
                static_cast<double>(before) * static_cast<double>(n_now);
@@ -128,7 +128,7 @@ class Comparing {
         result_.compared = pairs_.size();
         result_.only_before = known.size();
         result_.only_now = only_now.size();
-        // What is not run has no settings, so that it corresponds to nothing that has.
+        // A record that did not run has no settings, so it corresponds to none that has.
         for (const Record* record : only_now)
             if (!record->was_run && std::ranges::any_of(known, [&](const auto& was) {
                     return was.second->was_run && asks_of_one(*was.second, *record);
@@ -159,7 +159,9 @@ class Comparing {
         return suspicion_of(what, kind, sum);
     }
 
-    void add_lost(const Record& record) { add(Change::Kind::worse, record, "was run, and is not: " + record.reason); }
+    void add_lost(const Record& record) {
+        add(Change::Kind::worse, record, "ran before, and no longer runs: " + record.reason);
+    }
 
     void add(Change::Kind kind, const Record& record, const std::string& how) {
         result_.changes.push_back({kind, name_of(record), how});
@@ -178,7 +180,8 @@ class Comparing {
             add(Change::Kind::worse, *now, "a fault of twinray: " + now->reason + now->example);
         } else if (asks_the_same && now->n < few && before->pass != now->pass && before->pass && now->pass) {
             add(*now->pass ? Change::Kind::better : Change::Kind::worse, *now,
-                *now->pass ? "did not pass, and does" : "passed, and does not: " + now->reason + now->example);
+                *now->pass ? "did not pass before, and passes now"
+                           : "passed before, and no longer passes: " + now->reason + now->example);
         } else if (is_users_kernel(*now)) {
             for (const auto& [kind, counted] : counts_of(*before, *now)) {
                 if (counted.before + counted.now == 0) continue;
@@ -241,12 +244,12 @@ class Comparing {
         suspicions_.push_back(
             {{mean > 0 ? Change::Kind::slower : Change::Kind::faster,
               "times of " + backend + (level.empty() ? "" : ' ' + level),
-              with_interval(ratio.ratio, ratio.ratio_95, 3) + " times as long, beside all times together"},
+              with_interval(ratio.ratio, ratio.ratio_95, 3) + " times as long, relative to all times together"},
              (1 + within) / (1 + static_cast<double>(draws))});
     }
 
     std::vector<Pair> pairs_;
-    // What: the kinds, each by case.
+    // The kinds, each by case.
     std::map<std::string, std::map<std::string, std::map<std::string, Counted>>> by_case_;
     std::vector<Suspicion> suspicions_;
     Comparison result_ = {};

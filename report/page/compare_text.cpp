@@ -75,7 +75,7 @@ void print_side_by_side(std::ostream& out, std::span<const NamedReport> reports)
     }
     out << "\n| driver | answers | cases |";
     for (const Mistake mistake : all_mistakes) out << ' ' << name_of(mistake) << " |";
-    out << " own structures: fail what Vulkan demands; advises | time over SwTlas |\n|---|---|---|";
+    out << " own structures: requirements broken; recommendations broken | time over SwTlas |\n|---|---|---|";
     for (std::size_t i = 0; i < all_mistakes.size(); ++i) out << "---|";
     out << "---|---|\n";
     for (const NamedReport& report : reports) print_rows(out, report.records);
@@ -89,13 +89,13 @@ void print_comparison(std::ostream& out, const Comparison& comparison) {
         out << "  times of " << std::left << std::setw(24) << time.backend + ' ' + time.level
             << with_interval(time.ratio, time.ratio_95, 3) << " over " << time.measurements << " measurements\n";
     out << "  all times together: " << number(comparison.drift, 3)
-        << " times as long, which is taken out of those above\n  " << comparison.compared << " measurements compared, "
-        << comparison.only_before << " only before, " << comparison.only_now << " only now; " << comparison.tests
-        << " tests, which report a change where there is none in " << number(100 * false_alarms)
-        << " % of comparisons at most\n  "
+        << " times as long; the ratios above are relative to this\n  " << comparison.compared
+        << " measurements compared, " << comparison.only_before << " only before, " << comparison.only_now
+        << " only now; " << comparison.tests << " tests, which report a change where there is none in at most "
+        << number(100 * false_alarms) << " % of comparisons\n  "
         << (comparison.has_one_seed
                 ? ""
-                : "their seeds differ, and so do their scenes: rates are compared over all cases together\n  ")
+                : "the seeds differ, and so do the scenes: rates are compared over all cases together\n  ")
         << (comparison.is_worse()        ? "verdict: worse"
             : comparison.changes.empty() ? "verdict: no change beyond noise"
                                          : "verdict: changed, and nothing is worse")

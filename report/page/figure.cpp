@@ -60,8 +60,8 @@ Figure levels_figure(std::span<const Record> records) {
     Figure figure{.id = "levels",
                   .title = "Error of t against run time",
                   .sentence =
-                      "Left is faster, down is more exact; the line joins what nothing beats in both. Each point "
-                      "is a level of an accelerator, over all cases that measured it.",
+                      "Left is faster, and lower is more accurate. The line joins the points that no other point beats "
+                      "in both. Each point is one level of an accelerator, over all cases that measured it.",
                   .x_label = "time of a trace over SwTlas at watertight (geometric mean, 95 %)",
                   .y_label = "error of t in ulp, 99th percentile"};
     std::vector<FigurePoint> all;
@@ -83,9 +83,9 @@ Figure leaks_figure(std::span<const Record> records) {
     Figure figure{.id = "leaks",
                   .title = "Rays lost at shared edges and vertices",
                   .sentence =
-                      "Each ray is aimed at an edge or a vertex of a closed surface and must hit. An arrow to the "
-                      "left: none was lost, and the mark is the largest rate that this leaves possible (95 %). Each "
-                      "case counts as one.",
+                      "Each ray is aimed at an edge or a vertex of a closed surface and must hit. An arrow to the left "
+                      "means that no ray was lost; its mark is the largest rate that this leaves possible (95 %). Each "
+                      "case has the same weight.",
                   .x_label = "lost rays per million",
                   .is_log_y = false};
     for (const char* backend : {"sw", "hw", "hw-pipeline"})
@@ -110,10 +110,10 @@ Figure leaks_figure(std::span<const Record> records) {
 
 Figure paths_figure(std::span<const Record> records) {
     Figure figure{.id = "paths",
-                  .title = "Error of path traced pictures against seconds",
+                  .title = "Error of path-traced pictures against seconds",
                   .sentence =
-                      "The Cornell box with both ways of sampling (MIS): the error falls as samples are added; "
-                      "how far left a line lies is how fast its accelerator is.",
+                      "The Cornell box with both ways of sampling (MIS). The error falls as samples are added; a line "
+                      "farther left belongs to a faster accelerator.",
                   .x_label = "seconds a picture",
                   .y_label = "relative mean squared error"};
     for (const Record& record : records) {
@@ -147,16 +147,15 @@ std::string estimated_by(const Record& record) {
 }  // namespace
 
 Figure estimates_figure(std::span<const Record> records) {
-    Figure figure{
-        .id = "estimates",
-        .title = "Error of estimates against run time",
-        .sentence =
-            "By SwTlas, of what is known in closed form: view factors of two squares, light on a square in part "
-            "in shadow, the light of the sky and hours of sun there, the mean height of what is seen. Lower and "
-            "further left is better. In brackets: the slope of each line; the steeper, the more is gained by more "
-            "rays.",
-        .x_label = "milliseconds an estimate",
-        .y_label = "relative error (root mean square over seeds)"};
+    Figure figure{.id = "estimates",
+                  .title = "Error of estimates against run time",
+                  .sentence =
+                      "Estimates by SwTlas whose true value is known in closed form: view factors of two squares, "
+                      "light on a partly shadowed square, sky light and hours of sun there, and the mean height of the "
+                      "visible points. Lower and farther left is better. The slope of each line is in brackets; the "
+                      "steeper it is, the more additional rays gain.",
+                  .x_label = "milliseconds per estimate",
+                  .y_label = "relative error (root mean square over seeds)"};
     std::map<std::string, std::size_t> colors;
     for (const Record& record : records) {
         const std::string label = record.backend == "sw" && record.was_run ? estimated_by(record) : "";
@@ -171,16 +170,17 @@ Figure estimates_figure(std::span<const Record> records) {
 }
 
 Figure features_figure(std::span<const Record> records) {
-    Figure figure{.id = "features",
-                  .title = "What leaving out saves",
-                  .sentence =
-                      "The same rays of a scene that needs none of this, by kernels to which one feature after the "
-                      "other is added: what stands below costs a scene its time as soon as it is compiled in.",
-                  .x_label = "time over the kernel with what is needed alone",
-                  .is_log_x = false,
-                  .is_log_y = false,
-                  .mark_x = 1.0,
-                  .series = {{"", 0, false, {}}}};
+    Figure figure{
+        .id = "features",
+        .title = "What leaving out saves",
+        .sentence =
+            "The same rays in a scene that needs none of these features, traced by kernels to which one feature after "
+            "the other is added. A feature costs a scene this time as soon as it is compiled in.",
+        .x_label = "time relative to the kernel with only the needed features",
+        .is_log_x = false,
+        .is_log_y = false,
+        .mark_x = 1.0,
+        .series = {{"", 0, false, {}}}};
     for (const Record& record : records) {
         const double ratio = number_at(record.results, "of_needed");
         if (!record.was_run || record.case_id != "L04" || ratio <= 0 || text_at(record.params, "rays") != "closest")

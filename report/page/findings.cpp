@@ -149,10 +149,10 @@ std::string text_of(const Finding& finding) {
 std::string_view name_of(Mistake mistake) {
     switch (mistake) {
         case Mistake::leak: return "rays lost at edges and vertices";
-        case Mistake::false_hit: return "hits that are not there";
+        case Mistake::false_hit: return "hits that do not exist";
         case Mistake::wrong_distance: return "distances beyond the error bound";
         case Mistake::not_finite: return "hits that are not finite";
-        case Mistake::counted_wrong: return "shared edges counted other than once";
+        case Mistake::counted_wrong: return "shared edges not counted exactly once";
     }
     return "";
 }

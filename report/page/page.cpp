@@ -85,10 +85,10 @@ void write_method(std::ostream& out, const PageInput& input) {
     std::map<std::string, std::size_t> sums;
     for (const Record& record : input.records) ++sums[result_of(record)];
     out << "<p class=\"soft\">SwTlas is twinray's own traversal in compute shaders; fast, watertight, refined and "
-           "certified are levels of its triangle test. Of both, level watertight is meant where none is named; fast "
-           "promises nothing. Every answer was checked by a float64 reference, and by rational arithmetic where that "
-           "cannot tell. A rate is the mean of the rates of its cases, each of which counts as one, so that few rays "
-           "of one case make its bound wide. In brackets are 95 % intervals. "
+           "certified are levels of its triangle test. Where no level is named, it is watertight, for both "
+           "accelerators; fast guarantees nothing. A float64 reference checked every answer, and rational arithmetic "
+           "did where float64 cannot decide. A rate is the mean of the rates of its cases. Each case has the same "
+           "weight, so a case with few rays widens the bound. Brackets contain 95 % confidence intervals. "
         << "Suite " << escaped(input.suite);
     if (input.seconds > 0) out << ", " << number(input.seconds, 3) << " s";
     out << ". By accelerator and level, measurements: ";
@@ -100,10 +100,10 @@ void write_method(std::ostream& out, const PageInput& input) {
     out << '.';
     if (const double others = most_of_others(input.records); others > 0)
         out << " Times with &#8224; were disturbed: other programs used up to " << number(100 * others, 2)
-            << " % of the processors meanwhile.";
+            << " % of the processors at that time.";
     for (const std::string& kind : input.reproducers)
-        out << (&kind == &input.reproducers.front() ? " For the driver's tracker: " : ", ") << "<a href=\"reproducers/"
-            << escaped(kind) << "/report.md\">" << escaped(kind) << " in a C program</a>";
+        out << (&kind == &input.reproducers.front() ? " For the driver's issue tracker: " : ", ")
+            << "<a href=\"reproducers/" << escaped(kind) << "/report.md\">" << escaped(kind) << " in a C program</a>";
     out << (input.reproducers.empty() ? "" : ".")
         << " Raw data: <a href=\"report.csv\">report.csv</a>, <a href=\"report.jsonl\">report.jsonl</a>.</p>\n"
         << "</header>\n";
@@ -157,10 +157,11 @@ void write_costs(std::ostream& out, const PageInput& input) {
     for (const Record& record : input.records) {
         if (number_at(record.results, "ms_at_1_percent") <= 0) continue;
         if (!std::exchange(has_head, true))
-            out << "<details id=\"costs\"><summary>What an error of 1 % and of 0.1 % costs</summary>\n"
-                   "<p class=\"soft\">By the law of error over time that fits the measured amounts of work, up to a "
-                   "hundred times those.</p>\n<div class=\"wide\"><table><tr><th>case</th><th>of</th><th>by</th>"
-                   "<th>error over rays, slope</th><th>ms at 1 %</th><th>ms at 0.1 %</th></tr>\n";
+            out << "<details id=\"costs\"><summary>What an error of 1 % and of 0.1 % costs</summary>\n<p "
+                   "class=\"soft\">Extrapolated with the law of error over time that fits the measured amounts of "
+                   "work, to at most a hundred times these amounts.</p>\n<div "
+                   "class=\"wide\"><table><tr><th>case</th><th>of</th><th>by</th><th>error over rays, slope</th><th>ms "
+                   "at 1 %</th><th>ms at 0.1 %</th></tr>\n";
         out << "<tr><td>" << escaped(title_of(input, record.case_id)) << "</td><td>"
             << escaped(settings_and_variant(record)) << "</td><td>" << escaped(record.backend) << "</td><td>"
             << number(number_at(record.results, "slope"), 2) << "</td><td>" << cost_text(record, "ms_at_1_percent")
@@ -192,9 +193,9 @@ void write_exact(std::ostream& out, const PageInput& input) {
                               is_users_kernel(record) && record.backend != "hw-pipeline";
         if (!is_shown) continue;
         if (!std::exchange(has_head, true))
-            out << "<h3 id=\"exact\">What is exact but for rounding</h3>\n<div class=\"wide\"><table><tr><th>case</th>"
-                   "<th>by</th><th>settings</th><th>n</th><th>error, 99th percentile "
-                   "(largest)</th><th>time</th></tr>\n";
+            out << "<h3 id=\"exact\">Exact results, except for rounding</h3>\n<div "
+                   "class=\"wide\"><table><tr><th>case</th><th>by</th><th>settings</th><th>n</th><th>error, 99th "
+                   "percentile (largest)</th><th>time</th></tr>\n";
         out << "<tr><td>" << escaped(title_of(input, record.case_id)) << "</td><td>" << escaped(record.backend)
             << "</td><td>" << escaped(settings_text(record)) << "</td><td>" << count_text(record.n) << "</td><td>"
             << escaped(error_text(record)) << "</td><td>" << escaped(time_text(record))
@@ -242,7 +243,7 @@ std::string page(const PageInput& input) {
         << "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>"
         << "<title>twinray report</title><style>" << page_style << "</style></head>\n<body>\n";
     if (input.records.empty()) {
-        out << "<p>No case was asked for.</p>\n";
+        out << "<p>No case was selected.</p>\n";
     } else {
         write_verdict(out, input, verdict_of(input.records));
         write_method(out, input);
@@ -250,9 +251,9 @@ std::string page(const PageInput& input) {
         write_figures(out, input);
         write_costs(out, input);
         write_exact(out, input);
-        out << "<h2 id=\"cases\">All cases</h2>\n<p class=\"soft\">Folded; the browser's search looks inside. Each row "
-               "is an accelerator and a level over all settings of the case; the error is the 99th percentile, of t in "
-               "ulp, the time in ns a ray, unless it says otherwise.</p>\n";
+        out << "<h2 id=\"cases\">All cases</h2>\n<p class=\"soft\">The browser's search also finds text in folded "
+               "sections. Each row is an accelerator and a level over all settings of the case. Unless stated "
+               "otherwise, the error is the 99th percentile of t in ulp, and the time is in ns per ray.</p>\n";
         write_case_tables(out, input);
         out << "<h2 id=\"not-run\">Not run</h2>\n";
         write_not_run(out, input);

@@ -98,11 +98,11 @@ void add_own_structures(Verdict& verdict, std::span<const Record> records) {
         {kind, "Acceleration structures",
          text(kind == Sentence::Kind::not_measured ? "not measured: " : "", results.run.size(), " of ", cases,
               " cases of builds, updates, copies, flags and candidates ran; ", ids_text(results.failed_by_driver),
-              " fail what Vulkan demands, ", ids_text(results.not_as_advised), " what it advises.")});
+              " break a requirement of Vulkan, ", ids_text(results.not_as_advised), " a recommendation.")});
 }
 
 std::string_view mark_of(const Speed& speed) {
-    return speed.is_disturbed ? " (disturbed: other programs used the processors, so do not rely on it)" : "";
+    return speed.is_disturbed ? " (disturbed: other programs used the processors, so the figure is not reliable)" : "";
 }
 
 void add_speed(Verdict& verdict, std::span<const Speed> speeds, std::string_view driver) {
@@ -133,10 +133,10 @@ std::size_t faults_of(std::span<const Record> records, std::string_view whose) {
 std::string_view wrong_of(Mistake mistake) {
     switch (mistake) {
         case Mistake::leak: return "loses rays at edges and vertices";
-        case Mistake::false_hit: return "reports hits that are not there";
-        case Mistake::wrong_distance: return "gets distances wrong";
-        case Mistake::not_finite: return "answers with numbers that are not finite";
-        case Mistake::counted_wrong: return "counts shared edges other than once";
+        case Mistake::false_hit: return "reports hits that do not exist";
+        case Mistake::wrong_distance: return "returns wrong distances";
+        case Mistake::not_finite: return "returns numbers that are not finite";
+        case Mistake::counted_wrong: return "does not count shared edges exactly once";
     }
     return "";
 }
@@ -147,9 +147,9 @@ std::string wrongs_of(std::span<const Record> records, std::span<const Finding> 
     for (const Finding& finding : findings)
         if (finding.backend == driver && finding.has_faults()) wrongs.emplace_back(wrong_of(finding.mistake));
     if (!results_of(records, "K").failed_by_driver.empty())
-        wrongs.push_back("fails what Vulkan demands of acceleration structures");
+        wrongs.push_back("breaks requirements of Vulkan on acceleration structures");
     if (wrongs.empty()) {
-        // Of cases that no finding counts; what Vulkan only advises is no fault.
+        // Counts cases that no finding counts; a broken recommendation of Vulkan is no fault.
         const auto faults = std::ranges::count_if(
             records, [](const Record& record) { return record.fault_of == "driver" && !is_only_advised(record); });
         return faults == 0 ? "" : text("is wrong in ", faults, faults == 1 ? " measurement" : " measurements");
@@ -166,9 +166,9 @@ std::string headline_of(const Verdict& verdict, const std::string& wrongs, std::
         headline =
             text("twinray is wrong in ", faults_of_ours, faults_of_ours == 1 ? " measurement. " : " measurements. ");
     if (!verdict.has_driver)
-        headline += "This driver traces no rays by itself: SwTlas alone was checked.";
+        headline += "This driver has no ray tracing of its own, so only SwTlas was checked.";
     else if (wrongs.empty())
-        headline += "No fault of this driver's ray tracing was seen.";
+        headline += "This driver's ray tracing showed no fault.";
     else
         headline += "This driver " + wrongs + '.';
     return headline + text(has_all ? " All " : " Only ", has_all ? "" : text(verdict.cases_run, " of "), verdict.cases,

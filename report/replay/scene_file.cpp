@@ -139,8 +139,8 @@ Scene load_traced_scene(const std::filesystem::path& file, const Replay& replay)
     if (hash == replay.scene_hash) return scene;
     Scene as_written = load_scene(path, dvec3(0));
     if (hash_of(as_written) == replay.scene_hash) return as_written;
-    fail("replay '", file.string(), "': scene '", path.string(), "' is not the one that was traced: its hash is ", hash,
-         ", not ", replay.scene_hash);
+    fail("replay '", file.string(), "': scene '", path.string(), "' is not the scene that was traced: its hash is ",
+         hash, ", not ", replay.scene_hash);
 }
 
 }  // namespace twinray::replay

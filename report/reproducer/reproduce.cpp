@@ -21,15 +21,15 @@ bool is_leak_at_edges(const Reproduction& found) { return found.kind == HitClass
 const char* summary(const Reproduction& found) {
     switch (found.kind) {
         case HitClass::hw_leak:
-            return found.answer.hit ? "a closest hit is not the closest: the ray passes through nearer triangles"
-                                    : "a ray passes through triangles that close its way, and misses";
-        case HitClass::hw_false: return "a hit names a triangle that the ray passes, or a t outside of its interval";
+            return found.answer.hit ? "a closest hit is not the closest: the ray meets nearer triangles"
+                                    : "a ray misses although it meets triangles that close its way";
+        case HitClass::hw_false: return "a hit names a triangle that the ray misses, or a t outside its interval";
         case HitClass::hw_t_err: return "the t of a hit is wrong by more than rounding in float32";
         default: return "t or the barycentric coordinates of a hit are not finite, or wrong by more than rounding";
     }
 }
 
-// What the Vulkan specification says of it, and how firmly.
+// The rule of the Vulkan specification, and how firm it is.
 const char* specification(const Reproduction& found) {
     if (is_leak_at_edges(found))
         return "Chapter *Ray Traversal*, section *Ray Intersection Candidate Determination*, *Watertightness*, for "
@@ -137,7 +137,7 @@ std::string page_text(const Reproduction& found, const replay::Replay& replay) {
     put_triangles(out, found.scene);
     out << "\nDecimals are rounded; `reproducer.c` and `scene.glb` hold every bit. The scene was reduced from "
         << found.triangles_before << " triangles"
-        << (found.was_cut_short ? " until the time was up: it may not be the smallest.\n" : ".\n")
+        << (found.was_cut_short ? " until the time limit, so it may not be the smallest.\n" : ".\n")
         << "\n## What the specification says\n\n"
         << specification(found)
         << (is_leak_at_edges(found) && has_unequal_winding(found.scene)
@@ -169,7 +169,8 @@ Reproduction reproduce(frame::Devices& devices, frame::Backend backend, const Sc
     found.answer = driver.answer(whole, ray);
     found.kind = class_of(ReferenceScene::of(whole), ray, found.answer);
     if (!is_fault_of_hardware(found.kind))
-        fail("the driver's own answer is ", name_of(found.kind), ", no fault, so there is nothing to reproduce");
+        fail("the driver's own answer is ", name_of(found.kind),
+             ", which is no fault, so there is nothing to reproduce");
 
     const auto is_late = [&] { return begin.seconds() > seconds; };
     const CaseTest shows_fault = [&](const FaultCase& smaller) {

@@ -28,7 +28,7 @@ void write_text(const fs::path& file, const std::string& words) { write_bytes(fi
 frame::Backend backend_of(const replay::Replay& replay) {
     for (const frame::Backend backend : frame::all_backends)
         if (frame::name_of(backend) == replay.backend && !frame::is_ours(backend)) return backend;
-    fail("a fault of '", replay.backend, "' is not the driver's: reproducers show faults of drivers");
+    fail("a fault of '", replay.backend, "' is not a fault of the driver; reproducers only show faults of drivers");
 }
 
 // Of the reduced fault, on the device of now.

@@ -23,12 +23,12 @@ CaseProgress progress_of(const Json& json) {
 
 SuiteState read_state(const std::filesystem::path& file, const std::string& key) {
     std::ifstream in(file);
-    if (!in) fail("progress '", file.string(), "' cannot be opened: there is no run to go on with");
+    if (!in) fail("progress '", file.string(), "' cannot be opened: there is no run to continue");
     SuiteState state{file, key, {}, 0};
     try {
         const Json json = parse_json<Json>(in);
         if (json.at("schema") != schema) fail("schema ", json.at("schema").dump(), " is not ", schema);
-        if (json.at("key") != key) fail("it was begun as ", json.at("key").dump(), ", and this is \"", key, '"');
+        if (json.at("key") != key) fail("it was started as ", json.at("key").dump(), ", and this is \"", key, '"');
         for (const auto& [id, progress] : json.at("cases").items()) state.cases[id] = progress_of(progress);
         state.seconds = json.at("seconds");
     } catch (const std::exception& error) {

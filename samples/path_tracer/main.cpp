@@ -69,7 +69,7 @@ int cross_check(const Options& options, const Ranks& ranks) {
 }
 
 void check(const Options& options, const Ranks& ranks) {
-    if (ranks.count() > 1) fail("under mpirun there is no --frames: start one run for each part of the frames");
+    if (ranks.count() > 1) fail("--frames does not work under mpirun: start one run for each range of frames");
     if (!is_image_file(options.output))
         fail("--frames: '", options.output.string(), "' must be a picture, .png or .exr");
 }
@@ -145,9 +145,10 @@ int render_frames(const Options& options, Ranks& ranks) {
     FrameRenderer renderer(options, ranks);
     for (uint frame = 0; frame < renderer.count(); ++frame)
         if (const int signal = renderer.render(frame)) {
-            std::fprintf(stderr,
-                         "path_tracer: interrupted in frame %u of %u, which lacks paths; those before it are whole\n",
-                         frame + 1, renderer.count());
+            std::fprintf(
+                stderr,
+                "path_tracer: interrupted in frame %u of %u, which is incomplete; the frames before it are complete\n",
+                frame + 1, renderer.count());
             return 128 + signal;
         }
     return 0;
@@ -202,8 +203,8 @@ std::vector<std::string> command_line(const Options& options) {
 // Becomes `twinray view` with this scene, camera and device: the command beside this program, else the one in PATH.
 // Throws Error if there is none.
 [[noreturn]] void view(const Options& options) {
-    if (options.scene.string().starts_with("builtin:")) fail("--view: '", options.scene.string(), "' is no file");
-    if ((options.width == 0) != (options.height == 0)) fail("--view: --width and --height go together");
+    if (options.scene.string().starts_with("builtin:")) fail("--view: '", options.scene.string(), "' is not a file");
+    if ((options.width == 0) != (options.height == 0)) fail("--view requires both --width and --height, or neither");
     std::vector<std::string> words = command_line(options);
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
@@ -213,7 +214,7 @@ std::vector<std::string> command_line(const Options& options) {
         std::filesystem::read_symlink("/proc/self/exe", none).parent_path() / "twinray";
     execv(beside.c_str(), arguments.data());
     execvp("twinray", arguments.data());
-    fail("--view: there is no command twinray, neither in '", beside.parent_path().string(), "' nor in PATH");
+    fail("--view: the command twinray is neither in '", beside.parent_path().string(), "' nor in PATH");
 }
 
 }  // namespace

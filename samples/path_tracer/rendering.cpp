@@ -147,7 +147,7 @@ class Display {
     // server: HOST:PORT, or only HOST for port 14158. Throws Error if nobody listens there.
     Display(const std::string& server, const std::string& name, uint width, uint height)
         : name_(name), socket_(connected_socket(address_of(server))) {
-        if (socket_ < 0) fail("--display-server ", server, ": nobody listens there; it must be HOST or HOST:PORT");
+        if (socket_ < 0) fail("--display-server ", server, ": no server listens there; it must be HOST or HOST:PORT");
         std::string payload = header(create_image, name_);
         put(payload, width);
         put(payload, height);
@@ -200,7 +200,8 @@ Film first_film(const Options& options, const Session& session, const std::files
     if (!options.resume) return film;
     if (!std::filesystem::exists(file)) {
         if (!options.quiet)
-            std::fprintf(stderr, "path_tracer: there is no '%s' to resume; begins anew\n", file.string().c_str());
+            std::fprintf(stderr, "path_tracer: there is no '%s' to resume; starting from the beginning\n",
+                         file.string().c_str());
         return film;
     }
     film.merge(load_film(file), "what is to be rendered", file.string());
@@ -288,7 +289,7 @@ class FilmRenderer {
             write_output();
             preview_.restart();
             if (!std::exchange(has_preview_, true) && !options_.quiet)
-                std::fprintf(stderr, "%s: there after %.1f s, coarse; it is replaced by better ones\n",
+                std::fprintf(stderr, "%s: written after %.1f s, still coarse; better pictures will replace it\n",
                              options_.output.string().c_str(), time_.elapsed());
         }
         if (display_ && display_due_.is_due()) {
@@ -305,7 +306,7 @@ class FilmRenderer {
     // A viewer sees this rank's part. If it has been closed, the rendering continues.
     void show() {
         if (display_ && !display_->show(result_.film.mean())) {
-            if (!options_.quiet) std::fprintf(stderr, "path_tracer: the display server has gone\n");
+            if (!options_.quiet) std::fprintf(stderr, "path_tracer: the display server has closed the connection\n");
             display_.reset();
         }
         display_due_.restart();

@@ -160,7 +160,7 @@ std::string cross_check_text(const Options& options, const Session& session, con
         out << "    SW " << name_of(kinds.first) << ", HW " << name_of(kinds.second) << ": " << count << '\n';
     if (result.classified < result.disagreeing)
         out << "    not classified: " << result.disagreeing - result.classified << '\n';
-    out << "  faults of ours (SW_LEAK, SW_FALSE, T_ERR)  " << result.faults_of_ours << '\n'
+    out << "  faults of twinray (SW_LEAK, SW_FALSE, T_ERR)  " << result.faults_of_ours << '\n'
         << "  differing pixels                     " << result.pictures.differing << " of " << result.pixel_count
         << '\n'
         << "  differing pixels without such a ray  " << result.pictures.unexplained << '\n'
@@ -181,7 +181,7 @@ void report_render(const Options& options, const Session& session, const Abstrac
     const RenderStats& stats = rendering.stats;
     const Film& film = rendering.film;
     if (stats.non_finite)
-        std::fprintf(stderr, "path_tracer: %llu contributions were NaN or infinite and are missing from the picture\n",
+        std::fprintf(stderr, "path_tracer: %llu contributions were NaN or infinite; the picture leaves them out\n",
                      static_cast<unsigned long long>(stats.non_finite));
     nlohmann::json record = render_json(options, session, accel, rendering);
     const std::string against = reference_text(options.reference, film, &record);
@@ -199,7 +199,7 @@ void report_render(const Options& options, const Session& session, const Abstrac
 
 void say_interrupted(const Rendering& rendering, const std::filesystem::path& checkpoint) {
     std::fprintf(stderr,
-                 "path_tracer: interrupted after %g paths per pixel; '%s' has them; --resume goes on from there\n",
+                 "path_tracer: interrupted after %g paths per pixel, which '%s' holds; --resume continues from there\n",
                  rendering.film.mean_samples(), checkpoint.string().c_str());
 }
 

@@ -30,7 +30,7 @@ Scene load_any(const Options& options) {
     if (name.rfind(builtin, 0) != 0) return load_scene(options.scene);
     if (name == builtin + "cornell-box") return cornell_box_scene();
     if (name == builtin + "sunflower") return sunflower_scene();
-    fail("'", name, "': unknown; there are builtin:cornell-box and builtin:sunflower");
+    fail("'", name, "': unknown; must be builtin:cornell-box or builtin:sunflower");
 }
 
 void print_notes(const Scene& scene, const Options& options) {
@@ -77,7 +77,7 @@ Crop crop_of(const std::vector<float>& window, uint width, uint height) {
     const uint y0 = edge(window[2], height), y1 = edge(window[3], height);
     if (x1 <= x0 || y1 <= y0)
         fail("--cropwindow ", window[0], ' ', window[1], ' ', window[2], ' ', window[3], ": no pixel of ", width, " x ",
-             height, " lies in it; X0 X1 Y0 Y1 are fractions, from left to right and from top to bottom");
+             height, " is inside; X0 X1 Y0 Y1 are fractions, from left to right and from top to bottom");
     return {x0, y0, x1 - x0, y1 - y0};
 }
 
@@ -87,7 +87,7 @@ uint filter_of(const std::string& name) {
 
 void set_lens(CameraRays& camera, const Options& options) {
     if (options.lens_radius > 0 && !options.focal_distance && options.look_at.empty())
-        fail("--lens-radius ", options.lens_radius, ": needs --focal-distance, or --look-at at what is to be sharp");
+        fail("--lens-radius ", options.lens_radius, ": requires --focal-distance, or --look-at at the point in focus");
     camera.lens_radius = options.lens_radius;
     if (options.look_at.empty() || options.focal_distance)
         camera.focal_distance = options.focal_distance.value_or(0);
@@ -130,7 +130,7 @@ StoppingRules make_rules(const Options& options) {
 Shard make_shard(const Options& options, const Ranks& ranks) {
     if (ranks.count() > 1) {
         if (!options.shard.empty() || options.target_error || !options.cross_check.empty())
-            fail("under mpirun there is no --shard, --target-error or --cross-check: ranks share the samples out");
+            fail("--shard, --target-error and --cross-check do not work under mpirun, where ranks share the samples");
         return {ranks.index(), ranks.count()};
     }
     if (options.shard.empty()) return {};

@@ -14,12 +14,15 @@ namespace twinray::samples {
 
 void add_device_options(CLI::App& app, DeviceOptions& options, const std::string& validation_help) {
     app.add_option("--accel", options.accel,
-                   "hw (ray tracing extensions), sw (compute), or auto: hw where the device has it and is no CPU")
+                   "accelerator: hw (ray tracing extensions), sw (compute shaders), or auto: hw if the device supports "
+                   "it and is not a CPU, else sw")
         ->check(CLI::IsMember({"auto", "sw", "hw"}))
         ->option_text("auto|sw|hw [auto]");
-    app.add_option("--device", options.device, "index, or a part of the name");
+    app.add_option(
+        "--device", options.device,
+        "index of the device or part of its name, as `twinray devices` prints them; default: the fastest device");
     app.add_flag("--validation", options.validation, validation_help);
-    app.add_flag("--quiet", options.quiet, "errors only");
+    app.add_flag("--quiet", options.quiet, "print only errors");
 }
 
 std::optional<int> parse(CLI::App& app, int argc, char** argv, const std::string& program) {
@@ -58,7 +61,7 @@ void report_warnings(const std::vector<std::string>& warnings, const std::filesy
     if (!is_quiet || is_strict)
         for (const std::string& warning : warnings) std::fprintf(stderr, "%s: %s\n", program.c_str(), warning.c_str());
     if (is_strict && !warnings.empty())
-        fail("'", scene.string(), "': ", warnings.size(), " warning(s), of which --strict allows none");
+        fail("'", scene.string(), "': ", warnings.size(), " warning(s), which --strict treats as errors");
 }
 
 }  // namespace twinray::samples

@@ -91,10 +91,10 @@ TEST_P(DeviceSurfaces, WhatCannotBeIsRefused) {
     };
     std::vector<DeviceAttribute> wrong = {{"normals", 4, false, {16}}};
     arrays.mesh.attributes = wrong;
-    refused("'normals' has 3 components a vertex, not 4");
+    refused("'normals' has 3 components per vertex, not 4");
     wrong = {{"uv0", 2, true, {16}}};
     arrays.mesh.attributes = wrong;
-    refused("a triangle");
+    refused("per triangle");
     wrong = {{"heat", 1, false, {}}};
     arrays.mesh.attributes = wrong;
     refused("device address 0 of its 'heat'");

@@ -82,8 +82,8 @@ TEST_P(Sync, NeverWaitsWhileTheQueueIsBusy) {
     EXPECT_TRUE(context().is_reached(busy));
 }
 
-// What a view reads is freed by the sync that ends it, not by the edit before: traces through the view may be submitted
-// in between.
+// Data that a view reads is freed by the sync that ends it, not by the edit before: traces through the view may be
+// submitted in between.
 TEST_P(Sync, WhatAViewReadsIsFreedByTheNextOne) {
     const std::uint64_t before = context().allocated_bytes();
     {
@@ -127,7 +127,7 @@ TEST_P(Sync, ACleanOneIsFree) {
     EXPECT_EQ(context().last_submission().value, done.value);
 }
 
-// What is in use while the GPU has not built yet; then what the rays hit.
+// The data in use before the GPU has built; then the hits of the rays.
 TEST_P(Sync, TheScratchBudgetBoundsWhatABuildTakes) {
     std::vector<Mesh> meshes;
     for (uint i = 0; i < 60; ++i) meshes.push_back(make_soup(1000 + i, i));
@@ -254,16 +254,16 @@ TEST_P(Sync, OwnCommandsAreSubmittedInTheOrderOfTheirSyncs) {
     second.reset();  // given up
     third->submit();
     EXPECT_EQ(closest(down(0.5f, 0.25f)).t, 8.0f);
-    // What was given up is not there.
-    EXPECT_NE(error_if_any([&] { other->sync(); }).find("were given up"), std::string::npos);
-    EXPECT_NE(error_if_any([&] { other->world_bound(); }).find("were given up"), std::string::npos);
+    // The discarded work does not exist.
+    EXPECT_NE(error_if_any([&] { other->sync(); }).find("were discarded"), std::string::npos);
+    EXPECT_NE(error_if_any([&] { other->world_bound(); }).find("were discarded"), std::string::npos);
     std::optional<Commands> last;
     last.emplace(context(), "last");
     accel().update_transform(handle, Transform::translation({0, 0, 4}));
     accel().sync(*last);
     last.reset();
     context().wait_for_gpu();
-    EXPECT_NE(error_if_any([&] { closest(down(0.5f, 0.25f)); }).find("were given up"), std::string::npos);
+    EXPECT_NE(error_if_any([&] { closest(down(0.5f, 0.25f)); }).find("were discarded"), std::string::npos);
 }
 
 }  // namespace

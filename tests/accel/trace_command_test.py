@@ -68,8 +68,8 @@ assert "the scene has no instance 'nowhere'" in run("--instance-masks", "nowhere
 for wrong in ["near", "near=", "near=256", "=1", "near=x"]:
     assert f"has '{wrong}', but must be NAME=BITS" in run("--instance-masks", wrong, scene="named.gltf", status=2)
 assert "--mask is '256', but must be a whole number at most 255" in run("--mask", "256", status=2)
-assert "--query all needs --counts" in run("--query", "all", status=2)
-assert "--counts is for --query all" in run("--counts", "counts", status=2)
+assert "--query all requires --counts" in run("--query", "all", status=2)
+assert "--counts requires --query all" in run("--counts", "counts", status=2)
 (here / "rays").write_bytes(b"12345")
 assert "'rays'" in run(status=1)
 
@@ -101,7 +101,7 @@ for accel in ["sw", "hw"]:
 assert json.loads((here / "far.jsonl").read_text().splitlines()[0])["origin"] == [500002, 5400002, 2]
 said = subprocess.run([twinray, "trace", "two.ply", "--rays", "rays.npy", "--hits", "hits"], capture_output=True, text=True, cwd=here)
 assert said.stderr.count("scene moved to local origin 500002 5400002 2\n") == 1, said.stderr
-# What float32 can hold of rays there is moved exactly.
+# Rays whose coordinates float32 can hold there are moved exactly.
 at = [(500001, 5400001, 0), (500003, 5400001, 0), (500000, 5400001, 0)]
 (here / "rays").write_bytes(b"".join(struct.pack("<8f", *origin, 0, 0, 0, 1, 9) for origin in at))
 run()

@@ -22,7 +22,7 @@ class IlluminationTest : public AnalysisTest {
 };
 TWINRAY_OVER_EVERY_ACCEL(IlluminationTest);
 
-// What does not depend on the accelerator.
+// Results that do not depend on the accelerator.
 class IlluminationRulesTest : public IlluminationTest {};
 TWINRAY_OVER_SOFTWARE(IlluminationRulesTest);
 
@@ -237,8 +237,9 @@ TEST_P(IlluminationRulesTest, WrongUseSaysWhatIsWrong) {
     };
     EXPECT_NE(error(scene, lit_along({0, 0, 0})).find("direction (0, 0, 0) must be"), std::string::npos);
     EXPECT_NE(error(scene, lit_along({0, NAN, 0})).find("must be finite"), std::string::npos);
-    EXPECT_NE(error(scene, lit_along({0, 0, 1}, 0)).find("0 cells a side"), std::string::npos);
-    EXPECT_NE(error(scene, lit_along({0, 0, 1}, 65536)).find("65536 cells a side; 1 to 65535"), std::string::npos);
+    EXPECT_NE(error(scene, lit_along({0, 0, 1}, 0)).find("0 cells per side"), std::string::npos);
+    EXPECT_NE(error(scene, lit_along({0, 0, 1}, 65536)).find("65536 cells per side; must be 1 to 65535"),
+              std::string::npos);
     EXPECT_NE(error(other, lit_along({0, 0, 1})).find("Faces 6 in 3"), std::string::npos);
     EXPECT_EQ(error(scene, lit_along({0, 0, 1e-300}, 1)), "");
     fill(scene_of({square(0)}));

@@ -21,7 +21,7 @@ class SkyTest : public AnalysisTest {
 };
 TWINRAY_OVER_EVERY_ACCEL(SkyTest);
 
-// What does not depend on the accelerator.
+// Results that do not depend on the accelerator.
 class SkyRulesTest : public SkyTest {};
 TWINRAY_OVER_SOFTWARE(SkyRulesTest);
 
@@ -185,8 +185,8 @@ TEST_P(SkyRulesTest, WrongUseSaysWhatIsWrong) {
     EXPECT_NE(error({{0, 0, 0}, 1}, 5).find("direction (0, 0, 0) must be"), std::string::npos);
     EXPECT_NE(error({{0, 0, 1}, -1}, 5).find("-1 hours"), std::string::npos);
     EXPECT_NE(error({{0, 0, 1}, NAN}, 5).find("nan hours"), std::string::npos);
-    EXPECT_NE(error({{0, 0, 1}, 1}, 0).find("0 of each; 1 to 1048576"), std::string::npos);
-    EXPECT_NE(error({{0, 0, 1}, 1}, 1048577).find("1048577 of each"), std::string::npos);
+    EXPECT_NE(error({{0, 0, 1}, 1}, 0).find("0 per face; must be 1 to 1048576"), std::string::npos);
+    EXPECT_NE(error({{0, 0, 1}, 1}, 1048577).find("1048577 per face"), std::string::npos);
     EXPECT_EQ(error({{0, 0, 1e-200}, 0}, 1), "");
     const Faces faces(context(), scene);
     expect_contains(error_of([&] { sky_light(accel(), scene, faces, dvec3(0), {}); }), "must be finite");

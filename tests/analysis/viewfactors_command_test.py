@@ -108,8 +108,8 @@ with tempfile.TemporaryDirectory() as folder:
             truth = 0.199825 if int(r["i"]) // 2 == int(r["j"]) // 2 else 0.200044
             expect(float(r["ci_low"]) - 0.002 < truth < float(r["ci_high"]) + 0.002, r)
     expect("excludes" in run(box, "--groups", groups, "--by", "mesh", fails=True), "one or the other")
-    for lines, words in [([(0, 0)], "face 1 is missing"), ([(0, 0), (0, 0)], "face 0 is there twice"),
-                         ([(432, 0)], "line 2: face 432; both are whole numbers from 0 to 431"), ([(0, 0.5)], "line 2: group 0.5")]:
+    for lines, words in [([(0, 0)], "face 1 is missing"), ([(0, 0), (0, 0)], "face 0 occurs twice"),
+                         ([(432, 0)], "line 2: face 432; both must be whole numbers from 0 to 431"), ([(0, 0.5)], "line 2: group 0.5")]:
         write_groups(lines)
         expect(words in run(box, "--groups", groups, fails=True), words)
 

@@ -93,7 +93,7 @@ assert abs(growth["growth"]["primary_ns_per_ray"]["per_doubling"] - (times[2] - 
 _, records = bench("--moves", "20", "--rounds", "1")
 assert records and all(r["refit_ms"] > 0 and r["rebuild_ms"] > 0 for r in records)
 
-# What features cost: steps hold more and more, and find the same.
+# The cost of features: steps hold more and more features, and find the same hits.
 said, records = bench("--validation", "--feature-costs", "--scene", "sphere:320", "--width", "16", "--rounds", "5", "--ray-kinds",
                       "incoherent,occlusion")
 for kind in KINDS[1:]:
@@ -103,7 +103,7 @@ for kind in KINDS[1:]:
     assert len({r["hits_hash"] for r in steps}) == 1 and steps[0]["hits_hash"] in said
     assert all(r["ns_per_ray"] > 0 and r["rounds"] == 5 for r in steps) and steps[0]["of_needed"] == 1
 # And what is kept: the least first, vertices alone where they move or levels are refined, no layout in less.
-kept = {r["keeping"]: r for r in records if "keeping" in r}
+kept = {r["configuration"]: r for r in records if "configuration" in r}
 assert list(kept)[0] == "needed" and "bytes/triangle" in said and all(r["build_ms"] > 0 for r in kept.values())
 assert kept["needed"]["total_bytes_per_triangle"] <= 1.01 * min(r["total_bytes_per_triangle"] for r in kept.values())
 assert {name for name, r in kept.items() if r["vertices_bytes_per_triangle"] > 0} == {
@@ -127,9 +127,9 @@ for quality in ("fast", "high", "ploc"):
 assert all(0 < r["used_bytes_per_triangle"] <= r["bytes_per_triangle"] and r["sah"] > 1 for r in records)
 assert "--scene" in bench("--trees", status=2)[0]
 
-# What is wrong is said.
+# Errors are reported.
 assert "'abc' is not a whole number" in bench("--scene", "sphere:abc", status=1)[0]
-assert "no backend's name has a part 'nobody'" in bench("--scene", "sphere:80", "--backends", "nobody", status=1)[0]
+assert "no backend's name contains 'nobody'" in bench("--scene", "sphere:80", "--backends", "nobody", status=1)[0]
 bench("--scene", "sphere:80", "--ray-kinds", "diffuse", status=2)
 bench("--scene", "sphere:80", "--ray-orders", "random", status=2)
 bench("--scene", "sphere:80", "--width", "12", status=2)

@@ -115,7 +115,7 @@ TEST(BenchScenes, BadNamesGetOneClearError) {
     expect_contains(error_of([] { make_scene("sphere:nan"); }), "'nan' is not");
     expect_contains(error_of([] { make_scene("sphere:"); }), "'' is not");
     expect_contains(error_of([] { make_scene("sphere:100 "); }), "'100 ' is not");
-    expect_contains(error_of([] { make_scene("instances:100"); }), "instances:KxN wants two numbers");
+    expect_contains(error_of([] { make_scene("instances:100"); }), "instances:KxN needs two numbers");
     expect_contains(error_of([] { make_scene("instances:0x100"); }), "'0' is not a whole number from 1 to 1000000");
     expect_contains(error_of([] { make_scene("no_such_file.ply"); }), "no_such_file.ply");
 }

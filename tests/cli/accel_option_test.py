@@ -50,7 +50,7 @@ assert device["auto"]["backend"] == ("sw" if device["kind"] == "CPU" or device["
 assert "--accel auto traces by " in run(twinray, "devices")
 assert record(twinray, "devices", env=NONE)["auto"]["backend"] == "sw"
 
-# What is needed: what a device lacks is what the list without the option says of it.
+# Requirements: the missing ones of a device are those of the list without the option.
 needs = record(twinray, "devices", "--requirements")
 assert needs["name"] == device["name"] and all(need["why"] for need in needs["requirements"]), needs
 assert [n["what"] for n in needs["requirements"] if n["of"] == "everything" and not n["has"]] == device["sw_missing"]
@@ -87,13 +87,13 @@ if device["auto"]["backend"] == "hw" or not device["hw_missing"]:
 of = record(twinray, "verify", "cube.ply", "--random", 500, "--aimed", 100, "--level", "certified")
 assert (of["level"], of["backend"]) == ("certified", "sw"), of
 
-# What the importer warns of is an error with --strict; without warnings it changes nothing.
+# Warnings of the importer are errors with --strict; without warnings it changes nothing.
 ply("odd.ply", CUBE + [(0, 1)])
 loads = [[twinray, *trace], [twinray, *commands[1]], [twinray, *commands[2]], [twinray, *commands[5]],
          [twinray, "distance", "cube.ply", "--random", 5], [twinray, "verify", "cube.ply", "--random", 10, "--aimed", 5], small]
 assert "twinray: warning: " in run(twinray, "distance", "odd.ply", "--random", 5)
 for command in loads:
     said = run(*["odd.ply" if word == "cube.ply" else word for word in command], "--strict", "--quiet", status=1)
-    assert said.splitlines()[-1].endswith("'odd.ply': 1 warning(s), of which --strict allows none"), said
+    assert said.splitlines()[-1].endswith("'odd.ply': 1 warning(s), which --strict treats as errors"), said
 run(twinray, *trace, "--strict", "--quiet")
 print("cli: accelerators are chosen, and told")

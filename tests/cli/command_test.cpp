@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Command lines: what is taken and refused, and what help, man pages and shells' completion tell of them. What shells
-// do with the scripts: cli_command_test.py.
+// Command lines: what is taken and refused, and what help, man pages and shells' completion tell of them.
+// cli_command_test.py tests what shells do with the scripts.
 #include <gtest/gtest.h>
 
 #include <sstream>
@@ -88,11 +88,11 @@ TEST(Parse, RefusalsNameOptionValueAndWhatIsAllowed) {
 
 TEST(Parse, RefusalsNameWhatIsMissingOrTooMuch) {
     EXPECT_EQ(refusal_of({}), "SCENE is required");
-    EXPECT_EQ(refusal_of({"a.ply", "b.ply"}), "'b.ply' is one word too many");
+    EXPECT_EQ(refusal_of({"a.ply", "b.ply"}), "'b.ply' is one argument too many");
     EXPECT_EQ(refusal_of({"a.ply", "--acel", "sw"}), "there is no option --acel; did you mean --accel?");
     EXPECT_EQ(refusal_of({"a.ply", "--zzz"}), "there is no option --zzz");
-    EXPECT_EQ(refusal_of({"a.ply", "--count"}), "--count wants N, and nothing follows");
-    EXPECT_EQ(refusal_of({"a.ply", "--count", "--quiet"}), "--count wants N, but --quiet follows");
+    EXPECT_EQ(refusal_of({"a.ply", "--count"}), "--count needs N, but nothing follows");
+    EXPECT_EQ(refusal_of({"a.ply", "--count", "--quiet"}), "--count needs N, but --quiet follows");
     EXPECT_EQ(refusal_of({"a.ply", "--count", "3", "--count", "4"}), "--count is given more than once");
     EXPECT_NE(refusal_of({"a.ply", "--count", "3", "--up", "1", "2"}).find("--up"), std::string::npos);
 }

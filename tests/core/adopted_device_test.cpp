@@ -123,7 +123,7 @@ TEST_F(AdoptedDeviceTest, AnExtensionThatWasNotEnabledIsNotBelieved) {
     ASSERT_TRUE(host_.create());
     if (!host_.supported.acceleration_structure) TWINRAY_LACKS("ray_tracing", "no ray tracing extensions");
     host_.device.enabled = host_.supported;
-    expect_refusal("VK_KHR_acceleration_structure is told to be enabled but the VkDevice was created without");
+    expect_refusal("VK_KHR_acceleration_structure is listed as enabled, but the VkDevice was created without");
 }
 
 TEST_F(AdoptedDeviceTest, WhatIsNotEnabledIsRefusedInWords) {

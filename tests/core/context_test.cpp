@@ -52,7 +52,7 @@ TEST(ContextPipelines, AreKeptBetweenRuns) {
     const std::filesystem::path file = std::filesystem::directory_iterator(folder)->path();
     std::ofstream(file) << "damaged";
     { const Context context(desc); }
-    EXPECT_NE(said.find("not pipelines of this driver"), std::string::npos) << said;
+    EXPECT_NE(said.find("its pipelines are not of this driver"), std::string::npos) << said;
     EXPECT_GE(std::filesystem::file_size(file), sizeof(VkPipelineCacheHeaderVersionOne)) << "written anew";
 }
 

@@ -70,7 +70,7 @@ TEST_F(PipelineStoreTest, RefusesWhatIsNotOfItsDriver) {
     write_file(store().file(), std::array{std::as_bytes(std::span(others))});
     EXPECT_EQ(said_, "");
     EXPECT_TRUE(load(store()).empty());
-    EXPECT_NE(said_.find("not pipelines of this driver"), std::string::npos) << said_;
+    EXPECT_NE(said_.find("its pipelines are not of this driver"), std::string::npos) << said_;
     EXPECT_NE(said_.find(store().file().string()), std::string::npos) << said_;
 }
 

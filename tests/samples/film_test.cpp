@@ -136,9 +136,9 @@ TEST(Film, RefusesWhatIsNotOfItsPicture) {
     const std::vector<vec3> samples = some_samples(3, 1);
     Film film = film_of(samples, 0, here);
     EXPECT_EQ(test::error_of([&] { film.merge(film_of(samples, 3, there), "a.film", "b.film"); }),
-              "'b.film' is not of the same picture as 'a.film': seed is 2, not 1");
+              "'b.film' is not a film of the same picture as 'a.film': seed is 2, not 1");
     EXPECT_EQ(test::error_of([&] { film.merge(film_of(samples, 2, here), "a.film", "b.film"); }),
-              "'b.film' and 'a.film' both hold samples 2 to 2 of each pixel; each sample may count once");
+              "'b.film' and 'a.film' both hold samples 2 to 2 of each pixel; a sample may count only once");
     EXPECT_EQ(difference({{"a", "1"}}, {{"b", "2"}}), "b is missing, not 2; a is 1, not there");
 }
 

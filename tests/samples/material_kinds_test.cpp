@@ -174,9 +174,10 @@ TEST(StoppedLights, AreNamedWithWhatStopsThem) {
     scene.lights = {{.name = "sun"}};
     const std::vector<std::string> said = stopped_lights(scene);
     ASSERT_EQ(said.size(), 2u);
-    EXPECT_EQ(said[0],
-              "light of 'sun' cannot pass material 'rough': rough glass scatters it, and no path finds a light without "
-              "size");
+    EXPECT_EQ(
+        said[0],
+        "light of 'sun' cannot pass material 'rough': rough glass scatters it, and no path can reach a light without "
+        "size");
     EXPECT_NE(said[1].find("'thick': the boundary of a volume bends it"), std::string::npos) << said[1];
     scene.lights = {{.name = "sun"}, {.name = "bulb"}, {.name = "lamp"}};
     EXPECT_NE(stopped_lights(scene)[0].find("light of 'sun' and 2 others cannot"), std::string::npos);

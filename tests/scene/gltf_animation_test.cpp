@@ -369,7 +369,8 @@ const Fault animation_faults[] = {
          sampler(g)["output"] = g.add_floats("VEC4", {0, 0, 0, 1, 0, 0, 0, 0});
      },
      "the rotation at time 1 has length 0"},
-    {"DrivenTwice", [](auto& g) { animation(g)["channels"].push_back(channel(g)); }, "channel 1: drives what another"},
+    {"DrivenTwice", [](auto& g) { animation(g)["channels"].push_back(channel(g)); },
+     "channel 1: drives the same property as another"},
     {"WeightsOfNoTargets", [](auto& g) { channel(g)["target"]["path"] = "weights"; }, "without morph targets"},
     {"DrivesAMatrix",
      [](auto& g) {

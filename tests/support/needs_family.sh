@@ -13,7 +13,7 @@ status=0
 cat "$said"
 if ((status == 0)); then exit 0; fi
 if grep -q "^$family: not compared" "$said"; then exit 77; fi
-if grep -q "family '$family' is not here" "$said" && [[ ${TWINRAY_REQUIRE-} != *vulkan* || $family != navi* ]]; then
+if grep -q "family '$family' is not available" "$said" && [[ ${TWINRAY_REQUIRE-} != *vulkan* || $family != navi* ]]; then
     exit 77
 fi
 exit "$status"

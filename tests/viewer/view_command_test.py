@@ -95,7 +95,7 @@ for name, options in OTHERS.items():
     if has_hardware or name in ("steps", "factors"):
         compared(name, *options)
 
-# What is broken is seen, and only then the picture is written.
+# A broken picture is detected, and only then the picture is written.
 assert "differs" in compared("steps", "--layer", "depth", status=1)
 assert (here / "steps-unlike.png").exists()
 compared("geometry", "--layer", "primitive", status=1)
@@ -123,20 +123,20 @@ assert camera.split()[1:7] == bookmark.split()[4:10] and "--layer normal" in boo
 assert len(json.loads((here / "view.jsonl").read_text().splitlines()[-1])["frame_seconds"]) == 5
 run("scene.obj", *bookmark.split()[3:], "--quiet", "--reference", "frames/moved.png", "--threshold", "0")
 
-# What a layer says of faces.
+# The values of faces of a layer.
 run("scene.obj", *CAMERA, "--layer", "collisions", "--export", "contacts.csv", "--quiet")
 lines = (here / "contacts.csv").read_text().splitlines()
 classes = {line.split(",")[2] for line in lines[1:]}  # the pole touches the floor
 assert lines[0] == "instance,triangle,value" and classes == {"1", "5"}, lines
 run("scene.obj", *CAMERA, "--layer", "light", "--export", "light.glb", "--quiet")
 assert (here / "light.glb").read_bytes()[:4] == b"glTF"
-assert "only what layers" in run("scene.obj", *CAMERA, "--export", "x.csv", status=1)
+assert "only the layers" in run("scene.obj", *CAMERA, "--export", "x.csv", status=1)
 
 # Wrong use.
 assert "--pick" in run("scene.obj", *CAMERA, "--pick", "160", "1", "--screenshot", "x.png", status=2)
 assert "--up" in run("scene.obj", "--up", "1", "0", "0", "--screenshot", "x.png", status=2)
 assert "160 x 90" in run("scene.obj", *CAMERA, "--reference", "frames/small.png", "--headless", "1", status=1)
-assert "stands where it looks at" in run("scene.obj", "--camera", *"111111", "--screenshot", "x.png", status=1)
+assert "is the point that it looks at" in run("scene.obj", "--camera", *"111111", "--screenshot", "x.png", status=1)
 (here / "bad.txt").write_text("key A\nfly\n")
 assert "line 2" in run("scene.obj", "--play", "bad.txt", "-o", "frames", status=1)
 assert not (here / "x.png").exists()

@@ -54,7 +54,7 @@ std::optional<OpenEdge> find_open_edge(const Geometry64& geometry) {
 }
 
 ClosedMesh::ClosedMesh(const MeshView& mesh) : name_(mesh.name), geometry_(mesh) {
-    if (geometry_.active().empty()) fail("mesh '", name_, "' has no triangle with an area: it encloses nothing");
+    if (geometry_.active().empty()) fail("mesh '", name_, "' has no triangle with an area, so it encloses nothing");
     const std::optional<OpenEdge> open = find_open_edge(geometry_);
     if (!open) return;
     const auto& [a, b] = open->vertices;

@@ -44,10 +44,11 @@ LeakState read_state(const std::filesystem::path& file, const nlohmann::json& id
     } catch (const std::exception&) {
         state = {};
     }
-    if (!state.is_object()) fail("'", file.string(), "' holds no state of `twinray leaks`");
+    if (!state.is_object()) fail("'", file.string(), "' does not hold the state of a `twinray leaks`");
     for (const auto& [name, value] : identity.items())
         if (const nlohmann::json was = state.value(name, nlohmann::json()); was != value)
-            fail("'", file.string(), "' is of another run: its ", name, " is ", was.dump(), ", not ", value.dump());
+            fail("'", file.string(), "' belongs to another run: its ", name, " is ", was.dump(), ", not ",
+                 value.dump());
     try {
         const auto count = [&](const char* name) { return unsigned_of<std::uint64_t>(state.at(name)); };
         return {{count("rays"), count("leaks"), count("double_hits"), count("unspecified")}, state.at("seconds")};

@@ -24,7 +24,7 @@ double number_of(const Json& json) {
     if (word == "inf") return std::numeric_limits<double>::infinity();
     if (word == "-inf") return -std::numeric_limits<double>::infinity();
     if (word == "nan") return std::numeric_limits<double>::quiet_NaN();
-    fail("'", word, "' is no number");
+    fail("'", word, "' is not a number");
 }
 
 Json json_of(const Value& value) {

@@ -158,7 +158,7 @@ JsonLines read_json_lines(const std::filesystem::path& file) {
 std::string utc_now() {
     const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
     std::tm utc{};
-    if (!gmtime_r(&now, &utc)) fail("the system's clock shows no date: ", now);
+    if (!gmtime_r(&now, &utc)) fail("the system's clock has no date: ", now);
     char text[32];
     return {text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc)};
 }

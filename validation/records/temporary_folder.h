@@ -16,7 +16,7 @@ class TemporaryFolder {
   public:
     TemporaryFolder() {
         std::string name = (std::filesystem::temp_directory_path() / "twinray-XXXXXX").string();
-        if (!mkdtemp(name.data())) fail(name, ": no folder for temporary files; TMPDIR has to name one to write to");
+        if (!mkdtemp(name.data())) fail(name, ": cannot create temporary files; set TMPDIR to a writable folder");
         path_ = name;
     }
     ~TemporaryFolder() {

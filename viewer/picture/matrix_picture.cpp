@@ -59,7 +59,7 @@ Raster with_numbers(const Raster& matrix, std::size_t size, const MatrixLayout& 
 
 std::string pixel_text(const MatrixLayout& layout) {
     if (layout.entries_a_pixel == 1) return "";
-    return text(", a pixel is the mean of ", layout.entries_a_pixel, " x ", layout.entries_a_pixel, " entries");
+    return text(", each pixel is the mean of ", layout.entries_a_pixel, " x ", layout.entries_a_pixel, " entries");
 }
 
 }  // namespace

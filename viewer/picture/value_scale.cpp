@@ -45,13 +45,15 @@ std::string label_of(double value, double step) {
 
 ValueScale ValueScale::linear(double lo, double hi) {
     if (!(lo < hi) || !std::isfinite(lo) || !std::isfinite(hi) || !std::isfinite(hi - lo))
-        fail("scale of values: from ", lo, " to ", hi, "; the first must be less, and both finite");
+        fail("scale of values: from ", lo, " to ", hi,
+             "; the first must be less than the second, and both must be finite");
     return {lo, hi, false};
 }
 
 ValueScale ValueScale::logarithmic(double lo, double hi) {
     if (!(0 < lo && lo < hi) || !std::isfinite(hi))
-        fail("logarithmic scale of values: from ", lo, " to ", hi, "; the first must be less and above 0, both finite");
+        fail("logarithmic scale of values: from ", lo, " to ", hi,
+             "; the first must be above 0 and less than the second, and both must be finite");
     return {lo, hi, true};
 }
 

@@ -70,7 +70,7 @@ class AnimationReader {
     }
 
     void add(uint node, Path path, const json& channel, const std::string& object) {
-        if (!driven_.insert({node, path}).second) file_.fail(object, ": drives what another channel drives, too");
+        if (!driven_.insert({node, path}).second) file_.fail(object, ": drives the same property as another channel");
         if (rig_.nodes[node].is_fixed && path != Path::weights)
             file_.fail(object, ": drives a node that has a matrix instead of translation, rotation and scale");
         const std::size_t targets = rig_.nodes[node].weights.size();

@@ -24,7 +24,7 @@ if ls monday/replays/W02-*.json > /dev/null 2>&1; then
     set -- monday/replays/W02-*.json # $1 is the first
     twinray verify --replay "$1" --reproducer for_the_tracker > steps.txt
     # [/replay]
-    grep -q "no fault of ours" steps.txt
+    grep -q "no fault of twinray" steps.txt
     grep -q "## The scene" for_the_tracker/report.md
     test -s for_the_tracker/reproducer.c
 else

@@ -104,7 +104,7 @@ TEST(KernelLimits, EachFigureThatGrowsIsTold) {
 
 TEST(KernelLimits, ARowWithoutALimitIsTold) {
     const std::vector<KernelRow> now{row("new")};
-    EXPECT_EQ(grown(now, std::vector{row("old")}), Faults{"navi21: trace, new: there is no limit for it"});
+    EXPECT_EQ(grown(now, std::vector{row("old")}), Faults{"navi21: trace, new: no limit is recorded"});
     std::vector<KernelRow> of_other_device{row("new")};
     of_other_device[0].device = "navi31";
     EXPECT_EQ(grown(now, of_other_device).size(), 1);
@@ -115,7 +115,8 @@ TEST(KernelLimits, AnotherReleaseOfMesaIsToldAndNotCompared) {
     for (KernelRow& grown_row : now) grown_row.figures.vgprs = 200;
     const auto limits_by = [](const char* driver) { return std::vector{row("", driver), row("again", driver)}; };
     EXPECT_EQ(not_comparable(now, limits_by("radv Mesa 26.1.6-1~bpo13+1")),
-              Faults{"navi21: not compared: this is radv Mesa 26.2.6-1, the limits are of radv Mesa 26.1.6-1~bpo13+1"});
+              Faults{"navi21: not compared: the driver is radv Mesa 26.2.6-1, but the limits are from radv Mesa "
+                     "26.1.6-1~bpo13+1"});
     EXPECT_EQ(grown(now, limits_by("radv Mesa 26.1.6-1~bpo13+1")), Faults{});
     for (const char* driver : {"radv Mesa 26.2.0", ""}) {
         EXPECT_EQ(not_comparable(now, limits_by(driver)), Faults{});

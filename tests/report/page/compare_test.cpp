@@ -160,7 +160,7 @@ TEST(Compare, AFaultOfOursAndAFlipAreCertain) {
     const Comparison comparison = compare(before, now);
     ASSERT_EQ(comparison.changes.size(), 2u);
     EXPECT_EQ(comparison.changes[0].how, "a fault of twinray: SW_LEAK 0x1p+0");
-    EXPECT_EQ(comparison.changes[1].how, "passed, and does not: was not refused");
+    EXPECT_EQ(comparison.changes[1].how, "passed before, and no longer passes: was not refused");
 }
 
 TEST(Compare, WhatRanAndDoesNotIsWorse) {
@@ -180,7 +180,7 @@ TEST(Compare, ACaseThatTheDriverCannotRunAnyMoreIsWorseWhateverItsSettings) {
     const Comparison comparison = compare(before, now);
     ASSERT_EQ(comparison.changes.size(), 1u);
     EXPECT_EQ(comparison.changes[0].what, "W1 hw watertight");
-    EXPECT_EQ(comparison.changes[0].how, "was run, and is not: the device has no ray queries");
+    EXPECT_EQ(comparison.changes[0].how, "ran before, and no longer runs: the device has no ray queries");
     EXPECT_TRUE(comparison.is_worse());
     now[0].reason = "level certified is unsupported", now[0].level = "certified";  // neither before
     EXPECT_FALSE(compare(before, now).is_worse());

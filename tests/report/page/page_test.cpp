@@ -50,7 +50,7 @@ TEST(Page, ShowsDeviceProbeCaseAndResult) {
     EXPECT_TRUE(has(page, "llvm&lt;pipe&gt; &amp; co"));
     EXPECT_TRUE(has(page, "<dt>fma_fused</dt><dd>false</dd>"));
     EXPECT_TRUE(has(page, "<details id=\"W01\">"));
-    EXPECT_TRUE(has(page, "SwTlas alone was checked"));
+    EXPECT_TRUE(has(page, "only SwTlas was checked"));
     EXPECT_TRUE(has(page, "<td>2.25</td><td>400</td><td class=\"pass\">pass</td>"));
     EXPECT_TRUE(has(page, "<svg id=\"drawn\">"));
 }

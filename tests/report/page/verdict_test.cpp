@@ -131,7 +131,7 @@ TEST(Verdict, EachClaimRestsOnCasesOfTheCatalogue) {
         for (const std::string_view id : suite::cases_about(subject)) EXPECT_TRUE(ids.contains(std::string(id))) << id;
 }
 
-// What broken drivers at a known rate give: cases of different sizes, each with kinds of rays.
+// The results of drivers with a known fault rate: cases of different sizes, each with kinds of rays.
 TEST(Findings, TheirIntervalsHoldTheTruth) {
     std::mt19937_64 random(1);
     for (const double rate : {0.0, 1e-4, 1e-3, 1e-2}) {
@@ -180,9 +180,9 @@ TEST(Verdict, OwnStructuresThatBreakADemandAreInTheHeadline) {
     const auto starts = [&](const char* with) {
         return verdict_of(std::vector{right, wrong}).headline.starts_with(with);
     };
-    EXPECT_TRUE(starts("No fault of this driver's ray tracing was seen. Only 1 of "));
+    EXPECT_TRUE(starts("This driver's ray tracing showed no fault. Only 1 of "));
     wrong.results.insert_or_assign("demand", "must");
-    EXPECT_TRUE(starts("This driver fails what Vulkan demands of acceleration structures."));
+    EXPECT_TRUE(starts("This driver breaks requirements of Vulkan on acceleration structures."));
 }
 
 TEST(Verdict, AFaultThatNoFindingCountsIsInTheHeadline) {

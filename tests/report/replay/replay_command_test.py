@@ -27,7 +27,7 @@ faces = "".join(f"3 {i} {i + n + 1} {i + 1}\n3 {i + 1} {i + n + 1} {i + n + 2}\n
                                f"element face {2 * n * n}\nproperty list uchar int vertex_indices\nend_header\n"
                                + vertices + faces)
 run("verify", "grid.ply", "--random", "100", "--aimed", "20000", "--replays", "out", "--json", "all.jsonl")
-assert not (here / "twinray_replays").exists(), "no fault of ours, but a folder of that name"
+assert not (here / "twinray_replays").exists(), "no fault of twinray, but a folder of that name"
 records = [json.loads(line) for line in (here / "all.jsonl").read_text().splitlines()]
 leaks = sum(min(100, r["counts"]["HW_LEAK"]) for r in records if r["backend"] == "hw")
 files = sorted((here / "out").glob("*HW_LEAK*.json")) if leaks else []
@@ -39,8 +39,8 @@ if files:
     replay = json.loads(files[0].read_text())
     assert replay["class"] == "HW_LEAK" and pathlib.Path(replay["scene"]) == here / "grid.ply"
     shown = run("verify", "--replay", str(files[0]))
-    for words in ["HW_LEAK of hw", "What is true", "exactly", "Triangle tests", "edge across from vertex 2", "Boxes",
-                  "padded enters", "slipped between", "no fault of ours"]:
+    for words in ["HW_LEAK of hw", "Correct answer", "exactly", "Triangle tests", "edge across from vertex 2", "Boxes",
+                  "padded enters", "slipped between", "no fault of twinray"]:
         assert words in shown, f"no '{words}' in\n{shown}"
     assert ": padded PASSES" not in shown, shown  # the padding is what the driver lacks
 
@@ -51,7 +51,7 @@ if files:
 
     replay["scene_hash"] = "0" * 16
     (here / "other.json").write_text(json.dumps(replay))
-    assert "is not the one that was traced" in run("verify", "--replay", "other.json", status=1)
+    assert "is not the scene that was traced" in run("verify", "--replay", "other.json", status=1)
 assert "--replay" in run("verify", status=2)
 run("verify", "grid.ply", "--replay", "all.jsonl", status=2)
 print(f"replay: {len(files)} leaks of the driver, the first one shown")

@@ -50,19 +50,19 @@ write_torus("open.ply", 96, 48, missing=1)
 
 # The promise.
 said = leaks("torus.ply", "--ray-count", 1_000_000, "--json", here / "all.jsonl")
-assert "1000000 rays: 0 leaks, 0 double hits of ours" in said, said
+assert "1000000 rays: 0 leaks, 0 double hits by twinray" in said, said
 record = json.loads((here / "all.jsonl").read_text())
 assert record["n"] == 1_000_000 and record["faults"] == 0 and record["pass"] and record["backend"] == "sw"
 assert 2.9e-6 < record["bound95"] < 3.1e-6
 leaks("torus.ply", "--ray-count", 20_000, "--level", "refined", "--validation")
 
-# What breaks it is seen, told by ray, and counted alike however often the run is interrupted.
+# A broken accelerator is detected, its rays are named, and they are counted alike however often the run is interrupted.
 said = leaks("torus.ply", "--ray-count", 200_000, "--level", "fast", "--state", here / "once.json", status=1)
 assert "leak, crossed " in said and "double hit, crossed " in said and ", origin 0x" in said, said
 leaks("torus.ply", "--ray-count", 60_000, "--level", "fast", "--state", here / "parts.json", status=1)
 assert totals("parts.json")[0] == 60_000
 said = leaks("torus.ply", "--ray-count", 200_000, "--level", "fast", "--state", here / "parts.json", status=1)
-assert "goes on after 60000 rays" in said, said
+assert "continues after 60000 rays" in said, said
 assert totals("parts.json") == totals("once.json"), (totals("parts.json"), totals("once.json"))
 assert totals("once.json")[1] > 1000 and totals("once.json")[2] > 1000
 
@@ -75,13 +75,13 @@ with subprocess.Popen([twinray, "leaks", str(here / "torus.ply"), "--quiet", "--
     endless.kill()
 done = totals("killed.json")[0]
 said = leaks("torus.ply", "--ray-count", done + 1000, "--state", here / "killed.json")
-assert f"goes on after {done} rays" in said and totals("killed.json") == [done + 1000, 0, 0, 0], said
+assert f"continues after {done} rays" in said and totals("killed.json") == [done + 1000, 0, 0, 0], said
 
 # Mistakes.
 said = leaks("torus.ply", "--seed", 2, "--state", here / "killed.json", status=1)
-assert "is of another run: its seed is 1, not 2" in said, said
+assert "belongs to another run: its seed is 1, not 2" in said, said
 (here / "broken.json").write_text('{"schema": ')
-assert "holds no state of" in leaks("torus.ply", "--state", here / "broken.json", status=1)
+assert "does not hold the state of" in leaks("torus.ply", "--state", here / "broken.json", status=1)
 said = leaks("open.ply", status=1)
 assert "mesh 'open.ply' is not closed: 1 triangle(s) share the edge from (" in said, said
 assert "there is no folder" in leaks("torus.ply", "--state", here / "none" / "state.json", status=1)

@@ -135,7 +135,7 @@ for arguments, status, words in [
         ([*light, "--view", "0", "0", "1"], 2, "--view requires --picture"),
         ([*light, "--picture", "a.png", "--camera", "0", "0", "1", "0", "0", "1"], 1, "the two must differ"),
         (["trace", "pair.ply", "--rays", "rays.csv", "--hits", "h", "--query", "all", "--counts", "c",
-          "--picture", "a.png"], 2, "--picture shows one hit a ray"),
+          "--picture", "a.png"], 2, "--picture shows one hit per ray"),
         ([*light, "--picture", "a.png", "--view", "0", "0", "0"], 1, "must be finite and not 0"),
         ([*light, "--picture", "a.png", "--picture-size", "1", "1"], 2, "--picture-size is '1', but must be a whole number from 16 to 16384"),
         (["viewfactors", "pair.ply", "--matrix", "a.npz"], 2, "--matrix is 'a.npz', but must be a file whose name ends in .png"),
