@@ -41,7 +41,7 @@ class RayBatch {
     mutable std::map<Context*, DeviceBuffers> on_devices_;
 };
 
-// What records say of a backend; "" where there is no such choice.
+// The name that records give this backend; "" if there is no such choice.
 struct Labels {
     std::string name;     // unique among those that run: "sw compressed4 watertight"
     std::string backend;  // "sw", "hw", "embree"

@@ -52,10 +52,10 @@ void bench_scene(const Session& session, const BenchScene& scene);
 void bench_growth(const Session& session, std::span<const double> sizes);
 // Refit of instances that move, against a rebuild.
 void bench_moves(const Session& session, std::size_t count);
-// What each feature costs that the scene does not need, in time and, with RunOptions::times_builds, in memory: on the
-// first layout and level. Throws Error where programs with more features find other hits.
+// Measures what each feature costs that the scene does not need, in time and, with RunOptions::times_builds, in memory,
+// on the first layout and level. Throws Error where programs with more features find other hits.
 void bench_feature_costs(const Session& session, const BenchScene& scene);
-// What trees of each layout and build quality are like: counts, not times.
+// Prints properties of the trees of each layout and build quality: counts, not times.
 void bench_trees(const Session& session, const BenchScene& scene);
 
 // The modes share these. Fields of every record.

@@ -21,7 +21,7 @@ class HitCheck {
 
     explicit HitCheck(const Scene& scene) : reference_(ReferenceScene::of(scene)) {}
 
-    // `is_ours`: the answer must be right wherever float32 can be; else the rules for drivers hold. Of any hits only
+    // `is_ours`: the answer must be right wherever float32 can be; else the rules for drivers hold. For any hits only
     // hit or miss is checked.
     Soundness check(std::span<const Ray> rays, std::span<const Hit> hits, Query query, bool is_ours) const;
 

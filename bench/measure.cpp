@@ -13,7 +13,7 @@ RayBatch part_of(const RayBatch& rays, std::size_t tiles) {
     return {even_tiles(rays.rays(), tiles), rays.query(), rays.is_coherent()};
 }
 
-// What one backend traces.
+// The traces of one backend.
 class Turn {
   public:
     Turn(Backend& backend, const RayBatch& rays, double max_ms) : backend_(backend), all_(rays) {

@@ -19,7 +19,7 @@ struct BuildRounds {
     BuildFigures last;
 };
 
-// Builds everybody once to warm up, then `rounds` times; what was built last stays. By backend.
+// Builds everybody once to warm up, then `rounds` times; what was built last stays. One for each backend.
 std::vector<BuildRounds> measure_builds(LineUp& line_up, const Scene& scene, std::size_t rounds, const Step& step);
 
 // One backend's traces of a set of rays.

@@ -21,7 +21,7 @@ enum class RayKind : std::uint8_t {
 };
 inline constexpr std::array all_ray_kinds = {RayKind::primary, RayKind::incoherent, RayKind::occlusion,
                                              RayKind::shuffled};
-// As a renderer traces them.
+// In the order in which a renderer traces them.
 inline constexpr std::array usual_ray_kinds = {RayKind::primary, RayKind::incoherent, RayKind::occlusion};
 constexpr std::string_view name_of(RayKind kind) {
     constexpr std::string_view names[] = {"primary", "incoherent", "occlusion", "shuffled"};
@@ -30,7 +30,7 @@ constexpr std::string_view name_of(RayKind kind) {
 // Any hits for occlusion, else closest hits.
 constexpr Query query_of(RayKind kind) { return kind == RayKind::occlusion ? Query::any : Query::closest; }
 
-// Where a ray met the scene.
+// The points where rays met the scene.
 struct Surface {
     vec3 front, back;  // where rays start that leave to this side of the triangle, clear of it
     vec3 normal;       // unit, of the front
@@ -50,9 +50,9 @@ std::vector<Ray> occlusion_rays(std::span<const Surface> points, const Bounds& b
 // The same rays in an order that depends on their number and the seed alone.
 std::vector<Ray> shuffled_rays(std::vector<Ray> rays, std::uint64_t seed);
 
-// Each `width` * `width` rays, but for shuffled ones in tiles of 8 x 8 pixels of the picture of primary rays. By
-// RayKind. Surface points are found by SwTlas, refined where the device has float64. `width` is a multiple of 8. Throws
-// Error naming the scene if no primary ray meets it.
+// Each `width` * `width` rays, but for shuffled ones in tiles of 8 x 8 pixels of the picture of primary rays. One for
+// each RayKind. Surface points are found by SwTlas, refined where the device has float64. `width` is a multiple of 8.
+// Throws Error naming the scene if no primary ray meets it.
 std::array<std::vector<Ray>, all_ray_kinds.size()> make_rays(Context& context, const BenchScene& scene, uint width,
                                                              std::uint64_t seed);
 

@@ -14,7 +14,7 @@ namespace twinray::bench {
 
 inline constexpr const char* record_schema = "twinray-bench/1";
 
-// What was measured: of each backend its builds, and its traces of one set of rays.
+// The measurements: the builds of each backend, and its traces of one set of rays.
 struct Results {
     const BenchScene& scene;
     const LineUp& line_up;
@@ -25,7 +25,7 @@ void print_builds(std::ostream& out, const Results& results);
 void print_traces(std::ostream& out, const Results& results, std::string_view title,
                   std::span<const TraceRounds> traces);
 
-// One for each backend, added to the fields of `base`. What was not measured is null.
+// One for each backend, added to the fields of `base`. Values that were not measured are null.
 std::vector<nlohmann::json> records_of(const nlohmann::json& base, const Results& results, RayKind kind,
                                        std::span<const TraceRounds> traces);
 

@@ -18,7 +18,7 @@ struct FaceGroupOptions {
     void set_groups(Faces& faces) const;
 };
 
-// `of_what`: "what a row is". Both need the options `needs`.
+// `of_what`: "one row". Both need the options `needs`.
 std::vector<Option> face_group_options(FaceGroupOptions& options, const std::string& of_what,
                                        const std::vector<std::string>& needs = {});
 

@@ -11,7 +11,7 @@ namespace twinray::cli {
 
 // --picture and the others, which need it. `shows`: what colours tell.
 Section picture_options(PictureOptions& options, const std::string& shows);
-// Of commands whose colours are values.
+// For commands whose colours show values.
 Option color_scale_option(PictureOptions& options);
 // Throws Error where a file has no folder: before the work, not after it.
 void check_pictures(const PictureOptions& options);

@@ -14,7 +14,7 @@
 namespace twinray::cli {
 namespace {
 
-// As a folder may be called.
+// Turns a name into one that a folder may have.
 std::string folder_name(const std::string& name) {
     std::string result;
     for (const char c : name.substr(0, name.find('(')))
@@ -26,7 +26,7 @@ std::string folder_name(const std::string& name) {
     return result.empty() ? "device" : result;
 }
 
-// Where Debian's and other packages of Chromium put it.
+// Packages of Chromium, Debian's and others, install it here.
 std::filesystem::path swiftshader_here() {
     for (const char* folder : {"/usr/lib/chromium", "/usr/lib64/chromium-browser", "/usr/share/vulkan/icd.d"})
         if (const auto file = std::filesystem::path(folder) / "vk_swiftshader_icd.json"; std::filesystem::exists(file))

@@ -1,5 +1,5 @@
-# What `cmake --install` puts in place: the library, its public headers with the GLSL that kernels of a host include,
-# and package files for find_package(twinray) and pkg-config.
+# The files that `cmake --install` installs: the library, its public headers with the GLSL that kernels of a host
+# include, and package files for find_package(twinray) and pkg-config.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 

@@ -10,7 +10,7 @@ target_compile_options(
     twinray_options
     INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wconversion -Wshadow -ffp-contract=off>
 )
-# What Clang's words say beyond those of GCC.
+# Clang's warnings beyond those of GCC.
 target_compile_options(
     twinray_options
     INTERFACE $<$<COMPILE_LANG_AND_ID:CXX,Clang>:-Wno-sign-conversion -Wno-missing-braces>

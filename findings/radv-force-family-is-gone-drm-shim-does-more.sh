@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # A good guess: RADV_FORCE_FAMILY makes RADV compile for a GPU that is not there; and no such thing exists for the
-# drivers of other vendors, least of all for one of telephones or of Apple's on an x86-64 machine.
-# Seen: it does so on Mesa 25.0.7. On 26.1.6 RADV says that the variable has been removed, and makes no instance. What
-# it names instead is in Debian's package mesa-drm-shim: libraries to preload that answer as a kernel's driver would.
-# With them RADV, NVK (NVIDIA), Turnip (Qualcomm) and Honeykrisp (Apple) list a GPU on a machine without any.
-# Seen with 25.0.7-2+deb13u1 and 26.1.6-1~bpo13+1 of mesa-vulkan-drivers and mesa-drm-shim on 2026-11-27.
+# drivers of other vendors, least of all for one of telephones or of Apple's on an x86-64 machine. Seen: it does so on
+# Mesa 25.0.7. On 26.1.6 RADV says that the variable has been removed, and makes no instance. Its replacement is in
+# Debian's package mesa-drm-shim: libraries to preload that answer like a kernel's driver. With them RADV, NVK (NVIDIA),
+# Turnip (Qualcomm) and Honeykrisp (Apple) list a GPU on a machine without any. Seen with 25.0.7-2+deb13u1 and
+# 26.1.6-1~bpo13+1 of mesa-vulkan-drivers and mesa-drm-shim on 2026-11-27.
 folder=$(mktemp -d)
 mesa_25=25.0.7-2+deb13u1
 mesa_26=26.1.6-1~bpo13+1

@@ -26,7 +26,7 @@ for header in cpp cpp_spawn cpp_sampling; do
         "$cxx" -std=c++20 -I"$folder" -fsyntax-only -Wall -Wextra -Werror -x c++ -
 done
 
-# What is neither ours, Vulkan's, the compiler's nor the C library's.
+# Names that are not twinray's, Vulkan's, the compiler's or the C library's.
 others=$(cat "$work"/*.d | grep -oE "(^| )/[^ :]+" | tr -d " " | sort -u |
     grep -vE "^$folder/|/vulkan/|/vk_video/|/c\+\+/|/lib/(gcc|llvm|clang|linux)|^/usr/include/([a-z0-9_-]+-linux-gnu/|sys/|bits/|asm[a-z-]*/|linux/|gnu/)?[A-Za-z0-9_-]+(/[A-Za-z0-9_-]+)*\.h$" || true)
 others+=$(cat "$work"/*.d | tr ' ' '\n' | grep -E '/(glm|nlohmann|CLI|OpenEXR|Imath|eigen3|Eigen)/|(vk_mem_alloc|volk|stb_[a-z_]*|tiny_gltf[a-z_0-9]*|zlib|gmp(xx)?)\.h' || true)

@@ -1,29 +1,28 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Counts sentences that dangle: those that open with "What" and ask nothing, or with "Of", "Where", "As" or "By" and
-have no comma, after which a main clause could come. Looks at prose of pages, without headings and code, and at comments
-of headers. Prints a figure for each group and exits with 1 where a group has more than it may; -v prints each."""
+have no comma, after which a main clause could come. Looks at prose of pages, without headings and code, at comments, at
+docstrings and at help texts. Prints a figure for each group and exits with 1 if a group exceeds its limit; -v prints
+each sentence."""
+import ast
 import pathlib
 import re
 import subprocess
 import sys
 
 root = pathlib.Path(__file__).resolve().parent.parent
-# What git lists for a group, and which share of its lines may have such a sentence; None: not held to it yet.
-GROUPS = {
-    "README.md": (["README.md"], 0),
-    "docs": (["docs/*.md"], 0.01),
-    "public headers": (["include/*.h"], None),
-    "other headers": (["*.h", ":!include/*"], None),
-}
 OPENER = re.compile(r"(What\b(?!.*\?$)|(?:Of|Where|As|By(?! default))\b(?!.*,)).*", re.S)
-COMMENT = re.compile(r"^(\s*)(.*?)//+ ?(.*)$")
+CPP_COMMENT = re.compile(r"^(\s*)(.*?)//+ ?(.*)$")
+HASH_COMMENT = re.compile(r"^(\s*)((?:[^#'\"]*\s)?)#(?!!) ?(.*)$")
+LITERAL = r'"((?:[^"\\\n]|\\.)*)"'
+# The texts of a command's options, and of its description: adjacent literals after one of these.
+HELP = re.compile(rf"(?:\.(?:help|summary|description) =|add_(?:option|flag)\(.*?,|CLI::App app\()\s*({LITERAL}(?:\s*{LITERAL})*)", re.S)
 
 
-def pieces_of_page(lines):
+def pieces_of_page(text):
     """(line, text) of paragraphs, items and cells."""
     is_code, first, piece = False, 0, ""
-    for number, line in enumerate([*lines, ""], 1):
+    for number, line in enumerate([*text.splitlines(), ""], 1):
         is_code ^= line.startswith("```")
         begins = re.match(r"\s*(?:[-*]|\d+\.) ", line)
         is_prose = not is_code and not line.startswith(("```", "#", "|")) and line.strip()
@@ -37,11 +36,11 @@ def pieces_of_page(lines):
             piece += " " + line[begins.end() if begins else 0 :]
 
 
-def pieces_of_header(lines):
-    """(line, text) of comments; lines of one that fill their line belong together."""
+def pieces_of_code(text, comment):
+    """(line, text) of comments; consecutive ones that fill their lines belong together."""
     first, piece = 0, ""
-    for number, line in enumerate([*lines, ""], 1):
-        found = COMMENT.match(line)
+    for number, line in enumerate([*text.splitlines(), ""], 1):
+        found = comment.match(line)
         if piece and not (found and not found[2]):
             yield first, piece
             piece = ""
@@ -50,31 +49,63 @@ def pieces_of_header(lines):
             piece += " " + found[3]
 
 
+def pieces_of_docstrings(text):
+    """(line, text) of their paragraphs."""
+    for node in ast.walk(ast.parse(text)):
+        if not isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)):
+            continue
+        docstring = ast.get_docstring(node)
+        for paragraph in re.split(r"\n\s*\n|\n(?=\S+ :)", docstring or ""):
+            yield getattr(node, "lineno", 1), re.sub(r"^[^\n]* : [^\n]*\n|\s+", " ", paragraph)
+
+
+def pieces_of_help(text):
+    """(line, text) of help texts, which need not begin with a capital letter."""
+    for found in HELP.finditer(text):
+        joined = "".join(re.findall(LITERAL, found[1]))
+        yield text.count("\n", 0, found.start()) + 1, joined[:1].upper() + joined[1:]
+
+
+def pieces_of_cpp(text):
+    return pieces_of_code(text, CPP_COMMENT)
+
+
+def pieces_of_script(text):
+    return pieces_of_code(text, HASH_COMMENT)
+
+
+CPP = ["*.h", "*.cpp", "*.comp", "*.glsl", "*.rgen", "*.rchit", "*.rahit", "*.rmiss", "*.rint", "*.frag", "*.vert"]
+# The files of a group as git lists them, its pieces, and the largest share of its pieces that may have such a sentence.
+GROUPS = {
+    "README.md": (["README.md"], pieces_of_page, 0),
+    "docs": (["docs/*.md"], pieces_of_page, 0.01),
+    "help": (["cli/*.cpp", "samples/*.cpp"], pieces_of_help, 0),
+    "docstrings": (["bindings/python/twinray/*.py"], pieces_of_docstrings, 0),
+    "public headers": (["include/*.h"], pieces_of_cpp, 0),
+    "other C++ and GLSL": ([*CPP, ":!include/*"], pieces_of_cpp, 0.01),
+    "scripts": (["*.py", "*.sh", "*.cmake", "*CMakeLists.txt"], pieces_of_script, 0.01),
+}
+
+
 def plain(text):
     return re.sub(r"!?\[([^]]*)\]\([^)]*\)", r"\1", text).replace("*", "").strip()
 
 
-def dangling_of(pieces):
-    for number, piece in pieces:
-        for sentence in re.split(r"(?<=[.!?])\s+", plain(piece)):
-            if OPENER.fullmatch(sentence):
-                yield number, sentence
+def dangling_in(piece):
+    return [s for s in re.split(r"(?<=[.!?])\s+", plain(piece)) if OPENER.fullmatch(s)]
 
 
 status = 0
-for group, (patterns, most) in GROUPS.items():
+for group, (patterns, pieces_of, most) in GROUPS.items():
     count, found = 0, []
     listed = subprocess.run(["git", "ls-files", *patterns], cwd=root, check=True, capture_output=True, text=True).stdout
     for name in listed.split():
-        lines = (root / name).read_text(encoding="utf-8").splitlines()
-        is_page = name.endswith(".md")
-        count += sum(bool(line.strip() if is_page else COMMENT.match(line)) for line in lines)
-        pieces = (pieces_of_page if is_page else pieces_of_header)(lines)
-        found += [f"{name}:{number}: {sentence}" for number, sentence in dangling_of(pieces)]
-    is_over = most is not None and len(found) > most * count
+        for number, piece in pieces_of((root / name).read_text(encoding="utf-8")):
+            count += 1
+            found += [f"{name}:{number}: {sentence}" for sentence in dangling_in(piece)]
+    is_over = len(found) > most * count
     status |= is_over
     if is_over or "-v" in sys.argv:
         print("\n".join(found))
-    limit = "not held to a limit yet" if most is None else f"at most {most:.0%}"
-    print(f"openers: {group}: {len(found)} of {count} lines, {len(found) / count:.1%} ({limit})")
+    print(f"openers: {group}: {len(found)} in {count} pieces, {len(found) / max(count, 1):.1%} (at most {most:.0%})")
 sys.exit(status)

@@ -29,7 +29,7 @@ build_twinray() {
     fi
 }
 
-# What the pages of tutorials open with, and the gallery: by the programs themselves.
+# The programs themselves make the pictures at the top of the tutorials, and the gallery.
 make_pictures() {
     cmake --build "$(dirname "$(dirname "$twinray")")" --target tutorial_pictures gallery_pictures >/dev/null
 }

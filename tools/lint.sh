@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Holds what nobody should argue about: C++ as .clang-format has it, CMake as .gersemirc has it, shell as shellcheck
-# wants it, Python as ruff and mypy do, words as codespell knows them, shaders of at most 120 columns, and sentences that
-# do not dangle (tools/check_openers.py).
-#   tools/lint.sh          says what is not so; exit 1 if anything is, 77 where it cannot tell
+# Checks the format of the code: C++ with clang-format, CMake with gersemi, shell with shellcheck, Python with ruff and
+# mypy, spelling with codespell, shaders of at most 120 columns, and sentences that do not dangle
+# (tools/check_openers.py).
+#   tools/lint.sh          prints what is wrong; exit status 1 if anything is, 77 if it cannot check
 #   tools/lint.sh --fix    formats C++, CMake and Python first
-# The tools come from PyPI into build/lint at fixed versions, so that everyone's say the same. Needs python3-venv.
+# The tools come from PyPI into build/lint at fixed versions, so that results are the same everywhere. Needs
+# python3-venv.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

@@ -43,7 +43,7 @@ Ray64 ray_at(const RayRows& rows, std::span<const T> numbers, std::size_t i) {
     return {{n[0] - from.x, n[1] - from.y, n[2] - from.z}, rows.t_near, {n[3], n[4], n[5]}, rows.t_far};
 }
 
-// Rays from number `from` on. What is given in float64 is brought near the box; by how much says `ways`.
+// Rays from number `from` on. Rays and points in float64 are moved near the box; `ways` holds by how much.
 void fill(std::span<Ray> rays, std::span<double> ways, const RayRows& rows, std::size_t from, const Bounds& box) {
     in_parts(rays.size(), [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {

@@ -56,7 +56,7 @@ class Column {
     std::size_t count_ = 0;
 };
 
-// Vectors of ours are 0 where they begin.
+// Vectors of twinray are 0 at first.
 struct Numbers2 {
     float x, y;
 };
@@ -146,7 +146,7 @@ struct RayRows {
 };
 std::vector<Ray> rays_of(const RayRows& rows);
 
-// By ray; t is infinite for a miss.
+// One for each ray; t is infinite for a miss.
 struct Cast {
     Column<float> t;
     Column<double> far_t;  // instead of t, where a ray began far from the scene
@@ -159,7 +159,7 @@ struct Listed {
     Cast hits;
 };
 
-// By point; the distance is infinite where there is nothing.
+// One for each point; the distance is infinite if nothing is found.
 struct Nearest {
     Column<dvec3> position;
     Column<double> distance;
@@ -195,7 +195,7 @@ class Scene {
     std::vector<uint> add_file(const std::string& file, std::optional<dvec3>& origin);
     void remove(uint geometry);
     void set_transform(uint geometry, const Transform& transform);
-    // Of all instances of the mesh.
+    // Covers all instances of the mesh.
     void update_vertices(uint geometry, std::vector<vec3>&& positions);
     std::vector<uint> geometries();
     std::size_t triangle_count();

@@ -18,7 +18,7 @@ class UsageError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-// What follows an option, or stands for a positional; made by cli/command/values.h.
+// A value that follows an option, or a positional argument; cli/command/values.h makes it.
 struct Value {
     enum class Kind : std::uint8_t { flag, word, choice, file, folder };
     Kind kind = Kind::flag;

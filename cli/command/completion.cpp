@@ -38,7 +38,7 @@ std::string patterns_of(const Option& option) {
     return option.letter ? option.name + "|-" + option.letter : option.name;
 }
 
-// What bash does for one value.
+// The bash command that completes one value.
 std::string bash_action(const Value& value) {
     switch (value.kind) {
         case Kind::choice:

@@ -33,10 +33,10 @@ template <class T>
 requires std::is_arithmetic_v<T> Value number(T& target, Range<T> range = {});
 template <class T>
 Value number(std::optional<T>& target, Range<T> range = {});
-// As many as there are names in the metavar: "X Y Z".
+// It takes as many numbers as there are names in the metavar: "X Y Z".
 template <class T>
 Value numbers(std::vector<T>& target, const std::string& metavar, Range<T> range = {});
-// Separated by commas; the option may stand alone, too. `is_given` becomes true.
+// Separated by commas; the option may also have no value. `is_given` becomes true.
 Value optional_list(bool& is_given, std::vector<double>& target, Range<double> range);
 
 // Read or written. With `suffixes`, in lower case, the name must have one of them.
@@ -62,7 +62,7 @@ Value choices(std::vector<std::string>& target, std::vector<std::string> names);
 template <class T>
 using Names = std::vector<std::pair<std::string, T>>;
 
-// By name_of(T).
+// Named by name_of(T).
 template <class T, std::size_t n>
 Names<T> names_of(const std::array<T, n>& all) {
     Names<T> names;

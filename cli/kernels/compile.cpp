@@ -18,7 +18,7 @@ namespace twinray::kernels {
 namespace {
 
 // Bytes a triangle that a build of SwTlas reads and writes: each array as often as a pass goes through it, a vertex for
-// each corner. What caches save, or lines that are fetched in vain cost, is not in it. Records are counted as many as a
+// each corner. Savings by caches and costs of lines fetched in vain are not included. Records are counted as many as a
 // tree may need, and the second sort, by 60-bit codes, which few meshes need, not at all.
 struct BuildTraffic {
     double read = 0, written = 0;
@@ -136,7 +136,7 @@ std::vector<BuildRow> list_builds(Context& context) {
             accel.sync();
             rows.push_back(row_of("build", options, build_traffic(layout, quality)));
             if (quality != BuildQuality::fast) continue;
-            // The first move measures the tree as it was built, too.
+            // The first move also measures the tree as it was built.
             for (int move = 0; move < 2; ++move) {
                 take_recorded_work();
                 accel.update_vertices(handle, mesh.positions);

@@ -44,7 +44,7 @@ class Collector {
     std::vector<ListedKernel> kernels_;
 };
 
-// What a host gets that specialises a kernel or a program of its own for no scene.
+// The kernels of a host that specialises a kernel or a program of its own for no scene.
 void add_unspecialized(Collector& collector) {
     for (ListedKernel& kernel : collector.kernels()) {
         const auto features = std::ranges::find(kernel.desc.constants, FEATURES_CONSTANT, &SpecializationConstant::id);

@@ -29,14 +29,14 @@ struct KernelList {
 };
 KernelList list_kernels(const ContextDesc& desc);
 
-// What list_kernels() makes: each accelerator traces one mesh, several, and with all there is; everything else is
-// made, or used once where that makes the kernel.
+// list_kernels() makes these: each accelerator traces one mesh, several meshes, and a scene with all features;
+// everything else is created, or used once if that creates the kernel.
 void make_trace_kernels(Context& context);
 void make_library_kernels(Context& context);
 void make_path_tracer_kernels(Context& context);
 
-// What the constants choose, in words: "compressed4 watertight instances". Not how many invocations make a group, so
-// that a kernel keeps its name when that changes.
+// Describes the constants in words: "compressed4 watertight instances". Not how many invocations make a group, so that
+// a kernel keeps its name when that changes.
 std::string variant_of(const KernelDesc& desc);
 
 // Rows of `twinray kernels`, in compile.cpp: kernels as the compiler of a device makes them, and what builds of SwTlas

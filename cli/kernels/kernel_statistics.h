@@ -26,7 +26,7 @@ struct KernelStatistics {
 // where it cannot be compiled.
 KernelStatistics compile_for_statistics(Context& context, const KernelDesc& desc, std::uint32_t args_bytes);
 
-// What drivers tell under names of their own; empty: this one does not.
+// Drivers report these under names of their own; empty if this driver does not.
 struct KernelFigures {
     std::optional<std::uint64_t> vgprs;          // registers of a lane; Turnip's are of four words
     std::optional<std::uint64_t> sgprs;          // registers of a subgroup
@@ -39,8 +39,8 @@ struct KernelFigures {
 
     bool operator==(const KernelFigures&) const = default;
 };
-// Knows the names of Mesa's drivers and of NVIDIA's, in any case. Of several names of one figure the values add up. A
-// value below 0 is none.
+// Knows the names of Mesa's drivers and of NVIDIA's, in any case. If one figure has several names, their values add up.
+// A value below 0 is none.
 KernelFigures figures_of(std::span<const Statistic> told);
 
 }  // namespace twinray

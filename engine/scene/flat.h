@@ -11,7 +11,7 @@
 
 namespace twinray {
 
-// What a placement without an inverse leaves.
+// The coordinates that remain of a placement without an inverse.
 struct FlatPlacement {
     dvec3 lost;     // the direction that it maps to nothing, unit, in the mesh's space; one of the two is chosen
     dvec3 normal;   // of the plane that it maps to, unit
@@ -23,8 +23,8 @@ inline constexpr double rounding_of_products = 0x1p-40, rounding_of_floats = 0x1
 // its determinant owes to that is 0.
 std::optional<FlatPlacement> flat_placement_of(const glm::dmat4& matrix, double rounding = rounding_of_products);
 
-// The placement with an inverse: the lost direction is mapped to the normal times the extent times `thickness`. What
-// is flat along the lost direction stands as before.
+// The placement with an inverse: the lost direction is mapped to the normal times the extent times `thickness`. Parts
+// that are flat along the lost direction stay as they are.
 glm::dmat4 thickened(const glm::dmat4& matrix, double thickness, double rounding = rounding_of_products);
 
 // Onto the plane through 0 that is perpendicular to `lost`.

@@ -69,8 +69,8 @@ std::span<const std::uint8_t> radiance_rows(std::span<const std::uint8_t> bytes)
     return next_line(next_line(bytes));
 }
 
-// What the header says that pixels were multiplied by: EXPOSURE lines, and by channel COLORCORR lines, each of which
-// counts on top of those before it.
+// The factors by which, according to the header, pixels were multiplied. EXPOSURE lines apply to all channels,
+// COLORCORR lines to each; every line multiplies with those before it.
 dvec3 radiance_factors(std::span<const std::uint8_t> bytes) {
     dvec3 factors(1);
     const auto multiply = [&factors](std::string_view numbers, int wanted) {

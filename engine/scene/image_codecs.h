@@ -10,7 +10,7 @@
 namespace twinray {
 
 enum class Codec : std::uint8_t { none, webp, avif };
-// By how the bytes begin.
+// Decided by the first bytes.
 Codec codec_of(std::span<const std::uint8_t> bytes);
 
 // Whether this twinray was built with the codec's library.

@@ -124,7 +124,7 @@ struct Pose::Nodes {
 // Nodes that the animation does not drive are at rest.
 Pose pose_at(const Rig& rig, const Animation& animation, double seconds);
 
-// Of an instance.
+// Belongs to an instance.
 glm::dmat4 matrix_of(const Pose& pose, const Rig::Attachment& attachment);
 // The frame of a camera or light: it keeps the axes that a node scales to 0, since glTF excludes scales from both.
 glm::dmat4 frame_of(const Pose& pose, const Rig::Attachment& attachment);

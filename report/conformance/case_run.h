@@ -12,7 +12,7 @@
 
 namespace twinray::conformance {
 
-// What a case has found so far.
+// The findings of a case so far.
 struct Tally {
     std::uint64_t n = 0;
     std::uint64_t faults = 0;
@@ -42,7 +42,7 @@ class CaseRun {
     void check_hits(const SceneInput& scene, const Top& top, std::span<const Shot> shots);
     // Refuses all candidates and judges which were offered.
     void check_candidates(const SceneInput& scene, std::span<const Shot> shots);
-    // What is not about a ray.
+    // A finding that is not about a ray.
     void expect(bool holds, const std::string& sentence_if_not);
 
   private:
@@ -52,7 +52,7 @@ class CaseRun {
     Tally& tally_;
 };
 
-// How many candidates of a ray are told.
+// The number of candidates that are reported for a ray.
 inline constexpr uint candidate_slots = 48;
 
 }  // namespace twinray::conformance

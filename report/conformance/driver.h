@@ -112,12 +112,12 @@ class Driver {
     Bottom deserialize(const Serialized& file, const BottomInput& input);
     Top deserialize(const Serialized& file, const TopInput& input, const std::vector<BottomRef>& bottoms);
 
-    // `slots`: how many candidates of each shot are told.
+    // `slots`: the number of candidates that are reported for each shot.
     Traced trace(const Top& top, std::span<const Shot> shots, uint slots = 0);
 
   private:
     enum class Copy : std::uint8_t { clone, compact };
-    // As the driver is to get it: a pipeline's instances choose their hit record.
+    // In the form that the driver needs: a pipeline's instances choose their hit record.
     TopInput told(const TopInput& input, const std::vector<BottomRef>& bottoms) const;
     AccelerationStructure new_structure(const char* name, const BuildInput& input);
     void record_build(Commands& commands, std::span<const BuildInput> inputs,
@@ -125,7 +125,7 @@ class Driver {
                       const AccelerationStructure* updated_from = nullptr);
     Bottom copied(const Bottom& source, Copy mode);
     Top copied(const Top& source, Copy mode);
-    // What Misdeed::copies_in_part makes.
+    // The result of Misdeed::copies_in_part.
     Bottom shortened(BottomInput input);
     Top shortened(TopInput input, const std::vector<BottomRef>& bottoms);
     AccelerationStructure copy(const AccelerationStructure& source, VkAccelerationStructureTypeKHR type, Copy mode);

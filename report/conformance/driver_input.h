@@ -15,7 +15,7 @@ std::vector<std::byte> encoded_indices(const GeometryInput& geometry);
 std::vector<std::byte> encoded_boxes(const GeometryInput& geometry);
 std::uint32_t vertex_stride(const GeometryInput& geometry);
 
-// What vkCmdBuildAccelerationStructuresKHR takes of one structure.
+// The arguments of vkCmdBuildAccelerationStructuresKHR for one structure.
 struct BuildInput {
     std::vector<VkAccelerationStructureGeometryKHR> geometries;
     std::vector<VkAccelerationStructureBuildRangeInfoKHR> ranges;

@@ -107,7 +107,7 @@ void Expectation::add_triangles(const Shot& shot, Candidate candidate, const Pla
         const bool sees_normal_side = (dot(cross(b - a, c - a), direction) < 0) != geometry.is_mirrored;
         candidate.is_sure =
             bound.margin > bound.radius && bound.t_low > shot.ray.t_min && bound.t_high < shot.ray.t_max;
-        // Of a triangle that is seen edge-on within rounding either side may be in front.
+        // If a triangle is seen edge-on within rounding, either side may be in front.
         const bool is_culled = is_culled_triangle(flags, sees_normal_side);
         if (is_culled && (candidate.is_sure || is_culled_triangle(flags, !sees_normal_side))) continue;
         candidate.is_sure = candidate.is_sure && !is_culled;

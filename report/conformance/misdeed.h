@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A driver that is wrong on purpose: the negative controls of the suite. What is spoilt is the data on its way to the
+// A driver that is wrong on purpose: the negative controls of the suite. Controls spoil the data on its way to the
 // driver, or the answers on their way back, so that a control runs on every driver.
 #pragma once
 
@@ -41,7 +41,7 @@ void spoil(Misdeed misdeed, std::vector<Shot>& shots);
 // `turn`: counts traces.
 void spoil(Misdeed misdeed, Traced& traced, std::size_t turn);
 
-// What a copy in part lacks.
+// The part that an incomplete copy lacks.
 void shorten(BottomInput& input);
 void shorten(TopInput& input);
 

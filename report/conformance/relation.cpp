@@ -122,7 +122,7 @@ Finding compare_hits(const Expectation& expectation, const Shot& shot, const Ans
     if (first.kind == ANSWER_MISS && second.kind == ANSWER_MISS) return Finding::agrees;
     const std::vector<Candidate> all = expectation.candidates(shot);
     const Candidate *one = find(all, first), *other = find(all, second);
-    // What the ray does not meet at all.
+    // Triangles that the ray does not meet at all.
     if ((first.kind != ANSWER_MISS && !one) || (second.kind != ANSWER_MISS && !other)) return Finding::differs;
     if (!one || !other) return (one ? one : other)->is_sure ? Finding::differs : Finding::rounding;
     const double slack = 0x1p-23 * std::abs(static_cast<double>(first.t));

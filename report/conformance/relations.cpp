@@ -14,7 +14,7 @@ namespace {
 constexpr uint related_triangles = 32;
 constexpr float far_end = 8;  // of random_shots: beyond everything
 
-// How many pairs of hits have the same t to the last bit is told, not demanded.
+// The number of pairs of hits with the same t to the last bit is reported, not demanded.
 void count_identical(CaseRun& run, const Answer& first, const Answer& second) {
     if (first.kind == ANSWER_MISS || second.kind == ANSWER_MISS) return;
     Values& results = run.tally().results;
@@ -149,7 +149,7 @@ void split(CaseRun& run) {
         std::vector<uint> both(one.begin(), one.end());
         both.insert(both.end(), other.begin(), other.end());
         Finding finding = compare_candidates(expectation, all.shots[i], whole.candidates_of(i), both);
-        // What lies at the cut within rounding may be in either part, in both or in none.
+        // A hit at the cut, within rounding, may be in either part, in both or in none.
         if (finding == Finding::differs &&
             compare_candidates(expectation, before[i], whole.candidates_of(i), both) != Finding::differs)
             finding = Finding::rounding;

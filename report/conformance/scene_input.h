@@ -27,7 +27,7 @@ struct GeometryInput {
     VkFormat format = VK_FORMAT_R32G32B32_SFLOAT;  // of positions, which it can hold
     std::uint32_t padding = 0;                     // bytes between one vertex or box and the next
     std::optional<Transform> transform = {};
-    // What the buffers hold before what counts, and the build is told to pass over.
+    // Data in the buffers before the input, which the build must skip.
     std::uint32_t first_vertex = 0;    // vertices
     std::uint32_t earlier_items = 0;   // triangles of the index buffer, or boxes
     std::uint32_t earlier_places = 0;  // transforms

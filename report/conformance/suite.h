@@ -30,7 +30,7 @@ enum class Topic : std::uint8_t {
 inline constexpr std::size_t topic_count = 12;
 std::string_view name_of(Topic topic);
 
-// What Vulkan says of it.
+// Whether Vulkan requires or recommends it.
 enum class Demand : std::uint8_t {
     must,    // "must", or what a command is defined to do
     should,  // "should", or what users count on and Vulkan leaves open
@@ -97,7 +97,7 @@ void run(Context& context, const Settings& settings, Recorder& recorder, bool qu
 std::vector<Record> records_of_ended(const Case& row, std::span<const Record> finished, const Settings& settings,
                                      const std::string& how);
 
-// Of records of a run: whether the driver fails what Vulkan demands; whether the suite itself does.
+// For records of a run: whether the driver breaks a requirement of Vulkan; whether the suite itself has a fault.
 bool fails_demands(std::span<const Record> records);
 bool has_fault_of_ours(std::span<const Record> records);
 

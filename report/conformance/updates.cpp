@@ -15,7 +15,7 @@ SceneInput updatable(GeometryInput geometry) {
     return scene;
 }
 
-// As many triangles elsewhere.
+// The same number of triangles at another place.
 void move_triangles(CaseRun& run, SceneInput& scene) {
     for (GeometryInput& geometry : scene.bottoms[0].geometries)
         geometry.positions = random_triangles(run.draws(), moved_triangles).positions;

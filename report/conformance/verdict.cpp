@@ -46,7 +46,7 @@ bool is_map_of(const Answer& answer, const Transform& to_world) {
     return true;
 }
 
-// What else is told of a hit that is the right one.
+// The other values of a hit on the right triangle.
 Finding judge_attributes(const Expectation& expectation, const Shot& shot, const Answer& answer, const Candidate& hit) {
     const InstanceInput& instance = expectation.instance(answer.instance);
     if (answer.custom_index != instance.custom_index || answer.sbt_offset != instance.sbt_offset)
@@ -75,7 +75,7 @@ Finding judge_hit(const Expectation& expectation, const Shot& shot, const Answer
     const bool is_inside =
         hit->is_box ? t >= shot.ray.t_min && t <= shot.ray.t_max : t > shot.ray.t_min && t < shot.ray.t_max;
     if (!is_inside) return Finding::outside_limits;
-    // What is reported is rounded once more.
+    // Reported values are rounded once more.
     const double slack = 0x1p-23 * std::abs(t);
     if (t < hit->t_low - slack || t > hit->t_high + slack) return Finding::wrong_t;
     const auto is_nearer = [&](const Candidate& c) { return c.is_sure && c.t_high < std::min(t, hit->t_low); };
@@ -88,7 +88,7 @@ Finding judge_hit(const Expectation& expectation, const Shot& shot, const Answer
 Finding judge_candidates(const Expectation& expectation, const Shot& shot, const Answer& answer,
                          std::span<const uint> offered) {
     const std::vector<Candidate> all = expectation.candidates(shot);
-    // What is opaque is committed, and ends the ray for what lies beyond.
+    // An opaque candidate is committed and ends the ray for everything beyond it.
     double end = INFINITY;
     for (const Candidate& candidate : all)
         if (candidate.is_opaque && !candidate.is_box) end = std::min(end, candidate.t_low);

@@ -33,10 +33,10 @@ inline constexpr std::size_t finding_count = 19;
 std::string_view name_of(Finding finding);  // "AGREE", "LOST", ...
 constexpr bool is_fault(Finding finding) { return finding > Finding::rounding; }
 
-// Of the committed hit of a ray whose refusals are as in the shot. Boxes are met at the shot's box_t.
+// Judges the committed hit of a ray whose refusals are as in the shot. Boxes are met at the shot's box_t.
 Finding judge_hit(const Expectation& expectation, const Shot& shot, const Answer& answer);
 
-// Of the candidates of a ray that refuses all of them.
+// Judges the candidates of a ray that refuses all of them.
 Finding judge_candidates(const Expectation& expectation, const Shot& shot, const Answer& answer,
                          std::span<const uint> offered);
 

@@ -33,8 +33,8 @@ class Explainer {
 };
 
 // Traces the ray of a replay file again on every accelerator of the device and tells step by step what each does and
-// why it is right or wrong. True: SwTlas shows a fault of ours, still. Throws Error where the scene is not the one that
-// the file names.
+// why it is right or wrong. True: SwTlas shows a fault of twinray, still. Throws Error where the scene is not the one
+// that the file names.
 bool show(const std::filesystem::path& file, frame::Devices& devices, std::ostream& out);
 
 }  // namespace twinray::replay

@@ -12,7 +12,7 @@
 namespace twinray::faults {
 namespace {
 
-// What twinray and VMA call, each function once: with the error that a driver would most likely return.
+// The functions that twinray and VMA call, each once, with the error that a driver would most likely return.
 #define TWINRAY_FALLIBLE(F)                                                     \
     F(vkEnumeratePhysicalDevices, VK_ERROR_INITIALIZATION_FAILED, false)        \
     F(vkEnumerateDeviceExtensionProperties, VK_ERROR_OUT_OF_HOST_MEMORY, false) \

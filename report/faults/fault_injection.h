@@ -27,8 +27,8 @@ constexpr std::uint64_t every_call = UINT64_MAX;
 
 using Counts = std::map<std::string, std::size_t>;
 
-// One at a time, around the contexts that use it. What fails is not passed on, except that a device that is reported
-// lost is first waited for: the work of a lost device counts as finished.
+// One at a time, around the contexts that use it. A call that fails is not passed on, except that a device that is
+// reported lost is first waited for: the work of a lost device counts as finished.
 class FaultInjector {
   public:
     FaultInjector();
@@ -90,7 +90,7 @@ bool may_be_harmless(const std::string& function);
 
 enum class Outcome { done, error, lost };
 
-// What an action came to, and the text of its Error.
+// The outcome of an action, and the text of its Error.
 Outcome outcome_of(const std::function<void()>& action, std::string* what = nullptr);
 std::string what_is_thrown_by(const std::function<void()>& action);
 

@@ -67,7 +67,7 @@ class Devices {
     static std::unique_ptr<AbstractAccel> make_accel(Context& context, Backend backend, const AccelOptions& options);
     // Compiled when first needed; not for the pipeline, in which no kernel traces.
     const CrossingCounter& crossing_counter(const Configuration& configuration);
-    // What the library has warned of since the last call; cases provoke warnings, so they are not printed.
+    // The warnings of the library since the last call; cases provoke warnings, so they are not printed.
     std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
     // After a failure: the next case gets new ones.
     void drop_accels();

@@ -22,7 +22,7 @@ Outcome outcome_of(const Record& record, bool is_strict) {
     return fails ? Outcome::failed : Outcome::tolerated;
 }
 
-// Which of two outcomes of one check is told.
+// Selects one of two outcomes of a check.
 int rank(Outcome outcome) {
     switch (outcome) {
         case Outcome::skipped: return 0;

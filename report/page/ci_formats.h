@@ -14,7 +14,7 @@ namespace twinray::report {
 struct Check {
     enum class Outcome : std::uint8_t {
         passed,
-        failed,     // a fault of ours; strictly, of the driver, too
+        failed,     // a fault of twinray; with --strict also of the driver
         tolerated,  // a fault of the driver
         skipped     // not run, or only measured
     };
@@ -30,9 +30,9 @@ struct Check {
 // In the order of the records. Strictly, a fault of the driver fails: of cases K that Vulkan only advises it does not.
 std::vector<Check> checks_of(std::span<const Record> records, bool is_strict);
 
-// JUnit XML, as CI systems take it: a test suite for each device. What is tolerated or skipped is skipped there.
+// JUnit XML, as CI systems take it: a test suite for each device. Tolerated and skipped checks are skipped there.
 std::string junit_xml(std::span<const Check> checks);
-// Test Anything Protocol 14. What is tolerated is "not ok ... # TODO".
+// Test Anything Protocol 14. A tolerated check is "not ok ... # TODO".
 std::string tap(std::span<const Check> checks);
 // SARIF 2.1.0: a result for each fault, an error where it fails, else a warning.
 std::string sarif(std::span<const Check> checks, const std::string& version);

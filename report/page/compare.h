@@ -49,10 +49,10 @@ struct Comparison {
 // Records correspond where case, settings, accelerator, level and variant are the same. Counts of classes and of faults
 // are compared by Fisher's exact test, for each record and for each accelerator and level over all cases of as many
 // rays. Where seeds differ, so do the scenes, in which the rays of a case are no independent trials: then only over all
-// cases, by the sign test of whole cases. Times, of as many rays, are compared by the bootstrap. What is left of the
-// tests by Holm's procedure (1979) at false_alarms is a change. Certain, without a test: a fault of ours where there
-// was none; a record of under 100 items that asked the same (seed and n) and passes no more, or again; a record that
-// ran and does not, or all of a case, accelerator and level.
+// cases, by the sign test of whole cases. Times, of as many rays, are compared by the bootstrap. A test that Holm's
+// procedure (1979) keeps at false_alarms is a change. Certain, without a test: a fault of twinray where there was none;
+// a record of under 100 items that asked the same (seed and n) and passes no more, or again; a record that ran and does
+// not, or all of a case, accelerator and level.
 Comparison compare(std::span<const Record> before, std::span<const Record> now);
 
 // Reports beside each other, as text: compare_text.cpp.
@@ -67,7 +67,7 @@ NamedReport read_report(const std::filesystem::path& path);
 // Device, driver and version of each, and a table in Markdown: how often each was wrong in which way, which cases of
 // the driver's own structures it fails, and how its time compares with SwTlas's.
 void print_side_by_side(std::ostream& out, std::span<const NamedReport> reports);
-// What changed, how times did, and a verdict with its chance to be a false alarm.
+// The changes, the ratios of times, and a verdict with its probability of a false alarm.
 void print_comparison(std::ostream& out, const Comparison& comparison);
 
 }  // namespace twinray::report

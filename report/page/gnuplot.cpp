@@ -33,7 +33,7 @@ struct Axis {
     }
 };
 
-// What the points reach, with some room; more of it where texts follow on points, and for the arrow of a bound.
+// The range of the points, with a margin; the margin is larger if labels follow points, and for the arrow of a bound.
 Axis axis_of(const std::vector<double>& values, bool is_log, double room_after) {
     Axis axis{*std::min_element(values.begin(), values.end()), *std::max_element(values.begin(), values.end()), is_log,
               false};
@@ -113,7 +113,7 @@ std::vector<Label> labels_of(const Figure& figure, const Axes& axes) {
     return labels;
 }
 
-// Where powers of ten alone would leave an axis with one number or none.
+// Used if powers of ten alone would leave an axis with one number or none.
 void write_tics(std::ostream& out, char axis, const Axis& range) {
     const std::vector<double> tics = log_tics(range.low, range.high);
     if (tics.empty()) return;

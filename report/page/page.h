@@ -23,7 +23,7 @@ struct PageInput {
     std::vector<std::string> reproducers = {};  // classes of faults, each with a folder in reproducers/
 };
 
-// One page of HTML that is XML, too, needs no script, and refers to nothing but the files beside it that it links.
+// One page of HTML that is also XML, needs no script, and refers to nothing but the files beside it that it links.
 std::string page(const PageInput& input);
 // Throws Error naming the file.
 void write_page(const std::filesystem::path& file, const PageInput& input);

@@ -8,7 +8,7 @@
 
 namespace twinray::report {
 
-// The verdict, each fault of ours, then how many records came to what.
+// The verdict, each fault of twinray, then how many records came to what.
 void print_summary(std::ostream& out, std::span<const Record> records);
 // Lines of a baseline that are no records of a report.
 void print_other_lines(std::ostream& out, const JsonLines& baseline);

@@ -50,13 +50,13 @@ std::vector<Finding> findings_of(std::span<const Record> records);
 // "0.27 % (0.25 to 0.3) over 17 cases; most in W04, 4.6 % (4.2 to 5)", "0 of 230,000 rays, 17 cases (below ...)".
 std::string text_of(const Finding& finding);
 
-// What the findings say, as sentences: verdict.cpp.
+// The findings as sentences: verdict.cpp.
 
 // "pass", "fault of twinray", "fault of driver", "measured" or "not run".
 std::string result_of(const Record& record);
 // Whether Vulkan only advises what the record's case asks: who fails it is not at fault.
 bool is_only_advised(const Record& record);
-// Records that show a fault of ours: where there is one the command exits with 1.
+// Records that show a fault of twinray: where there is one the command exits with 1.
 std::size_t faults_of_ours(std::span<const Record> records);
 
 // The time of a trace over SwTlas's at watertight, of the same rays, 2048 or more: the geometric mean over the

@@ -12,8 +12,8 @@
 
 namespace twinray::replay {
 
-// What a reference was made of: meshes in the order of its instances, triangles by the same numbers; those that cannot
-// be hit have all vertices at 0. Masks and culling are left out.
+// The geometry of a reference: meshes in the order of its instances, triangles by the same numbers; triangles that
+// cannot be hit have all vertices at 0. Masks and culling are left out.
 Scene scene_of(const ReferenceScene& reference);
 
 // Binary glTF of positions and transforms alone, relative to the scene's origin: load_scene(file, dvec3(0)) gives the

@@ -39,7 +39,7 @@ FaultCase case_of(const Scene& scene, const Ray& ray, bool reorders);
 // `also` of `instance`, if there is such a one.
 FaultCase near_the_ray(const FaultCase& fault, std::size_t instance, std::size_t also);
 
-// What the driver is given: HwTlas builds each mesh in units of a power of two near its largest coordinate, which its
+// The input of the driver: HwTlas builds each mesh in units of a power of two near its largest coordinate, which its
 // instances then have in their transforms. Those that have their largest coordinate in [1, 2) stay as they are.
 FaultCase as_built(const FaultCase& fault);
 

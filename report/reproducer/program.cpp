@@ -38,7 +38,7 @@ std::string quoted(const std::string& words) {
     return literal + '"';
 }
 
-// In decimal, too, where it is not.
+// Also in decimal if it is not.
 void put_vertex(std::ostream& out, const vec3& p) {
     const std::string numbers = literals(p);
     out << "    {" << numbers << "},";

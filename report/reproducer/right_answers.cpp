@@ -13,7 +13,8 @@
 namespace twinray::reproducer {
 namespace {
 
-// Where u and v name points within point_error of the ray; all numbers where the ray sees the triangle edge-on.
+// The range in which u and v name points within point_error of the ray; all numbers if the ray sees the triangle
+// edge-on.
 void set_barycentrics(RightHit& right, const TriangleBound& bound) {
     const dvec2 a = bound.vertices[1] - bound.vertices[0], b = bound.vertices[2] - bound.vertices[0],
                 ray = -bound.vertices[0];
@@ -31,7 +32,7 @@ bool is_right(const ReferenceScene& reference, const Ray& ray, const Hit& hit) {
     return !is_fault_of_hardware(class_of(reference, ray, hit));
 }
 
-// Of a number that has a short fraction this, too.
+// Also as a short fraction if the number has one.
 std::string words_of(const exact::Rational& value) {
     const std::string fraction = value.get_str();
     std::ostringstream out;

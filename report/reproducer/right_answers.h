@@ -30,7 +30,7 @@ struct RightAnswers {
     bool allow(const Hit& hit) const;
 };
 
-// What an answer of the driver's is worth, by the exact reference where float64 cannot tell.
+// Judges an answer of the driver by the exact reference, if float64 cannot decide.
 HitClass class_of(const ReferenceScene& reference, const Ray& ray, const Hit& hit);
 
 // All that class_of() finds no fault of hardware in: the exact answer to some ray within float32 rounding of this one.

@@ -27,7 +27,7 @@ std::string write_reproducer(const std::filesystem::path& folder, const std::fil
 
 // Of the first fault of each class of the driver's that these replay files hold and the driver still shows, into
 // `folder`/HW_LEAK, ...; files are tried in their order until `seconds` have passed in all. Prints a line for each.
-// Returns how many folders were written. Faults of ours, and of drivers that are not here, are passed over.
+// Returns how many folders were written. Faults of twinray, and of drivers that are not here, are passed over.
 std::size_t write_reproducers(const std::filesystem::path& folder, std::span<const std::filesystem::path> replay_files,
                               frame::Devices& devices, std::ostream& out, double seconds = default_seconds);
 

@@ -29,7 +29,7 @@ Scene scene_with(const Mesh& mesh, std::vector<Transform> transforms = {Transfor
     return scene;
 }
 
-// What a configuration answers and what the CPU reference does, batch by batch.
+// The answers of a configuration and of the CPU reference, batch by batch.
 Difference compared(CaseRun& run, const Configuration& configuration, const Scene& scene, std::span<const Ray> rays,
                     const std::optional<Control>& control = {}) {
     const World world = world_of(scene);
@@ -52,7 +52,7 @@ std::vector<Configuration> precise_configurations(CaseRun& run) {
     return chosen;
 }
 
-// Where contraction does harm: edges of cells far from the origin.
+// Contraction does harm here: edges of cells far from the origin.
 Mesh far_grid() {
     Mesh grid = make_grid(32, 32);
     for (vec3& position : grid.positions) position = position * 32.0f + vec3(1e7f, 0, 1e7f);
@@ -81,7 +81,7 @@ void record_contraction(CaseRun& run, const Configuration& configuration, const 
     run.add(record);
 }
 
-// Instances under rotations and uneven scales, so that the inverse and the transformed ray are in play, too.
+// Instances under rotations and uneven scales, so that the inverse and the transformed ray are also used.
 std::vector<Transform> uneven_transforms() {
     return {Transform{},
             Transform{{vec4(0.3f, 0.8f, 0.1f, 2), vec4(-0.7f, 0.2f, 0.4f, 0.5f), vec4(0.1f, -0.3f, 1.7f, 1)}},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Refits: what has moved many times answers as what is built anew.
+// Refits: an accelerator that has moved many times answers like a new one.
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -25,7 +25,7 @@ class RandomWalk {
     std::mt19937 random_;
 };
 
-// What ties are decided by may differ between a refit and a rebuild of a driver's tree, t may not.
+// Ties may be decided differently by a refit and a rebuild of a driver's tree, but t may not differ.
 bool is_same(const Hit& a, const Hit& b, bool exactly) {
     if (exactly) return std::memcmp(&a, &b, sizeof a) == 0;
     return a.hit == b.hit && a.t == b.t;

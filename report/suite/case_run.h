@@ -8,7 +8,7 @@
 
 namespace twinray::suite {
 
-// What a case says about one of its measurements.
+// The result of one measurement of a case.
 struct Measurement {
     Values params = {};
     Values results = {};
@@ -20,7 +20,7 @@ struct Measurement {
     std::optional<Control> control = {};
 };
 
-// What was checked, for what a case asks of the answers beyond their classes.
+// The checked data, for demands of a case beyond the classes of its answers.
 struct Measured {
     std::vector<Traced> traces;            // one of each configuration
     std::vector<ReferenceHit> references;  // one of each ray
@@ -80,13 +80,13 @@ class CaseRun {
     // A record of this case, to be filled further and added.
     Record record(const Configuration& configuration) const;
     void add(Record record);
-    // The same of what is computed from an accelerator's answers: what did not pass is ours, or the driver's where
-    // SwTlas passed with the same settings.
+    // The same of what is computed from an accelerator's answers: a failure is a fault of twinray, or the driver's
+    // where SwTlas passed with the same settings.
     void add_computed(Record record);
-    // Of the cases before this one, too.
+    // Includes the cases before this one.
     std::span<const Record> earlier() const { return recorder_.records(); }
     void add_not_run(const std::string& reason, const Configuration* configuration = nullptr);
-    void add_failure(const std::string& what);  // an exception: a fault of ours
+    void add_failure(const std::string& what);  // an exception: a fault of twinray
 
   private:
     Record blank() const { return record_of(row_, settings_.seed); }

@@ -17,11 +17,11 @@ std::optional<double> t_ulps(const ReferenceHit& reference, const Hit& hit);
 // The figures of t_ulps; nothing where there is none. The floor is the half unit of rounding t itself.
 std::optional<ErrorFigures> t_error(std::span<const ReferenceHit> references, std::span<const Hit> hits);
 
-// What one accelerator's answers are worth.
+// The quality of one accelerator's answers.
 struct CheckResult {
     HitClassCounts classes;
-    std::uint64_t faults = 0;  // of ours, or of the driver's; hits of rays that nobody may trace among them
-    std::string example;       // see Record::example
+    std::uint64_t faults = 0;                     // of twinray or of the driver; includes hits of invalid rays
+    std::string example;                          // see Record::example
     std::optional<std::size_t> first_fault = {};  // its ray
 };
 CheckResult check(const ReferenceScene& reference, std::span<const Ray> rays, std::span<const Hit> hits,

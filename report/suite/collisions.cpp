@@ -105,7 +105,7 @@ void orders(CaseRun& run) {
     ask_classes(run, pairs, "exact");
 }
 
-// Of which every triangle is a segment or a point.
+// A mesh in which every triangle is a segment or a point.
 void degenerate(CaseRun& run) {
     std::vector<KnownPair> pairs;
     for (TrianglePair pair : lattice_pairs(run.amount(20'000, 1'000'000), run.seed() + 1)) {

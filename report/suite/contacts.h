@@ -31,7 +31,7 @@ using ContactCounts = std::map<PairClass, std::uint64_t>;
 void ask_contacts(CaseRun& run, const std::string& what, const std::vector<MeshView>& meshes,
                   const std::vector<MeshInstance>& instances, const ContactCounts& known,
                   const std::string& reference = "analytic", bool self = false);
-// Of two boxes of make_box() with a wall in common: what brute force with exact classes counts.
+// The contacts of two boxes of make_box() with a common wall, counted by brute force with exact classes.
 ContactCounts wall_to_wall();
 void ask_same_contacts(CaseRun& run, const std::vector<MeshView>& meshes, const std::vector<MeshInstance>& some,
                        const std::vector<MeshInstance>& others);

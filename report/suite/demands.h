@@ -18,7 +18,7 @@ CaseRun::Outcome ask_each(const Traced& traced, std::span<const Ray> rays,
 std::string why_bits_may_differ(CaseRun& run, const Configuration& configuration);
 
 // From Level::refined on: t of every hit that names the reference's primitive is within so many units in its last
-// place. What is wrong is ours, also on hardware: the library computes it.
+// place. A wrong result is a fault of twinray, also on hardware, because the library computes it.
 void expect_refined_t(CaseRun& run, const Measured& measured, std::span<const Ray> rays, double ulps, Values params);
 
 // Where coordinates, directions or distances are not normal floats, which devices may flush to zero: an Error, or

@@ -208,7 +208,7 @@ void with_two_matrices(CaseRun& run) {
 
 }  // namespace
 
-// The closest hits of hardware and ours; where a ray slips through the classes say whether the gap allows it.
+// The closest hits of both accelerators; where a ray slips through the classes say whether the gap allows it.
 void t_junctions(CaseRun& run) {
     Mesh mesh;
     std::vector<TJunction> junctions;

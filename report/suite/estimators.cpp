@@ -89,7 +89,7 @@ class Estimators {
     Faces faces_;
 };
 
-// What came of the seeds.
+// The results of the seeds.
 struct Series {
     std::vector<double> errors, ms;
     std::uint64_t inside = 0, faults = 0, rays = 0;

@@ -8,14 +8,14 @@
 
 namespace twinray::suite {
 
-// What is estimated: a view factor between two meshes of a scene.
+// The estimated quantity: a view factor between two meshes of a scene.
 struct FactorQuestion {
     Scene scene;
     double value;   // the truth
     uint from = 0;  // mesh
     uint to = 1;
     bool of_open = false;  // instead: what of `from` meets nothing, 1 - F where there is nothing else
-    Values params = {};    // by which the question is told from others of the case
+    Values params = {};    // which distinguish the question from others of the case
     Values results = {};   // to be told beside
 };
 

@@ -21,7 +21,7 @@ Scene perpendicular(float w, float h);
 Mesh disc(uint corners);
 // Half of a sphere of radius 1 below z = 0, of corners x corners / 4 cells, that looks inwards.
 Mesh cup(uint corners);
-// What is left of the square [-margin, 1 + margin]^2 at the height z without the square of this side in its middle.
+// The square [-margin, 1 + margin]^2 at the height z without the square of this side in its middle.
 Mesh frame(float z, float margin, float side);
 
 }  // namespace twinray::suite

@@ -87,8 +87,8 @@ PixelPlane gaussian(double rate, int radius) {
     return weights;
 }
 
-// What the eye resolves of each channel: contrast sensitivity as sums of gaussians a sqrt(pi / b) exp(-pi^2 x^2 / b)
-// over x in degrees (Johnson and Fairchild 2003).
+// The resolution of the eye for each channel: contrast sensitivity as sums of gaussians a sqrt(pi / b) exp(-pi^2 x^2 /
+// b) over x in degrees (Johnson and Fairchild 2003).
 PixelPlanes seen(const PixelPlanes& opponent, double pixels_per_degree) {
     constexpr double pi = 3.14159265358979;
     struct Gaussian {

@@ -114,7 +114,7 @@ double area_of(const Mesh& mesh) {
     return area;
 }
 
-// What leaves a cup passes its rim's plane, and all that enters there meets the cup.
+// All radiation that leaves a cup passes its rim's plane, and all that enters there meets the cup.
 void hollow(CaseRun& run) {
     for (const uint corners : {8u, 32u}) {
         const Mesh mesh = cup(corners);
@@ -176,7 +176,7 @@ void unlike_areas(CaseRun& run) {
 }
 
 // Howell has no closed form of two spheres side by side: by quadrature, as radii of 1 and 1 at distances of 3 and 4, 1
-// and 2 at 6. Of polyhedra contours tell the truth.
+// and 2 at 6. Contour integrals are exact for polyhedra.
 void separate_spheres(CaseRun& run) {
     const auto ask = [&](float radius, float distance, double known) {
         for (const uint subdivisions : {0u, 1u}) {

@@ -88,7 +88,7 @@ void zero_directions(CaseRun& run) {
     run.measure(world_of(sphere), every_second(sphere, run.amount(8'192, 1'000'000), run.seed(), spoil));
 }
 
-// NaN, 1e38 and denormal numbers in origins and directions, which order the rays, too.
+// NaN, 1e38 and denormal numbers in origins and directions, which also affect the order of the rays.
 void extreme_rays_in_order(CaseRun& run) {
     const Mesh sphere = make_icosphere(4);
     constexpr std::array numbers = {nan, inf, -inf, 1e38f, -1e38f, 1e-40f, -0.0f};
@@ -115,7 +115,7 @@ struct EndedRay {
     bool hits;
 };
 
-// Straight down onto z = 0 from heights that are exact in float32, so that t is exact, too.
+// Straight down onto z = 0 from heights that are exact in float32, so that t is also exact.
 std::vector<EndedRay> rays_that_end_at_the_hit() {
     std::vector<EndedRay> rays;
     for (const float height : {0x1p-20f, 0.375f, 1.0f, 4.0f, 1000.0f, 0x1p20f})

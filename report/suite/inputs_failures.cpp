@@ -14,7 +14,7 @@ namespace {
 using faults::Fault;
 using faults::FaultInjector;
 
-// A context, an accelerator and its hits. What a failing call leaves is kept, so that it can be tried again.
+// A context, an accelerator and its hits. The result of a failing call is kept, so that it can be tried again.
 class Session {
   public:
     Session(const Devices& devices, const Configuration& configuration, const FaultInjector& vulkan)
@@ -100,7 +100,7 @@ class FailingRuns {
     }
 
   private:
-    // As the part begins.
+    // The state at the beginning of the part.
     void prepare(FailingPart part) {
         if (part == FailingPart::trace) return static_cast<void>(session_.hits(world_, rays_));
         session_.end();

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint64_t four_gib = std::uint64_t{1} << 32;
 
-// What a context and an accelerator look like from outside.
+// The visible state of a context and an accelerator.
 struct Seen {
     std::uint64_t allocated_bytes, revision;
     Hit hit;

@@ -42,7 +42,7 @@ void spoiled_vertex(CaseRun& run, int axis, float value, const char* setting) {
                     .fault_of = "twinray"});
 }
 
-// What is to be refused, and a part of the error's text.
+// An input that must be refused, and a part of the error's text.
 struct WrongUse {
     const char* what;
     const char* named;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double rounding_of_path = 2e-6;  // of what float32 adds up along a path, relative
 
-// Of one seed.
+// The picture of one seed.
 struct FlatPicture {
     double mean = 0, variance = 0;  // of the pixels
     double rms = 0;                 // of their relative errors

@@ -11,14 +11,14 @@ namespace twinray::suite {
 
 using path_tracer::RenderSettings;
 
-// What is rendered, but for its samples and seed.
+// The rendered picture, except for its samples and seed.
 struct RenderDesc {
     Scene scene = {};
     float sky = 0;  // radiance from everywhere
     RenderSettings settings = {.width = 16, .height = 16};
 };
 
-// Of a pinhole camera whose picture is 2 half_height high at distance 1.
+// A pinhole camera whose picture is 2 half_height high at distance 1.
 path_tracer::CameraRays look(vec3 from, vec3 at, float half_height);
 // Adds an instance of a mesh of one material.
 void add(Scene& scene, Mesh mesh, const Material& material);
@@ -31,7 +31,7 @@ inline constexpr std::array all_strategies = {path_tracer::STRATEGY_MIS, path_tr
                                               path_tracer::STRATEGY_BSDF};
 std::string name_of_strategy(uint strategy);
 
-// What no pixel may be. Each record of a picture has it in its counts, and case P10 sums them up.
+// The values that no pixel may have. Each record of a picture has it in its counts, and case P10 sums them up.
 struct Census {
     std::uint64_t pixels = 0;
     std::uint64_t not_finite = 0;

@@ -115,7 +115,7 @@ void lights_over_a_floor(CaseRun& run) {
             }
 }
 
-// What a small mesh so far above the origin sends there, over pi: the areas it shows, in float64.
+// The light that a small mesh so far above the origin sends there, over pi: the areas it shows, in float64.
 double seen_over_pi(const Mesh& mesh, double height) {
     double sum = 0;
     for (const uvec3& triangle : mesh.triangles) {

@@ -77,7 +77,7 @@ struct Method {
     }
 };
 
-// What one method makes of the box on one configuration: pictures by seed, then by samples.
+// The results of one method for the box on one configuration: pictures by seed, then by samples.
 struct ExposureSeries {
     Configuration configuration;
     Method method;

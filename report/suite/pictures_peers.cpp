@@ -23,7 +23,7 @@ struct Scores {
     double mean = 0, rms = 0, largest = 0, relative_mse = 0;
 };
 
-// Of runs with seeds of their own against means with standard errors.
+// Compares runs with different seeds with means that have standard errors.
 Scores scores_of(std::span<const std::vector<double>> runs, std::span<const double> mean,
                  std::span<const double> error) {
     Scores scores;

@@ -42,7 +42,7 @@ Bsdf glass(float alpha, float eta) {
 
 vec3 direction(float cosine) { return {std::sqrt(1 - cosine * cosine), 0, cosine}; }
 
-// Of the CPU: no accelerator takes part.
+// On the CPU, without an accelerator.
 Record record_of_cpu(CaseRun& run, const Values& params) {
     Record record = run.record({});
     record.backend = "cpu";
@@ -156,7 +156,7 @@ std::size_t bin_of(vec3 w) {
     return band * sectors + std::min(static_cast<uint>(turns * sectors), sectors - 1);
 }
 
-// What each bin should get of all samples, by the midpoint rule over the density.
+// The expected share of each bin in all samples, by the midpoint rule over the density.
 std::vector<double> expected_shares(const Bsdf& bsdf, vec3 wo) {
     constexpr uint fine = 96;
     std::vector<double> shares(std::size_t{bands} * sectors);

@@ -50,9 +50,9 @@ dvec3 point_of(const Mesh& mesh, uint primitive, double u, double v) {
     return (1 - u - v) * a + u * b + v * c;
 }
 
-// What far cameras lose: the triangle, and the point, which u and v give without the coarse t. From level refined on, u
-// and v are rounded once (2^-24 each) from float64, whose roundings at the distance are 2^-53 each. Another triangle
-// than the reference's is right within what float32 rounding does to a ray that begins two sizes of the field away, as
+// Far cameras lose the triangle, and the point that u and v give without the coarse t. From level refined on, u and v
+// are rounded once (2^-24 each) from float64, whose roundings at the distance are 2^-53 each. Another triangle than the
+// reference's is right within what float32 rounding does to a ray that begins two sizes of the field away, as
 // ErrorBounds tell, on a surface that it meets at a slope of up to 4.
 void expect_right_points(CaseRun& run, const Measured& measured, const Mesh& mesh, std::span<const Ray> rays,
                          double distance, double size) {

@@ -13,7 +13,7 @@ Context& query_context(CaseRun& run);
 
 // A record without a backend and a level.
 Record query_record(CaseRun& run, const std::string& reference, const std::string& variant = {});
-// With the ray_result: any fault is ours, and `what` it was.
+// With the ray_result: any fault is twinray's, and `what` it was.
 void add_checked(CaseRun& run, Record record, std::uint64_t faults, const std::string& what);
 
 double seconds_of(const std::function<void()>& work);

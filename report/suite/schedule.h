@@ -13,7 +13,7 @@ namespace twinray::suite {
 // How much of a case is done, from its least (0) to its full amount (1).
 inline constexpr double effort_step = 0.25;
 
-// What is known of a case that has run.
+// The knowledge about a case that has run.
 struct CaseProgress {
     double effort = 0;
     double seconds = 0;       // the last run

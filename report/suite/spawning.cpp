@@ -19,7 +19,7 @@ Values prices_of(std::span<const SpawnPrice> prices) {
     return {{"offset_per_feature_median", quantile(shares, 0.5)}, {"offset_per_feature_max", shares.back()}};
 }
 
-// What came of the rays of each method.
+// The outcome of the rays of each method.
 struct Tally {
     std::map<SpawnOutcome, std::uint64_t> outcomes = {};
     std::string example = {};  // the first fault
@@ -116,7 +116,7 @@ SpawnOutcome meets_itself(const SpawnItem& item, const Hit& hit) {
     return hit.hit && hit.primitive_index == item.primitive ? SpawnOutcome::false_hit : SpawnOutcome::right;
 }
 
-// Of departures whose rays may meet other triangles.
+// Departures whose rays may meet other triangles.
 void measure_self_hits(CaseRun& run, const Spawner& spawner, Departures departures) {
     departures.outcome_of = [&](std::size_t i, const Hit& hit, const SpawnPrice&) {
         return meets_itself(departures.items[i], hit);

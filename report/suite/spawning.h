@@ -38,7 +38,7 @@ void leave_a_concave_corner(CaseRun& run);
 // scaled_surfaces.cpp
 void surfaces_of_scaled_instances(CaseRun& run);
 
-// What came of a ray that left a surface.
+// The outcome of a ray that left a surface.
 enum class SpawnOutcome : std::uint8_t {
     right,
     false_hit,  // of its own triangle, or of nothing that lies there

@@ -36,7 +36,7 @@ struct Corner {
     std::vector<double> distance;  // how far the ray may be moved at least before it meets what it did not, or no more
 };
 
-// Of the line through p along `way` from the line through `corner` along `edge`.
+// The distance of the line through p along `way` from the line through `corner` along `edge`.
 double distance_of_lines(const dvec3& p, const dvec3& way, const dvec3& corner, const dvec3& edge) {
     const dvec3 across = cross(way, edge);
     return std::abs(dot(corner - p, normalize(across)));

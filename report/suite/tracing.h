@@ -28,14 +28,14 @@ struct Control {
 
 // Without `precise`: no operation is NoContraction. Leaks where the driver contracts or reassociates.
 Control without_precise();
-// What a driver that contracts makes of that, on any driver with float64: edge functions by one rounding instead of
-// two, so that two triangles may disagree about the edge between them.
+// The result of a driver that contracts, computed on any driver with float64: edge functions with one rounding instead
+// of two, so that two triangles may disagree about the edge between them.
 Control contracted();
 // Boxes as they are: planes that a ray reaches at the same t are told apart by rounding. Those of compressed4 are
 // rounded outwards by more, so that it takes bvh2 to see what the padding is for.
 Control without_padding();
 
-// What the rays of a case meet.
+// The scene that the rays of a case meet.
 struct World {
     std::function<void(AbstractAccel&)> fill;  // into an empty accelerator
     ReferenceScene reference;                  // of the same

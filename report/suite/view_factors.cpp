@@ -53,7 +53,7 @@ void discs(CaseRun& run) {
     for (const uint corners : {8u, 16u, 32u}) {
         const Scene scene = scene_of({disc(corners), seen_from_inside(disc(corners))}, vec3(0, 0, 1));
         const double value = contour_value(scene, 0, 1);
-        // A polygon is not a disc: what that does is told beside, and no fault.
+        // A polygon is not a disc: its effect is reported separately and is no fault.
         measure_factor(
             run,
             {.scene = scene,

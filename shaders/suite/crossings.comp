@@ -17,7 +17,8 @@ layout(push_constant, scalar) uniform Push
 uint crossings = 0u; // of this invocation's ray
 
 #ifdef TWINRAY_HW
-// A driver may offer the same triangle more than once, which is no second crossing. As many as fit here are told apart.
+// A driver may offer the same triangle more than once, which is no second crossing. The kernel distinguishes as many
+// crossings as fit here.
 uvec2 met[16];
 
 bool is_met_again(Candidate candidate)

@@ -480,7 +480,7 @@ TEST_P(Accel, TransformsComeFromDeviceMemory) {
     accel().update_transform_at(handle, 0, Transform{});
     accel().update_transform_at(handle, 2, moved[2]);
     EXPECT_EQ(closest(down(4.5f, 0.25f)).t, 8.0f) << "between two host edits";
-    // What the device holds survives a change of structure.
+    // The contents of the device survive a change of structure.
     accel().erase(other);
     accel().push(square(-3));
     EXPECT_EQ(closest(down(4.5f, 0.25f)).t, 8.0f);
@@ -557,7 +557,7 @@ TEST_P(Accel, HandlesShareAGeometry) {
     EXPECT_EQ(accel().handle_of(closest(down(2.0f, 0.0f))), second);
     EXPECT_EQ(accel().handle_of(closest(down(0.0f, 0.0f))), first);
     EXPECT_EQ(accel().index_in_handle(closest(down(4.0f, 0.0f))), 1u);
-    // What changes it changes it for all, and it lives as long as one of them.
+    // A change applies to all of them, and it lives as long as one of them.
     accel().update(first, square(3));
     EXPECT_EQ(closest(down(4.5f, 0.25f)).t, 7.0f);
     EXPECT_TRUE(accel().erase(first));

@@ -44,7 +44,7 @@ class AccelTest : public VulkanTest, public ::testing::WithParamInterface<Kind> 
     bool is_ours() const { return GetParam() == Kind::software || GetParam() == Kind::reference; }
     // Not the order of the input alone, whatever the driver makes of it.
     bool measures_its_trees() const { return is_ours() || context().state().tuning().builds_in_input_order; }
-    // Of a whole scene. A GPU's driver may invert instances' maps by a determinant in float32 (docs/requirements.md).
+    // For a whole scene. A GPU's driver may invert instances' maps by a determinant in float32 (docs/requirements.md).
     float smallest_scale() const {
         return is_ours() || context().state().tuning().row == TuningRow::cpu_driver ? 1e-18f : 1e-12f;
     }
@@ -135,7 +135,7 @@ inline const auto every_level = ::testing::ValuesIn(all_levels);
 inline Mesh square(float z) { return make_quad(vec3(0, 0, z), vec3(1, 0, 0), vec3(0, 1, 0)); }
 inline Ray down(float x, float y) { return {vec3(x, y, 10), 0, vec3(0, 0, -1), INFINITY}; }
 
-// What the Error that it throws says; "" where it throws none.
+// The text of the Error that it throws; "" if it throws none.
 inline std::string error_if_any(const std::function<void()>& action) {
     try {
         action();

@@ -11,7 +11,7 @@ namespace {
 
 class Churn : public test::AccelTest {
   protected:
-    // What the accelerator should hold, in push order.
+    // The expected contents of the accelerator, in push order.
     struct Placed {
         AccelHandle handle;
         Mesh mesh;

@@ -88,7 +88,7 @@ class DeviceMeshTest : public test::AccelTest {
         }
         return rays;
     }
-    // Of another accelerator that got the mesh from the host.
+    // The result of another accelerator that got the mesh from the host.
     void expect_hits_of(const Mesh& mesh, const char* what) {
         const auto other = make_accel();
         other->push(mesh);

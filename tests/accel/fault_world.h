@@ -118,7 +118,7 @@ class World {
         EXPECT_EQ(distances(download<Hit>(context(), hits, world_rays.size())), view_expected_);
     }
 
-    // What must not change when something fails.
+    // State that must not change when something fails.
     struct State {
         std::size_t n_instances, n_geometries;
         std::uint64_t revision, structure_bytes;

@@ -17,7 +17,7 @@ using test::square;
 
 class LeftOut : public test::AccelTest {
   protected:
-    // Of the last sync.
+    // The state after the last sync.
     std::vector<std::string> passes() {
         accel().wait_for_gpu();
         std::vector<std::string> names;

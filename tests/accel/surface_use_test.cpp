@@ -156,7 +156,7 @@ TEST_P(SurfaceUse, WrongUseIsNamed) {
     EXPECT_NO_THROW(without->handle_of(hit));
 }
 
-// What nobody asked for takes no memory.
+// Data that nobody requested takes no memory.
 TEST_P(SurfaceUse, TakeNoMemoryUnlessAskedFor) {
     std::mt19937 random(1);
     const FullMesh full(make_icosphere(4), random);

@@ -37,7 +37,7 @@ dvec3 by_cofactors(const Transform& m, const dvec3& n) {
     return dvec3(dot(x, n), dot(y, n), dot(z, n)) * (dot(a, x) < 0 ? -1.0 : 1.0);
 }
 
-// What interpolating in float64 gives, and its bound.
+// The result of interpolation in float64, and its bound.
 template <class V>
 void expect_interpolated(const std::vector<V>& values, const Surface& surface, const V& found, const char* what) {
     const double weights[] = {1 - double(surface.uv.x) - double(surface.uv.y), surface.uv.x, surface.uv.y};
@@ -158,7 +158,7 @@ TEST_P(Surfaces, AreTheSameBitsOnEveryAccelerator) {
     for (std::size_t i = 0; i < rays.size(); ++i) ASSERT_EQ(differing_word(ours[i], theirs[i]), -1) << i;
 }
 
-// What the device's functions read, in the host's memory.
+// The data that the device's functions read, in the host's memory.
 struct HostTable {
     struct Block {
         std::byte before[GEOMETRY_SOURCE_OFFSET];
@@ -230,7 +230,7 @@ TEST_P(Surfaces, AreWhatTheSameFunctionsGiveOnTheHost) {
     }
 }
 
-// What a kernel of a user's found.
+// The results of a user's kernel.
 struct FoundByKernel {
     std::vector<Surface> surfaces;
     std::vector<vec4> others;  // two for each ray

@@ -13,7 +13,7 @@ import frozen_spirv
 
 QUERY, FEATURES, LEVEL = 0, 100, 101  # ids of the constants
 CLOSEST, ANY, WATERTIGHT = 0, 1, 1
-# What each backend may leave out; of layouts one stays.
+# The options that each backend may leave out; one of the layouts stays.
 OPTIONAL = {"sw": ["BOXES", "FILTERS", "BVH2", "COMPRESSED8", "INSTANCES", "MASKS", "CULLING", "TRANSFORMS", "HITS"],
             "hw": ["BOXES", "FILTERS", "REMAP", "HITS"]}
 LEAST = {"sw": ["COMPRESSED"], "hw": []}

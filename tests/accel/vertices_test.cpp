@@ -77,7 +77,7 @@ TEST_P(Vertices, VerticesComeFromDeviceMemory) {
     accel().update_vertices(handle, raised(mesh, 4));
     accel().update_vertices(handle, two.ref<float>(), 4);
     EXPECT_EQ(closest(down(0.5f, 0.25f)).t, 8.0f);
-    // What the device holds survives a change of structure.
+    // The contents of the device survive a change of structure.
     accel().push(square(-3));
     accel().update_transform(early, Transform::translation({7, 0, 0}));
     EXPECT_EQ(closest(down(0.5f, 0.25f)).t, 8.0f);

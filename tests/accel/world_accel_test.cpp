@@ -105,7 +105,7 @@ TEST_P(WorldAccelTest, HitsFarAwayAreAsGoodAsNear) {
     world.push(MeshView64{"sphere", positions, sphere_.triangles});
     const std::vector<Ray64> rays = rays_at(far_away, 1500);
     expect_hits(positions, rays, world.closest_hits(rays));
-    // What the same takes without: metres.
+    // The same without an origin takes these, in metres.
     WorldAccel far_origin(accel(), {});
     EXPECT_GT(std::abs(double(far_origin.local(positions[0]).x) - positions[0].x), 0.01);
 }

@@ -16,7 +16,7 @@ class CentroidTest : public AnalysisTest {
 };
 TWINRAY_OVER_EVERY_ACCEL(CentroidTest);
 
-// What does not depend on the accelerator.
+// Results that do not depend on the accelerator.
 class CentroidRulesTest : public CentroidTest {};
 TWINRAY_OVER_SOFTWARE(CentroidRulesTest);
 

@@ -107,7 +107,7 @@ TEST(Contour, DoesNotDependOnPlaceAndScale) {
 
 constexpr std::uint64_t most_evaluations = 20'000;  // of two polygons: 4 ms
 
-// What is cut off a square a hair from an edge, and the rest of it, are the square.
+// A strip cut off a square at a hair's breadth from an edge, and the rest of the square, together are the square.
 TEST(Contour, OfSliversIsWhatIsLeftOfTheWhole) {
     const Surface floor = quad(dvec3(0), dvec3(1, 0, 0), dvec3(0, 1, 0));
     for (const double gap : {0.0, 1e-8, 0.5})

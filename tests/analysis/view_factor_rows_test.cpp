@@ -116,7 +116,7 @@ TEST(Projection, LeavesWhatFulfilsBothAlready) {
     EXPECT_LT(squared_error(rows, exact), 1e-13);
 }
 
-// What a row saw all its rays meet is certain, however little of the other's it is.
+// A target that all rays of a row met is certain, however small a part of the other it is.
 TEST(Projection, KeepsWhatAllRaysOfARowMet) {
     const std::vector<double> areas = {5, 1, 0x1p-40};
     std::vector<ViewFactorRow> rows(3);

@@ -70,7 +70,7 @@ TEST_P(ViewFactorCoverage, OfDiscsAndSpheres) {
     }
 }
 
-// What gets out of a gap is told by what is not met: 1 - F, which is as small as the gap.
+// The radiation that leaves a gap follows from what is not met: 1 - F, which is as small as the gap.
 TEST_P(ViewFactorCoverage, OfWhatLeavesNarrowGaps) {
     const std::vector<std::pair<float, double>> gaps = {
         {1e-1f, 1 - 0.826994522397256578},
@@ -94,7 +94,7 @@ TEST_P(ViewFactorCoverage, OfWhatLeavesNarrowGaps) {
         }
         EXPECT_GE(inside, 0.85 * test::seeds()) << gap;
         EXPECT_NEAR(mean / open, 1, 4 / std::sqrt(leaving)) << gap;
-        // Of independent rays; Sobol's err less.
+        // For independent rays; Sobol's have a smaller error.
         EXPECT_LT(std::sqrt(squares), 1.5 * std::sqrt((1 - open) / (open * static_cast<double>(rays)))) << gap;
     }
 }

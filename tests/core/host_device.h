@@ -15,7 +15,7 @@
 
 namespace twinray::test {
 
-// What a renderer would own: created with the requirements that twinray publishes.
+// A device as a renderer owns it, created with the requirements that twinray publishes.
 struct Host {
     VkInstance instance = VK_NULL_HANDLE;
     VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;

@@ -54,7 +54,7 @@ const Family families[] = {
     {"conformance_pipeline_", {Of::ray_pipelines}},
     {"conformance_", {Of::ray_queries}},
     {"materials_"},
-    // By twinray_add_kernel and twinray_add_trace_program.
+    // Made by twinray_add_kernel and twinray_add_trace_program.
     {"all_hits_"},
     {"headless_dispatch_"},
     {"feature_costs_program_"},
@@ -65,7 +65,7 @@ const Family families[] = {
     {"test_"},
 };
 
-// What a word of the name says, whatever its family.
+// The meaning of a word of the name, whatever its family.
 const std::map<std::string, Of> words = {{"hw", Of::ray_queries},           {"rahit", Of::ray_pipelines},
                                          {"rint", Of::ray_pipelines},       {"refined", Of::refinement},
                                          {"int64", Of::int64_kernels},      {"images", Of::images},
@@ -93,8 +93,8 @@ Parts parts_of_file(const std::filesystem::path& file) {
     return file.string().find("/samples/tutorials/") == std::string::npos ? parts_of(name) : parts_of_words(name);
 }
 
-// As the host gives them for a GPU; for a CPU's driver it asks the device (KernelTuning). Groups that have as many
-// invocations as a vector has lanes are at their largest.
+// The values that the host gives them for a GPU; for a CPU's driver it asks the device (KernelTuning). Groups that have
+// as many invocations as a vector has lanes are at their largest.
 std::map<std::uint32_t, std::uint32_t> constants_of(const std::string& module) {
     if (module.starts_with("engine_sort_scan")) return {{GROUP_SIZE_CONSTANT, SCAN_GPU_GROUP}};
     if (module.starts_with("engine_sort"))

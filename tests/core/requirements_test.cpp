@@ -78,7 +78,7 @@ TEST(Requirements, AreLimitsToo) {
     EXPECT_EQ(missing[2], "128 bytes of push constants (maxPushConstantsSize)");
 }
 
-// What a GPU of 2018 may lack is asked for by no other part than the one that needs it.
+// A feature that a GPU of 2018 may lack is required only by the part that needs it.
 TEST(Requirements, AreOfTheirPartAlone) {
     DeviceProperties properties = capable();
     properties.shader_float64 = properties.shader_int64 = properties.acceleration_structure = properties.ray_query =

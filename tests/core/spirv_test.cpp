@@ -98,7 +98,7 @@ class PrunedSpirv : public ::testing::Test {
     void write(const std::string& file, const Words& words) const {
         folder_.write(file, {reinterpret_cast<const char*>(words.data()), 4 * words.size()});
     }
-    // What is left of a kernel as text, which spirv-val finds valid. `functions` stand beside main; each text has an
+    // The rest of a kernel as text, which spirv-val finds valid. `functions` stand beside main; each text has an
     // instruction %gone and one %kept, both with a name and a decoration.
     std::string pruned(const std::string& main, const std::string& functions = "") const {
         std::ofstream(folder_ / "before.txt") << R"(

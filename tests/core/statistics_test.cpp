@@ -242,7 +242,7 @@ TEST(PairedMargin, CoversWeightedSums) {
     EXPECT_GT(paired_margin(200, 5, 0.01), paired_margin(200, 5, 0.05));
 }
 
-// Of means of 30 numbers that are 1 with a chance of 0.3.
+// Intervals for means of 30 numbers that are 1 with a probability of 0.3.
 TEST(Bootstrap, CoversAMeanAboutAsOftenAsItSays) {
     std::mt19937 random(7);
     int covered = 0;

@@ -24,7 +24,7 @@ NO_CODE = {"text", "csv", "json"}
 RUN = {"sh", "console", "python", "pycon", "cpp", "glsl", "text"}
 OPTIONS = {"not-run": RUN - {"text"} | {"cmake"}, "exit": {"sh"}, "wrap": {"cpp", "glsl"}}
 OPTIONS |= {"printed-by": {"text"}, "needs": RUN}
-# What blocks may need, by the command that succeeds where it is there.
+# The needs of blocks, by the command that succeeds if they are met.
 NEEDS = {
     "llvmpipe": "twinray devices | grep -q '^[*].*llvmpipe'",
     "radv": "twinray kernels --family navi31 --filter sort_scan",

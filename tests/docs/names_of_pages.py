@@ -27,7 +27,7 @@ TYPE = re.compile(r"\b(?:struct|class|namespace) ([A-Z]\w*)")
 SPAN = re.compile(r"`([^`]+)`")
 OPTION = re.compile(r"(?<![\w-])--?[a-z][\w-]*")
 MEMBER = re.compile(r"(?<![\w:])([A-Z]\w*)::(\w+)")
-# What is named in a cell: functions, types, and what a span is as a whole.
+# The names in a cell: functions, types, and whole spans.
 NAME = re.compile(r"\b(\w+)(?=\()|\b([A-Z]\w*[a-z]\w*)\b|^(\w+)$")
 
 

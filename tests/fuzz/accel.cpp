@@ -249,7 +249,7 @@ class History {
         model_.sync();
     }
 
-    // What waits for edits to be synced, and settings.
+    // Edits that wait for a sync, and settings.
     void look() {
         expect(
             model_.pending == Pending::nothing, "view",

@@ -10,7 +10,7 @@
 
 namespace twinray::fuzz {
 
-// What a call gets, made of the bytes that are left; 0 where none is.
+// The arguments of a call, made of the remaining bytes; 0 after the last byte.
 class Arguments {
   public:
     explicit Arguments(Input bytes) : bytes_(bytes) {}

@@ -24,7 +24,7 @@ struct ModelGeometry {
     float unit = 1;  // of the positions at the last push or update
 };
 
-// What one push placed. Handles may share a geometry.
+// The instances of one push. Handles may share a geometry.
 struct ModelPlacing {
     AccelHandle handle;
     std::shared_ptr<ModelGeometry> geometry;
@@ -46,7 +46,7 @@ class AccelModel {
     std::size_t geometry_count() const;
     // Whether a trace needs a program, for boxes or for instances that are not opaque.
     bool needs_program() const;
-    // By testing each triangle of each instance.
+    // Tests each triangle of each instance.
     std::vector<Hit> closest_hits(std::span<const Ray> rays, std::uint8_t mask, Cull cull) const;
     // Ends the process where the accelerator tells anything else. Of what it holds as bytes, each must be the same.
     void check(const AbstractAccel& accel) const;

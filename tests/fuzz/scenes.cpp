@@ -79,7 +79,7 @@ void gltf(Input input) { load_whole_scene(file_of(input, "input.gltf")); }
 void ply(Input input) { load_whole_scene(file_of(input, "input.ply")); }
 void stl(Input input) { load_whole_scene(file_of(input, "input.stl")); }
 
-// What follows the first line "#mtl" is the library of materials, "input.mtl".
+// The text after the first line "#mtl" is the library of materials, "input.mtl".
 void obj(Input input) {
     constexpr std::string_view border = "\n#mtl\n";
     const auto found = std::search(input.begin(), input.end(), border.begin(), border.end());

@@ -376,7 +376,7 @@ def test_winding_numbers_of_a_cube_without_its_lid():
 
 
 def test_signs_do_not_flip_next_to_edges_and_diagonals():
-    # Where signs by counting the hits of one ray flip: behind edges and vertices as the ray sees them.
+    # Signs by counting the hits of one ray flip here: behind edges and vertices as the ray sees them.
     scene = scene_of(cube())
     steps = np.linspace(-0.5, 1.5, 41)
     points = np.stack(np.meshgrid(steps, steps, steps, indexing="ij"), axis=-1)

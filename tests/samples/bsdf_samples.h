@@ -71,7 +71,7 @@ double mean_of_samples(const Bsdf& bsdf, vec3 wo, const Value& value, uint count
     return sum / count;
 }
 
-// What it returns of uniform light from wo's side and all others.
+// The part of uniform light that it returns, from wo's side and in total.
 inline double albedo_of(const Bsdf& bsdf, vec3 wo) {
     return mean_of_samples(
         bsdf, wo, [](const BsdfSample& s) { return s.weight.x; }, samples / 4);

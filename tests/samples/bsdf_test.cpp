@@ -246,7 +246,8 @@ TEST(Furnace, TheFitsBoundTheAlbedoOfAMirror) {
         }
 }
 
-// What is diffuse is divided by what the means leave: they must not be greater than the means of what it is dimmed by.
+// Diffuse light is divided by the rest that the means leave: they must not be greater than the means of the layers that
+// dim it.
 TEST(Furnace, MeansAreThoseOfTheFits) {
     for (const float alpha : {0.0f, 0.0015f, 0.02f, 0.1f, 0.37f, 0.9f, 1.0f}) {
         dvec2 sum(0);

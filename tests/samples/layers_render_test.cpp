@@ -107,7 +107,8 @@ TEST_F(LayersRender, FactorsReachTheBsdf) {
     expect_values(context(), floors);
 }
 
-// Of each texture the channel that its extension names; the other channels would give something else.
+// Only the channel that its extension names gives the right result; the other channels of each texture would give
+// another.
 TEST_F(LayersRender, TexturesScaleTheirFactor) {
     Floors floors;
     const float half = 128 / 255.0f;

@@ -151,7 +151,7 @@ TEST(Layers, ASmoothCoatReflectsItsFresnelShare) {
     }
 }
 
-// What shadow rays take is what paths have on average.
+// Shadow rays carry the mean of the paths.
 TEST(Layers, PanesPassOnAverageWhatTheySay) {
     Bsdf pane = thin_glass(0, 1.5f);
     pane.diffuse = vec3(0.75f, 0.5f, 0.25f);

@@ -46,7 +46,7 @@ TEST(ParticleMotion, WallsThrowBack) {
     EXPECT_EQ(moved({-0.5f, -1000}, 0.125f, 0, 1, 1).position, 0.875f) << "thrown beyond the other wall";
 }
 
-// What the kernel does in one frame.
+// The result of the kernel in one frame.
 void step_reference(Motions& particles, std::vector<HeatMaterial>& materials) {
     for (std::size_t i = 0; i < particles.radii.size(); ++i) {
         for (int axis = 0; axis < 3; ++axis) {

@@ -37,7 +37,7 @@ Reference load_reference(const std::string& name) {
     return reference;
 }
 
-// Of renders with seeds of their own.
+// Renders with different seeds.
 Blocks rendered_blocks(Context& context, const Scene& scene, Reference& reference, uint runs) {
     std::vector<double> sums(reference.blocks.mean.size()), squares(sums.size());
     RenderSetup setup;

@@ -33,7 +33,7 @@ RenderSetup from_above(vec2 at, float half, uint width = 1, uint samples = 1) {
 
 class VertexAttributes : public test::VulkanTest {
   protected:
-    // What an unlit surface shows at a point.
+    // The colour of an unlit surface at a point.
     vec3 seen(const Scene& scene, vec2 at) { return render(context(), scene, from_above(at, 1e-5f)).rgb[0]; }
 
     // The shading normal at a point.

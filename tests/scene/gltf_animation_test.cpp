@@ -184,7 +184,7 @@ TEST(GltfAnimation, WhatGrowsFromNothingIsHiddenAtRest) {
     }
 }
 
-// Of several meshes: instances stay grouped by mesh.
+// With several meshes, instances stay grouped by mesh.
 TEST(GltfAnimation, HiddenInstancesTakeTheirPlaceAmongThoseOfTheirMesh) {
     GltfBuilder gltf = growing_triangle(2);
     gltf.append("meshes", gltf.root["meshes"][0]);
@@ -243,7 +243,7 @@ TEST(GltfVariants, MaterialsAreThoseOfTheirMappings) {
     EXPECT_EQ(scene.variants[1].parts[0].materials, (std::vector<uint>{0, 1}));
 }
 
-// What the rest pose needs is an error.
+// A fault in the rest pose is an error.
 class GltfShapeFault : public testing::TestWithParam<Fault> {};
 TEST_P(GltfShapeFault, IsNamed) {
     GltfBuilder gltf = skinned_triangle();

@@ -113,7 +113,7 @@ inline GltfBuilder one_triangle() {
     return gltf;
 }
 
-// What makes a file wrong, and how the error says so.
+// A change that makes a file wrong, and a part of the error's text.
 struct Fault {
     const char* name;
     std::function<void(GltfBuilder&)> bend;

@@ -101,7 +101,7 @@ TEST(GltfNodes, WithoutScenesAllRootsAreShownWithTheirChildren) {
     }
 }
 
-// What KHR_node_visibility hides with all that is below it: meshes and lights, not cameras.
+// KHR_node_visibility hides meshes and lights below it, but not cameras.
 TEST(GltfNodes, HiddenNodesShowNothingAndHideWhatIsBelow) {
     GltfBuilder gltf = one_triangle();
     gltf.root["extensionsUsed"] = gltf.root["extensionsRequired"] = {"KHR_node_visibility", "KHR_lights_punctual"};

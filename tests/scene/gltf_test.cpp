@@ -258,7 +258,7 @@ TEST(Gltf, MeshesWithoutColoursOrSecondTextureCoordinatesHaveNone) {
     EXPECT_TRUE(mesh.second_uvs.empty());
 }
 
-// What a primitive lacks: colours are white, the second texture coordinates the first.
+// Missing attributes of a primitive: colours are white, and the second texture coordinates are the first.
 TEST(Gltf, PrimitivesOfOneMeshMayDifferInTheirAttributes) {
     GltfBuilder gltf = one_triangle();
     json other = gltf.primitive();

@@ -47,7 +47,7 @@ class MultiTypeSetTest : public VulkanTest {
         const std::span<const uint> modules[] = {test_set_spirv, test_set_debug_spirv};
         return {context(), {.name = "test_set", .spirv = modules[is_debug]}};
     }
-    // What the kernel finds: a value for each key, the weighted sum, the results of unrolled loops.
+    // The results of the kernel: a value for each key, the weighted sum, the results of unrolled loops.
     std::vector<float> run(const std::vector<SetKey>& keys, bool is_debug = false) {
         const std::size_t size = keys.size() + 1 + UNROLLED_RESULTS;
         const Buffer on_device(context(), {.name = "keys", .bytes = keys.size() * sizeof(SetKey)});

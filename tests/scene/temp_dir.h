@@ -41,7 +41,7 @@ class TempDir {
     std::filesystem::path path_;
 };
 
-// What the Error that `action` throws says; a test failure when it throws none.
+// The text of the Error that `action` throws; a test failure if it throws none.
 template <class Action>
 std::string error_of(Action action) {
     try {

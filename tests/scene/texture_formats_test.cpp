@@ -70,7 +70,7 @@ Sample random_sample(TexelFormat format, uint channels, uint width, uint height,
     return sample;
 }
 
-// What docs/multi-type-set.md says of them; a device's samplers may make infinity or NaN of it between texels.
+// docs/multi-type-set.md describes these values; a device's samplers may make infinity or NaN of them between texels.
 TEST_P(TextureFormats, ExtremeNumbersStay) {
     for (const float number : {INFINITY, -INFINITY, 3e38f, -0.0f})
         for (const Filter filter : {Filter::nearest, Filter::linear}) {

@@ -122,7 +122,8 @@ TEST(PlaneSide, IsExactOnEachAxis) {
     EXPECT_GT(counts.in_plane, 8'000u);
 }
 
-// What the ray's line meets is ahead of it where rational arithmetic says so, not in its origin, and not behind it.
+// The point where the ray's line meets is ahead of it if rational arithmetic says so, not in its origin, and not behind
+// it.
 TEST(PlaneSide, GivesTItsSign) {
     Planes planes;
     std::mt19937 random(4);

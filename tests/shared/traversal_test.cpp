@@ -99,7 +99,7 @@ TEST(Groups, AreNoneOfTheOtherEntriesOfAStack) {
         for (const uint other : {EMPTY_NODE_GROUP, LEAVE_INSTANCE}) EXPECT_NE(make_edge(0, side), other);
 }
 
-// What a traversal that went on to a child has left to visit, whatever it has found since.
+// The rest to visit of a traversal that went on to a child, whatever it has found since.
 TEST(Groups, AreFoundAgainFromTheChild) {
     const ChildKeys keys{0x400, 0x101, NO_ENTRY | 2, 0x203};
     const auto again = [&](uint child) {

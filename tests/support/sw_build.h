@@ -55,7 +55,7 @@ bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
 // As it is built: in units of a power of two, that of the mesh which was pushed.
 std::vector<vec3> built(const Mesh& mesh, const Mesh* pushed = nullptr);
 
-// By the leaf index that references of the tree use.
+// Indexed by the leaf index that references of the tree use.
 std::vector<LeafBox> leaf_boxes(const BuiltTree& tree, const Mesh& mesh, const Mesh* pushed = nullptr);
 // The boxes of the scene tree's leaves over these placements of one mesh, by the CPU reference.
 std::vector<LeafBox> instance_boxes(const Mesh& mesh, const std::vector<Transform>& transforms,
@@ -64,7 +64,7 @@ std::vector<LeafBox> instance_boxes(const Mesh& mesh, const std::vector<Transfor
 std::vector<Transform> scattered(std::size_t count, uint seed);
 
 inline bool has_records(const BuiltTree& tree) { return !tree.records.empty(); }
-// Of a tree with records: how many children a node has at most. One leaf has room for a node in compressed8 alone.
+// For a tree with records: the largest number of children of a node. One leaf has room for a node in compressed8 alone.
 inline uint width_of(const BuiltTree& tree) {
     return tree.records.size() == 2 || is_wide_node(tree.records.front()) ? 8 : 4;
 }

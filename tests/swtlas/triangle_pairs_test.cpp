@@ -27,7 +27,7 @@ bool shares_edge(uvec3 a, uvec3 b) {
 
 std::vector<Leaf> leaves_of(const Mesh& mesh) { return pair_triangles(mesh.positions, mesh.triangles); }
 
-// Of each leaf its first triangle and its second.
+// The first and the second triangle of each leaf.
 std::vector<uvec2> numbers(std::span<const Leaf> leaves) {
     std::vector<uvec2> numbers;
     for (const Leaf& leaf : leaves) numbers.emplace_back(leaf.first, leaf.second);
@@ -59,7 +59,7 @@ TEST(TrianglePairs, MostTrianglesOfASurfaceShareALeaf) {
     }
 }
 
-// As scanners leave them: neighbours in space are far from each other in the mesh.
+// Scanners leave such meshes: neighbours in space are far from each other in the mesh.
 TEST(TrianglePairs, TheOrderOfTrianglesHardlyMatters) {
     Mesh mesh = make_icosphere(5);
     std::ranges::shuffle(mesh.triangles, std::mt19937(1));
@@ -109,7 +109,7 @@ TEST(TrianglePairs, PositionsThatAreNoNumbersAndCollapsedEdgesAreNoFault) {
     expect_partition(mesh, leaves_of(mesh));
 }
 
-// Of the edges of two triangles that fold back on each other only one has a length.
+// If two triangles fold back on each other, only one of their edges has a length.
 TEST(TrianglePairs, AnEdgeWhoseEndsLieTogetherIsNotShared) {
     const std::vector<vec3> positions = {{0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     EXPECT_TRUE(pair_triangles(positions, std::vector<uvec3>{{0, 1, 2}, {1, 0, 3}}).empty());

@@ -18,7 +18,7 @@ struct Polygon {
     }
 };
 
-// What lies at or above a plane across an axis, or with `side` -1 at or below it.
+// The part at or above a plane across an axis, or with `side` -1 at or below it.
 Polygon cut_by_plane(const Polygon& whole, int axis, double plane, double side) {
     Polygon part;
     for (uint i = 0; i < whole.count; ++i) {

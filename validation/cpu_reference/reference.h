@@ -41,7 +41,7 @@ Hierarchy hierarchy(std::span<const LeafBox> boxes, const Codes& codes, std::spa
 // The one of quality ploc: a range is cut at its highest split, and has the clusters of both parts to join.
 Hierarchy ploc(std::span<const LeafBox> boxes, const Codes& codes, std::span<const uint> order, bool leaves_are_sorted);
 
-// As a tree of layout bvh2: its nodes know their edges.
+// A tree of layout bvh2: its nodes know their edges.
 Hierarchy linked(Hierarchy tree);
 
 std::vector<BvhTriangle> encode_triangles(std::span<const vec3> positions, std::span<const uvec3> triangles,

@@ -13,7 +13,7 @@ struct SortedLeaves {
     bool are_sorted;  // references count sorted leaves, else they are the leaf's own index
 
     uvec2 split_after(std::size_t position) const;
-    // Of first .. last, more than one.
+    // The range is first .. last, of more than one leaf.
     std::size_t highest_split(std::size_t first, std::size_t last) const;
     NodeChild leaf(std::size_t position) const;
     float scale() const;  // of areas

@@ -29,14 +29,14 @@ class Scene {
     // Threads may share it once it is built. level: LEVEL_*.
     Hit trace(const Ray& ray, uint query = QUERY_CLOSEST, uint mask = 0xff, uint level = LEVEL_WATERTIGHT) const;
 
-    // What this thread's calls of trace() have done since it asked last.
+    // The work of this thread's calls of trace() since it last asked.
     static TraversalSteps take_steps();
 
     // The ray that the trees are searched with: `ray` itself, or from refined on one that may begin nearer, `advance`
     // in t.
     Ray searched_ray(const Ray& ray, uint level, double& advance) const;
 
-    // What build() has made, for who looks into it.
+    // The results of build(), for inspection.
     struct Tree {
         const Bvh& bvh;
         std::span<const BvhTriangle> triangles;  // of a geometry in layout bvh2, in units of `scale`
@@ -53,7 +53,7 @@ class Scene {
     std::span<const LeafBox> instance_boxes() const { return instance_boxes_; }  // in world space
 
   private:
-    // What InstanceRecord::geometry points at.
+    // The target of InstanceRecord::geometry.
     struct Block {
         SwGeometry geometry{};
         GeometrySource source{};

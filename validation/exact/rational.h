@@ -16,7 +16,7 @@ struct Vector {
     const Rational& operator[](int axis) const { return axis == 0 ? x : axis == 1 ? y : z; }
 };
 
-// Of finite numbers.
+// For finite numbers.
 inline Vector vector_of(const dvec3& v) { return {v.x, v.y, v.z}; }
 
 inline Vector operator+(const Vector& a, const Vector& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }

@@ -15,7 +15,7 @@ struct Line {
     Vector origin, direction;
 };
 
-// What a line meets of a closed triangle: its inside, an edge but no vertex, or a vertex.
+// The part of a closed triangle that a line meets: its inside, an edge but no vertex, or a vertex.
 enum class Incidence : std::uint8_t { interior, edge, vertex };
 
 struct Crossing {

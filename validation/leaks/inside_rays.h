@@ -35,7 +35,7 @@ class InsideRays {
     std::vector<vec3> origins_;
 };
 
-// What a count of a ray's crossings is worth, if the ray starts inside.
+// Judges a count of a ray's crossings, if the ray starts inside.
 enum class Parity : std::uint8_t {
     odd,          // as it must be
     leak,         // even, and fewer than the reference's

@@ -29,7 +29,7 @@ struct Value {
 };
 using Values = std::map<std::string, Value>;
 
-// What the numbers depend on besides the case.
+// The conditions of the numbers besides the case.
 struct RecordedDevice {
     std::string name;
     std::string driver;
@@ -39,7 +39,7 @@ struct RecordedDevice {
     bool operator==(const RecordedDevice&) const = default;
 };
 
-// Of one error per item.
+// Statistics of one error per item.
 struct ErrorFigures {
     std::string metric;  // with its unit: "t_ulp", "relative", "rms"
     double median = 0;

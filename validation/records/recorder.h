@@ -35,7 +35,7 @@ class MachineLoad {
 // Appends each record to a file of JSON lines at once, so that a run that is cut short leaves what it has measured.
 class Recorder {
   public:
-    // What all records of the run share.
+    // The data that all records of the run share.
     struct Run {
         std::string started;  // ISO 8601, UTC
         std::string git;
@@ -68,12 +68,12 @@ class Recorder {
 // ("counts.AGREE"), quoted by RFC 4180. Throws Error naming the file.
 void write_csv(const std::filesystem::path& file, std::span<const Record> records);
 
-// What a file of JSON lines holds, to which any command may have appended.
+// The contents of a file of JSON lines, to which any command may have appended.
 struct JsonLines {
     std::vector<Record> records;                // of reports
     std::map<std::string, std::size_t> others;  // how many of each kind_of_json()
 };
-// Throws Error naming the file and the line. Of a last line that was cut short nothing is read.
+// Throws Error naming the file and the line. A last line that was cut short is ignored.
 JsonLines read_json_lines(const std::filesystem::path& file);
 
 // Now, as Recorder::Run::started.

@@ -75,7 +75,7 @@ void Classifier::visit_near(uint instance, Visit&& visit) const {
     });
 }
 
-// Of the triangles certain to lie before t_limit.
+// Among the triangles certain to lie before t_limit.
 Coverage Classifier::coverage_before(uint instance, double t_limit) const {
     std::vector<PatchTriangle> patch;
     bool is_at_an_end = false;  // of the ray's interval: exclusive bounds and rounding decide

@@ -29,7 +29,7 @@ double margin_of(const std::array<dvec2, 3>& vertices) {
     return any_negative != any_positive ? distance : -distance;
 }
 
-// What slope and thinness do to depths.
+// The effect of slope and thinness on depths.
 struct Plane {
     double determinant;  // twice the projected area, signed
     dvec2 gradient;      // of depth

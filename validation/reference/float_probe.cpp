@@ -131,7 +131,7 @@ std::vector<std::string> robust_faults(const FloatFacts& properties) {
     if (properties.product_ulp > 0.5)
         faults.push_back(text("products are wrong by up to ", properties.product_ulp, " ulp"));
     if (properties.sum_ulp > 0.5) faults.push_back(text("sums are wrong by up to ", properties.sum_ulp, " ulp"));
-    // What the padding of boxes allows for (shaders/shared/ray_space.h).
+    // The bounds that the padding of boxes allows for (shaders/shared/ray_space.h).
     if (properties.quotient_ulp > 2.5)
         faults.push_back(text("quotients are wrong by up to ", properties.quotient_ulp, " ulp"));
     if (properties.contracts_precise) faults.emplace_back("precise products are contracted");

@@ -21,7 +21,7 @@ double distance_to_segment(const Point& a, const Point& b, const Point& point) {
     return length(a + along * edge - point);
 }
 
-// Of a point to a triangle that has an area.
+// The distance of a point to a triangle that has an area.
 inline double distance_to_triangle(const std::array<dvec3, 3>& vertices, const dvec3& point) {
     const dvec3 normal = cross(vertices[1] - vertices[0], vertices[2] - vertices[0]);
     bool is_above = true;  // the triangle, along its normal

@@ -92,7 +92,7 @@ class ReferenceBackend final : public AccelBackend {
     void record_trace(Commands& commands, const TraceArgs& args) const;
 
     Kernel<CopyItemsArgs> copy_items_;
-    // By the address of the block that instances point at; ends with the geometry it names.
+    // Keyed by the address of the block that instances point at; an entry ends with the geometry it names.
     std::map<std::uint64_t, std::weak_ptr<const Geometry64>> geometries_;
 };
 
@@ -100,7 +100,7 @@ struct ReferenceBackend::ReferenceGeometry : BuiltGeometry {
     std::shared_ptr<const Geometry64> geometry;
 };
 
-// What the last sync left: the instance records, once its commands have run, and what they may point at.
+// The results of the last sync: the instance records, once its commands have run, and the blocks they may point at.
 struct ReferenceBackend::ReferenceState : BuiltTlas {
     Buffer records;
     std::map<std::uint64_t, std::shared_ptr<const Geometry64>> geometries;  // by the address of their block
@@ -154,7 +154,7 @@ void ReferenceBackend::record_copy(Commands& commands, Ref<T> from, Ref<T> to, s
                          count);
 }
 
-// What lies there after all that has been submitted to the queue.
+// The contents there after all work that has been submitted to the queue.
 template <class T>
 Buffer ReferenceBackend::read(Ref<T> from, std::size_t count) const {
     Buffer buffer(context(), {.name = "reference input", .bytes = count * sizeof(T), .memory = Memory::readback});

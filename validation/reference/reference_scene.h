@@ -16,7 +16,7 @@
 
 namespace twinray {
 
-// What a query leaves out, as TraceDesc says it.
+// The hits that a query skips, in the terms of TraceDesc.
 struct ReferenceQuery {
     std::uint8_t mask = 0xff;  // instances whose mask shares no bit with it are not hit
     uint flags = 0;            // CULL_BACK or CULL_FRONT: triangles that show that side are not hit

@@ -23,7 +23,7 @@ void print_classes(std::ostream& out, const char* accel, const HitClassCounts& c
     out << '\n';
 }
 
-// Of ours.
+// For SwTlas.
 void print_faulty(std::ostream& out, const std::vector<Fault>& faults) {
     std::size_t printed = 0;
     for (const auto& [ray, answer, kind, is_of_software] : faults)

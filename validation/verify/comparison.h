@@ -22,7 +22,7 @@ struct RaySet {
 std::vector<RaySet> test_rays(const ReferenceScene& reference, const Bounds& bounds, std::size_t random,
                               std::size_t aimed, std::uint64_t seed);
 
-// An answer that is a fault, of ours or of the driver's.
+// An answer that is a fault of twinray or of the driver.
 struct Fault {
     Ray ray;
     Hit answer;
@@ -30,7 +30,7 @@ struct Fault {
     bool is_of_software;
 };
 
-// What one set of rays gave.
+// The results of one set of rays.
 struct Comparison {
     HitClassCounts software, hardware;
     std::map<std::pair<HitClass, HitClass>, std::uint64_t> disagreements;  // by (software, hardware), where hits differ

@@ -24,7 +24,8 @@ struct DracoCounts {
     std::uint32_t faces = 0, vertices = 0;
 };
 
-// By the header of the stream: before memory is taken for what nothing but a number tells. None: it is damaged.
+// Checks the header of the stream, before memory is allocated for a size that only a number claims. None: it is
+// damaged.
 std::optional<DracoCounts> draco_counts_of(std::span<const std::uint8_t> bytes) {
     constexpr std::size_t header_size = 11;
     constexpr std::uint8_t sequential = 0;
@@ -70,7 +71,7 @@ void put_draco_attribute(const draco::Mesh& mesh, const draco::PointAttribute& a
     }
 }
 
-// What tells the number of components of accessors that vertices have.
+// Numbers of components, by the type of vertex accessors.
 std::size_t draco_components_of(const std::string& type) {
     if (type == "SCALAR") return 1;
     return type.size() == 4 && type.starts_with("VEC") && type[3] >= '2' && type[3] <= '4' ? std::size_t(type[3] - '0')

@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-// By a library that this twinray was built with.
+// Read with a library that this twinray was built with.
 bool is_decoded(const std::string& extension) {
     if (extension == "EXT_texture_webp") return has_library(Codec::webp);
     if (extension == "EXT_texture_avif") return has_library(Codec::avif);

@@ -57,12 +57,12 @@ class Placements {
     std::vector<vec4> rotations_;
 };
 
-// What animations do to a node by themselves or by one above it.
+// The effects of animations on a node, by themselves or through a node above it.
 struct Driven {
     bool is_scaled = false, is_turned = false;
 };
 
-// By node.
+// One for each node.
 std::vector<Driven> driven_nodes(const Rig& rig) {
     std::vector<Driven> driven(rig.nodes.size());
     for (const Animation& animation : rig.animations)

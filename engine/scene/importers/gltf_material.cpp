@@ -165,7 +165,7 @@ std::vector<T> roughness_texels(const std::vector<T>& rgba, float factor) {
     return texels;
 }
 
-// Of a picture with four channels.
+// The picture has four channels.
 template <class T>
 bool uses_alpha(const std::vector<T>& rgba) {
     for (std::size_t i = 3; i < rgba.size(); i += 4)

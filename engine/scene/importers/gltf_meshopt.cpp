@@ -30,7 +30,7 @@ FoundMeshopt find_meshopt(const json& object) {
 
 #ifdef TWINRAY_HAS_MESHOPT
 
-// What a view's extension says, checked as libmeshoptimizer wants it.
+// The contents of a view's extension, checked against the requirements of libmeshoptimizer.
 struct MeshoptStream {
     std::span<const std::uint8_t> bytes;
     std::size_t count = 0, stride = 0;

@@ -48,7 +48,7 @@ bool read_property(std::istringstream& words, std::size_t line, PlyHeader& heade
     return true;
 }
 
-// Of comments that mean something: `comment TextureFile wall.png`.
+// Reads comments that have a meaning: `comment TextureFile wall.png`.
 void note_texture(std::istringstream& words, PlyHeader& header) {
     std::string keyword, name;
     words >> keyword;

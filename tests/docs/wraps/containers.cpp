@@ -12,7 +12,7 @@ namespace twinray {
 
 using namespace twinray;
 
-// What lines about sets, textures and queues take for given.
+// Names that lines about sets, textures and queues use.
 void lines_of_a_page(Context& context, Commands& commands, TWINRAY_MULTI_TYPE_SET(MaterialSet, MATERIALS) & materials,
                      TextureStore& textures, TextureRef texture, const Image& image, const std::vector<float>& values,
                      const Kernel<PaintArgs>& kernel, uint count) {

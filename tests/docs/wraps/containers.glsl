@@ -4,7 +4,7 @@
 #include "twinray/glsl/textures.glsl"
 #include "tests/docs/wraps/materials.h"
 layout(local_size_x = 64) in;
-// What lines of a kernel about textures and queues take for given.
+// Names that lines of a kernel about textures and queues use.
 layout(push_constant, scalar) uniform Push { TextureTable textures; TextureRef heat; RayQueue queue, next; } push;
 
 void main()

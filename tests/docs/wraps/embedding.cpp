@@ -7,7 +7,7 @@
 
 void log(const std::string& sentence);
 
-// What a renderer has that twinray is embedded in.
+// Names of a renderer in which twinray is embedded.
 void lines_of_a_page(VkInstance instance, VkPhysicalDevice physical_device, VkDevice device,
                      VkDeviceCreateInfo device_create_info, PFN_vkGetInstanceProcAddr get_instance_proc_addr,
                      std::mutex& mutex, VmaAllocator your_vma_allocator, twinray::Context& context,

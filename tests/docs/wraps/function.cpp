@@ -7,7 +7,7 @@
 #include <twinray/scene.h>
 #include <twinray/twinray.h>
 
-// What the pages' lines take for given.
+// Names that the pages' lines use.
 void lines_of_a_page(twinray::Context& context, twinray::AbstractAccel& accel, const twinray::Mesh& mesh,
                      const std::vector<twinray::Ray>& rays, twinray::Ray ray) {
     using namespace twinray;

@@ -12,7 +12,7 @@ struct WaterArgs {
     twinray::Address positions;
 };
 
-// What lines about kernels of the user's take for given.
+// Names that lines about the user's kernels use.
 void lines_of_a_page(twinray::Context& context, twinray::AbstractAccel& accel, twinray::Commands& commands,
                      const twinray::Mesh& mesh, const twinray::Mesh& leaf_mesh, const twinray::Transform& transform,
                      const std::vector<twinray::Bounds>& boxes, const std::vector<twinray::Ray>& rays,

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 INCLUDES
 layout(local_size_x = 64) in;
-// What lines about hits one after the other take for given.
+// Names that lines about successive hits use.
 layout(push_constant, scalar) uniform Push { Address accel; REF(Ray) rays; Floats depths; float density; } push;
 
 void main()

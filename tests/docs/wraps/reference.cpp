@@ -3,7 +3,7 @@ INCLUDES
 
 #include <twinray/twinray.h>
 
-// What a program has that checks its own rays.
+// Names of a program that checks its own rays.
 void lines_of_a_page(twinray::AbstractAccel& accel, const twinray::Scene& scene,
                      const std::vector<twinray::Ray>& rays) {
     using namespace twinray;

@@ -3,7 +3,7 @@
 #include "twinray/glsl/query.glsl"
 INCLUDES
 layout(local_size_x = 64) in;
-// What lines about rays that leave a surface take for given.
+// Names that lines about rays that leave a surface use.
 layout(push_constant, scalar) uniform Push
 {
     Address accel;

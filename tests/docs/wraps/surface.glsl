@@ -5,7 +5,7 @@ INCLUDES
 layout(local_size_x = 64) in;
 struct MeshInfo { float density; };
 BUFFER_OF(MeshInfo, 4);
-// What lines about the surface at a hit take for given.
+// Names that lines about the surface at a hit use.
 layout(push_constant, scalar) uniform Push { REF(Ray) rays; REF(Hit) hits; Address accel; uint heat; } push;
 
 void main()

@@ -3,7 +3,7 @@
 #define TWINRAY_PROGRAM
 #include "twinray/glsl/common.glsl"
 BLOCK
-// As the traversals call it.
+// The traversals call it like this.
 #include "twinray/glsl/query.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { Address accel; REF(Ray) rays; REF(Hit) hits; } push;

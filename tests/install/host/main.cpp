@@ -99,7 +99,7 @@ void trace(twinray::AbstractAccel& accel) {
     require(hit.t == 4, "the box is 4 away");
 }
 
-// What the library throws is caught by its type on this side of the boundary.
+// An exception of the library is caught by its type on this side of the boundary.
 void require_that_errors_arrive(twinray::AdoptedDevice host) {
     host.enabled.timeline_semaphore = false;
     try {

@@ -20,7 +20,7 @@ class ConformanceVerdict : public ::testing::Test {
     SceneInput scene_ = scene_of(layered_triangles(3));
     Shot shot_ = shot_of({vec3(0.25f, 0.25f, -1), 0, vec3(0, 0, 1), INFINITY});
 
-    // What is right for a layer.
+    // The right answer for a layer.
     Answer hit(uint layer) const {
         Answer answer{};
         answer.kind = ANSWER_TRIANGLE;

@@ -96,7 +96,7 @@ for fault, kind, most in (
             assert done.returncode == status and word in done.stdout, (fault, way, driver, done)
     print(f"reproducer: {fault}: {kind} in {triangles_of(folder)} triangles; WRONG when broken, RIGHT when not")
 
-# What cannot be reproduced is refused in one sentence.
+# Faults that cannot be reproduced are refused in one sentence.
 replay = json.loads(next((here / "cull").glob("*/replay.json")).read_text())
 said = run("", twinray, "verify", "--replay", "cull/HW_LEAK/replay.json", "--reproducer", "x", "--quiet", status=1)
 assert "own answer is AGREE, which is no fault" in said, said

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Of a flat grid in which every coordinate is a whole number.
+// A flat grid in which every coordinate is a whole number.
 Scene grid_scene() {
     Mesh grid = make_grid(8, 8);
     for (vec3& position : grid.positions) position *= 8.0f;

@@ -59,7 +59,7 @@ std::vector<Ray> rays() { return random_rays({vec3(-1), vec3(1)}, 500, 1); }
 
 const std::function<void(CaseRun&)> sound = [](CaseRun& run) { run.measure(world_of(make_icosphere(3)), rays()); };
 
-// What is computed alike from the answers of both is the driver's fault where it is right by SwTlas.
+// If the same computation on the answers of both is right by SwTlas, a fault is the driver's.
 TEST_F(SuiteRun, WhatIsRightBySoftwareIsTheDriversFault) {
     if (!can_run()) return;
     const auto computed = [](CaseRun& run) {

@@ -89,8 +89,8 @@ struct Scene32 {
 };
 Scene32 one(const Soup& soup, const Transform& transform = {}) { return {{soup}, {{0, transform, 0}}}; }
 
-// What a kernel that refines its result reports: t, u and v of the same triangle's plane, in float64, unless that t
-// leaves the ray's interval.
+// The result of a kernel that refines: t, u and v of the same triangle's plane, in float64, unless that t leaves the
+// ray's interval.
 Hit refined(const ReferenceScene& reference, const Ray& ray, Hit hit) {
     if (hit.hit == 0) return hit;
     const ActiveTriangle* triangle = reference.geometry(hit.instance_index).find(hit.primitive_index);

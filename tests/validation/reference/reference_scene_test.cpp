@@ -174,7 +174,7 @@ TEST(ReferenceScene, MasksLeaveInstancesOut) {
     EXPECT_FALSE(reference.any_hit(ray, {.mask = 0xc0}));
 }
 
-// What is left after culling is what a search over all triangles of the side that faces the ray finds.
+// The hit after culling equals that of a search over all triangles of the side that faces the ray.
 TEST(ReferenceScene, CullingKeepsTheTrianglesWhoseNormalTellsSo) {
     const std::uint32_t seed = 81;
     const Soup soup = random_soup(300, 0.5f, seed);
