@@ -40,8 +40,8 @@ class DeviceLost : public Error {
 struct Interrupted {};
 
 // While it lives, twinray's calls on this thread ask `goes_on` about ten times a second, while they wait for the device
-// and while they compute on the host; once it returns false they throw Interrupted. What is submitted already runs to
-// its end, for which the next call waits. State that the call changes is left as before the call, or as after it.
+// and while they compute on the host; once it returns false they throw Interrupted. Submitted work runs to its
+// end, and the next call waits for it. State that the call changes is left as before the call, or as after it.
 // Scopes nest: the innermost is asked.
 class InterruptScope {
   public:

@@ -102,7 +102,7 @@ def bash(*words):
     return done.stdout.split()
 
 
-# What cannot be printed is no success.
+# Output that cannot be printed is a failure.
 for arguments in (["--help"], ["--version"], ["help", "trace"], ["completion", "bash"]):
     with open("/dev/full", "w") as full:
         done = subprocess.run([twinray, *arguments], stdout=full, stderr=subprocess.PIPE, text=True)

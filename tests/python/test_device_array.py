@@ -57,7 +57,7 @@ def test_numpy_and_the_device_share_memory():
 
 def test_bad_arrays_are_named():
     scene, rays = scene_and_rays()
-    with pytest.raises(TypeError, match="rays: ndarray is no DeviceArray"):
+    with pytest.raises(TypeError, match="rays: ndarray is not a DeviceArray"):
         scene.trace(rays)
     with pytest.raises(ValueError, match=r"rays: \(4, 6\)"):
         scene.trace(scene.device_array((4, 6)))

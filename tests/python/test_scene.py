@@ -181,7 +181,7 @@ def test_float64_far_from_0_keeps_its_precision(accel, caplog):
     matrix[:3, 3] = offset + [2, 0, 0]
     caplog.clear()
     assert near.add_instance(0, matrix) == 1  # is where float32 puts it: this scene counts from 0
-    assert re.search("geometry 1 stands so far .* float32 moves it by up to 0.33; give Scene an", caplog.text)
+    assert re.search("geometry 1 is so far .* float32 moves it by up to 0.33; give Scene an", caplog.text)
     turned = np.eye(4)
     turned[:3, :3] = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]
     turned[:3, 3] = offset - turned[:3, :3] @ offset  # about the corner at the offset
@@ -308,7 +308,7 @@ def test_bounds_are_those_of_the_triangles(accel):
 def test_poses_far_from_the_origin_are_told_once(tmp_path, caplog):
     pose = np.eye(4)
     pose[:3, 3] = [5e5, 5.6e6, 120]
-    told = "stands so far"
+    told = "is so far from"
     for size in (1, 1000):
         scene = scene_of(cube(size), accel="sw")
         caplog.clear()
@@ -432,7 +432,7 @@ def test_wrong_arguments_are_named():
         (lambda: scene.add_triangles(np.zeros((3, 3)), [[0, 1, 2.5]]), TypeError, "triangle_indices: dtype float64"),
         (lambda: scene.add_triangles(np.zeros((3, 3)), [[0, 1, -1]]), ValueError, "triangle_indices: indices from -1"),
         (lambda: scene.add_triangles(np.zeros((3, 3)), [[0, 1, 3]]), twinray.Error, "3"),
-        (lambda: scene.add_triangles(object()), TypeError, "object is no mesh"),
+        (lambda: scene.add_triangles(object()), TypeError, "object is not a mesh"),
         (lambda: scene.add_triangles(*cube(), transform=np.eye(3)), ValueError, r"transform: shape \(3, 3\)"),
         (lambda: scene.add_triangles(*cube(), transform=np.zeros((4, 4))), ValueError, "transform: its last row"),
         (lambda: scene.add_triangles(*cube(), transform=np.zeros((3, 4))), twinray.Error, "singular"),

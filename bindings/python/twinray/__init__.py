@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Ray tracing on Vulkan for NumPy: rays that miss nothing, signs that do not flip, on any GPU or CPU.
+"""Watertight ray tracing, distances and inside tests for NumPy, on any Vulkan GPU or CPU.
 
 >>> import numpy as np
 >>> import twinray
@@ -73,6 +73,6 @@ def devices() -> list[dict[str, _Any]]:
     Raises
     ------
     Error
-        Where there is no Vulkan at all.
+        If this machine has no Vulkan loader or driver.
     """
     return _core.devices()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Memory that Vulkan has exported, as CUDA sees it, by CUDA's driver interface, which comes with NVIDIA's driver."""
+"""Imports memory exported by Vulkan into CUDA, with CUDA's driver interface, which comes with NVIDIA's driver."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def _driver():
 
 
 class ImportedMemory:
-    """Exported memory in the primary context of the CUDA device with a UUID. Raises BufferError, saying why."""
+    """Exported memory in the primary context of the CUDA device with its UUID. Raises BufferError with the reason."""
 
     def __init__(self, memory):
         self._memory = memory  # lives as long as this
@@ -60,7 +60,7 @@ class ImportedMemory:
         return self._pointer.value
 
     def synchronize(self):
-        """Wait for all that CUDA is to do in the context."""
+        """Wait for all of CUDA's work in the context."""
         self._in_context(lambda: self._call("cuCtxSynchronize"))
 
     def __del__(self):
@@ -74,7 +74,7 @@ class ImportedMemory:
         try:
             self._call("cuImportExternalMemory", ctypes.byref(self._external), ctypes.byref(handle))
         except BufferError:
-            os.close(fd)  # else it is CUDA's
+            os.close(fd)  # after a success CUDA owns it
             raise
         whole = _BufferDesc(size=size)
         self._call("cuExternalMemoryGetMappedBuffer", ctypes.byref(self._pointer), self._external, ctypes.byref(whole))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Float64 coordinates for a device that computes in float32: what lies far from 0 is counted from nearer by."""
+"""Float64 coordinates for a device that computes in float32: those far from 0 get a nearer origin."""
 
 from __future__ import annotations
 
@@ -10,13 +10,16 @@ HARMLESS = 1e-6  # a rounding, in extents of a mesh
 
 
 def rounding_of(coordinates):
-    """By how much float32 rounds the largest of these, at most."""
+    """Return an upper bound of the float32 rounding of these coordinates."""
     return float(np.max(np.abs(coordinates))) * _ROUNDING
 
 
 def near_point(points):
-    """The point (3,) that float32 coordinates are best counted from: 0, unless they would be rounded by more than a
-    millionth of their extent; then one near their middle with as round numbers as the extent allows."""
+    """Return the best origin (3,) for float32 coordinates of these points.
+
+    It is 0, unless they would be rounded by more than a millionth of their extent; then it is a point near their
+    middle with coordinates as round as the extent allows.
+    """
     finite = points[np.isfinite(points).all(axis=1)]
     if len(finite) == 0:
         return np.zeros(3)
@@ -40,13 +43,13 @@ class Frame:
         self._of_mesh = {}  # by geometry
 
     def copy(self):
-        """Another one, that goes its own way."""
+        """Return an independent copy."""
         other = Frame(self.origin if self._is_given else None)
         other.origin, other._of_mesh = self.origin, dict(self._of_mesh)
         return other
 
     def placed(self, positions, matrix):
-        """Of a new mesh: positions in float32, its matrix (3, 4) in float32, and what they are counted from."""
+        """Return positions and matrix (3, 4) of a new mesh in float32, and the origin of its positions."""
         mesh_origin = near_point(positions)
         if not self._is_given and not self._of_mesh:
             with np.errstate(over="ignore", invalid="ignore"):
@@ -55,25 +58,25 @@ class Frame:
         return self.moved(positions, mesh_origin), self._on_device(matrix, mesh_origin), mesh_origin
 
     def keep(self, geometry, mesh_origin):
-        """Remember what a geometry's vertices are counted from."""
+        """Store the origin of a geometry's vertices."""
         self._of_mesh[geometry] = mesh_origin
 
     def has_one_geometry(self):
-        """Whether no more than one was added so far."""
+        """Whether at most one geometry was added so far."""
         return len(self._of_mesh) <= 1
 
     def fixed_origin(self):
-        """The origin as a tuple; None where the next mesh still says it."""
+        """The origin as a tuple; None if the next mesh will decide it."""
         return tuple(self.origin) if self._is_given or self._of_mesh else None
 
     def keep_file(self, geometries, origin, has_nodes):
-        """Remember geometries of a file: where it has nodes they carry the origin, else its vertices do."""
+        """Store geometries of a file. If it has nodes, they contain the origin, else its vertices do."""
         self.origin = origin
         for geometry in geometries:
             self._of_mesh[geometry] = np.zeros(3) if has_nodes else origin
 
     def mesh_origin(self, geometry):
-        """What a geometry's vertices are counted from."""
+        """The origin of a geometry's vertices."""
         return self._of_mesh.get(geometry, np.zeros(3))
 
     def matrix_of(self, geometry, matrix):
@@ -82,7 +85,7 @@ class Frame:
 
     @staticmethod
     def moved(points, origin):
-        """Points (..., 3), counted from the origin, in float32."""
+        """Return points (..., 3) relative to the origin, in float32."""
         with np.errstate(over="ignore", invalid="ignore"):
             if origin.any():
                 points = points.astype(np.float64) - origin

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Bars of tqdm's for what takes long."""
+"""Progress bars of tqdm for long calls."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ def _bar(total, name):
     try:
         from tqdm.auto import tqdm
     except ImportError:
-        raise ImportError("progress: needs tqdm, which is not installed") from None
+        raise ImportError("progress: requires tqdm, which is not installed") from None
     return tqdm(total=total, desc=name, leave=False)
 
 
 def in_blocks(count, least, name, work):
-    """Calls work(first, last) for blocks of at least so many of `count` things; without a name there is no bar."""
+    """Call work(first, last) for blocks of at least `least` of `count` items. Without a name there is no bar."""
     step = max(least, -(-count // _MOST_STEPS))
     with nullcontext(_NoBar) if name is None else _bar(count, name) as bar:
         for first in range(0, count, step):
@@ -34,7 +34,7 @@ def in_blocks(count, least, name, work):
 
 
 def watched(scene, name, work):
-    """The result of work(), while another thread counts its rows. This one works, since it alone hears of Ctrl-C."""
+    """Return the result of work() while another thread counts its rows. Only this thread receives Ctrl-C."""
     has_ended = threading.Event()
 
     def count(bar):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What rays tell of scenes: what is visible, view factors, light, centroids, collisions."""
+"""Analyses of scenes: visibility, view factors, light, centroids, collisions."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ PAIR_CLASSES = ("separate", "vertex_touch", "edge_touch", "coplanar_touch", "cop
 
 _log = logging.getLogger("twinray")
 _RAYS_OF_BLOCK = 1 << 22  # at least
-_RAYS_OF_WARNING = 1 << 16  # about, that look for points on surfaces
+_RAYS_OF_WARNING = 1 << 16  # about, to look for points on surfaces
 
 
 def _scene_of(mesh):
@@ -49,7 +49,7 @@ def _scene_of(mesh):
 def _direction(value, name):
     array = array_of(value, name)
     if array.shape != (3,):
-        raise ValueError(f"{name}: shape {array.shape}; wanted is (3,)")
+        raise ValueError(f"{name}: shape {array.shape}; expected (3,)")
     return [float(x) for x in array]
 
 
@@ -60,13 +60,13 @@ def _groups(groups, scene):
     faces = scene._core.triangle_count()
     if array.shape != (faces,) or array.dtype.kind == "f" or (array.size and array.min() < 0):
         raise ValueError(
-            f"groups: shape {array.shape}, dtype {array.dtype}; wanted are {faces} integers from 0, one a face"
+            f"groups: shape {array.shape}, dtype {array.dtype}; expected {faces} integers from 0, one per face"
         )
     return array.astype(np.uint32).tolist()
 
 
 def _tell_of_own_surfaces(scene, points, vectors):
-    """Warn where rays of points from which something is hidden meet a surface within rounding of where they begin."""
+    """Warn if rays of points that do not see everything hit a surface within rounding of their origin."""
     step = max(1, len(points) * max(1, len(vectors)) // _RAYS_OF_WARNING)
     some = points[::step]
     if not (some.size and vectors.size):
@@ -77,8 +77,8 @@ def _tell_of_own_surfaces(scene, points, vectors):
     here = int((nearest <= 16 * rounding_of([np.abs(some).max(), *(scene._core.bounds().ravel())])).sum())
     if here:
         _log.warning(
-            "visible: %d of %d points that were looked at lie on the scene, and their rays meet the surface that they "
-            "begin on; give normals, or tnear",
+            "visible: %d of %d tested points lie on the scene, and their rays hit the surface that they begin on; "
+            "pass normals or tnear",
             here,
             len(some),
         )
@@ -93,26 +93,26 @@ def visible(
     tnear: float = 0.0,
     progress: bool = False,
 ) -> NDArray[np.uint8]:
-    """Tell which points see free sky along which vectors.
+    """Test which points have an unobstructed view along which vectors.
 
     Parameters
     ----------
     points : array_like, (P, 3)
     vectors : array_like, (V, 3) float32
-        Of any length, as patches of the sky (`sky_patches`).
+        View directions of any length, for example sky patches (`sky_patches`).
     normals : array_like, (P, 3) float32, optional
-        A vector that does not leave the side of a point's normal is not seen there. Rays begin off the point along its
-        normal by what rounding may have moved a surface there, so that points on surfaces see what is before them.
+        A point does not see along vectors behind its normal. Rays begin at a small distance along the normal, as large
+        as rounding may have moved a surface there, so a point on a surface does not hit that surface.
     scene : Scene, or a mesh
     tnear : float
-        How far off, in lengths of a vector, hits begin to count: for points on the scene itself without normals.
+        Distance, in units of a vector's length, at which hits begin to count. For points on the scene without normals.
     progress : bool
-        True shows a bar of tqdm's.
+        Show a progress bar of tqdm.
 
     Returns
     -------
     (P, V) uint8
-        1 where nothing of the scene lies on the ray. All rays are never in memory at once.
+        1 if the ray hits nothing. Rays are processed in blocks, never all in memory at once.
     """
     rows, _ = rows_of(points, "points", None, 3)
     across, _ = rows_of(vectors, "vectors", np.float32, 3)
@@ -146,35 +146,37 @@ def view_factors(
     sparse: bool = False,
     progress: bool = False,
 ) -> tuple[Any, Any]:
-    """Compute which fraction of the diffuse radiation of each face, or group of faces, meets each other one directly.
+    """Compute the view factors between all faces, or groups of faces.
+
+    A view factor is the fraction of the diffuse radiation of one that reaches the other directly.
 
     Parameters
     ----------
     scene : Scene, or a mesh
     groups : array_like, (faces,) of int, optional
-        To which group each face belongs. Faces are numbered by geometry, then by triangle.
+        The group of each face. Faces are ordered by geometry, then by triangle.
     sides : {"front", "both"}
-        Which sides of faces radiate. The front is where vertices turn counter-clockwise.
+        The sides of faces that radiate. The vertices appear counter-clockwise from the front.
     rays : int
-        Of a row; the most where `target_error` is set.
+        Number of rays per row; with `target_error` the largest number.
     target_error : float, optional
-        A row ends when the 95 % interval of each of its entries is within +- this.
+        Stop a row when the 95 % confidence interval of each of its entries is within +- this.
     seed : int
-        The same, the same result.
+        Seed of the random numbers; the same seed gives the same result.
     estimator : {"auto", "hits", "area", "contour"}
-        Contour integrals for pairs that nothing can come between, rays between points of both for those far apart,
-        else what the rays of a row meet; or one of them for all.
+        "auto" uses contour integrals for pairs that nothing can come between, rays between points of both for distant
+        pairs, and hits of rays for all others. The other values use one estimator for all pairs.
     sparse : bool
-        True gives matrices of SciPy (CSR) instead of arrays.
+        Return SciPy matrices (CSR) instead of arrays.
     progress : bool
-        True shows a bar of tqdm's.
+        Show a progress bar of tqdm.
 
     Returns
     -------
     F : (n, n) float64
-        ``F[i, j]`` from i to j.
+        ``F[i, j]`` is the view factor from i to j.
     half_width : (n, n) float64
-        Half of the 95 % interval of each entry; 0 where F is 0 or no estimate.
+        Half the width of the 95 % confidence interval of each entry; 0 if F is 0 or exact.
     """
     if sides not in ("front", "both"):
         raise ValueError(f"sides: {sides!r} is not one of front, both")
@@ -213,23 +215,26 @@ def illumination(
     sides: Literal["front", "both"] = "both",
     seed: int = 1,
 ) -> dict[str, NDArray[np.float64]]:
-    """Compute what parallel light reaches, by a grid of rays in front of the scene.
+    """Compute the area of each face, or group of faces, that parallel light reaches, with a grid of rays.
 
     Parameters
     ----------
     scene : Scene, or a mesh
     direction : array_like, (3,)
-        Of the light's rays.
+        Direction in which the light travels.
     groups : array_like, (faces,) of int, optional
+        The group of each face.
     side : int
-        ``side * side`` rays.
+        The grid has ``side * side`` rays.
     sides : {"front", "both"}
+        The sides of faces that receive light.
 
     Returns
     -------
     dict
-        Arrays (n,) float64 by face or group: ``area`` as the light sees it, ``low`` and ``high``, its 95 % interval,
-        ``unobstructed``, what it would be if nothing else were there, ``surface``, the faces' own, ``hits``.
+        Arrays (n,) float64, one value per face or group: ``area``, the lit area perpendicular to the light; ``low`` and
+        ``high``, its 95 % confidence interval; ``unobstructed``, that area without shadows; ``surface``, the area of
+        the faces; ``hits``, the number of rays.
     """
     scene = _scene_of(scene)
     rows, _ = _core.illumination(
@@ -247,12 +252,12 @@ def sky_light(
     sides: Literal["front", "both"] = "front",
     seed: int = 1,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Compute what each face gets of a uniform sky, in units of an unobstructed horizontal plane.
+    """Compute the light of a uniform sky on each face, relative to an unobstructed horizontal plane.
 
     Returns
     -------
     value, low, high : (faces,) float64
-        Of the front, the sky view factor, with its 95 % interval.
+        For the front, the sky view factor, with its 95 % confidence interval.
     """
     rows = _core.sky_light(
         _scene_of(scene)._core, _direction(zenith, "zenith"), count_of(samples, "samples", 1, 2**20), sides != "front",
@@ -264,11 +269,11 @@ def sky_light(
 def centroid(
     scene: Scene | Any, direction: ArrayLike, *, side: int = 1000, seed: int = 1
 ) -> tuple[NDArray[np.float64] | None, NDArray[np.float64] | None]:
-    """Compute the mean of what is seen of a scene along a direction.
+    """Compute the mean of the points of a scene that are visible along a direction.
 
     Returns
     -------
-    mean, standard_error : (3,) float64, or None where nothing is seen
+    mean, standard_error : (3,) float64, or None if nothing is visible
     """
     scene = _scene_of(scene)
     mean, error, _, _ = _core.centroid(
@@ -291,17 +296,17 @@ def collide(
     ----------
     scene : Scene
     self : bool
-        Also those within a geometry that are no neighbours, or more than that.
+        Also report pairs within a geometry, except neighbours that touch only where they are joined.
     shared : {"index", "position"}
-        Which vertices of a mesh are one, for neighbours.
+        Whether vertices of a mesh are the same if they have the same index, or the same position.
     segments : bool
-        Also where the insides of crossing triangles meet.
+        Also return the segments in which crossing triangles intersect.
 
     Returns
     -------
     dict
         ``geometry_ids`` and ``primitive_ids`` (m, 2) uint32, ``classes`` (m,) uint8, indices into `PAIR_CLASSES`;
-        ``segments`` (m, 2, 3) float64 where asked for, 0 for other classes.
+        With `segments`, ``segments`` (m, 2, 3) float64, 0 for other classes.
     """
     if shared not in ("index", "position"):
         raise ValueError(f"shared: {shared!r} is not one of index, position")
@@ -319,20 +324,20 @@ def collide(
 
 
 def verify(scene: Scene | Any, rays: ArrayLike | None = None, *, count: int = 100_000, seed: int = 1) -> dict[str, Any]:
-    """Judge closest hits by a reference on the CPU, in float64 and, where that cannot tell, more.
+    """Check closest hits against a reference on the CPU, in float64 or, if that cannot decide, in higher precision.
 
     Parameters
     ----------
     scene : Scene, or a mesh
     rays : array_like, (n, 6) float32, optional
-        By default `count` are made: half random, a quarter aimed at vertices, a quarter at points of edges.
+        Rays to check. Default: `count` rays, half random, a quarter aimed at vertices, a quarter at points of edges.
 
     Returns
     -------
     dict
-        ``counts``, how often each of `HIT_CLASSES` occurred; ``faults``, how many rays got a wrong answer;
-        ``bound_95``, below which the rate of faults is (95 %); ``classes`` (n,) uint8, indices into `HIT_CLASSES`;
-        ``rays`` (n, 6) float32, or float64 where the scene's `origin` is not 0.
+        ``counts``, the number of rays of each of `HIT_CLASSES`; ``faults``, the number of wrong answers; ``bound_95``,
+        an upper bound of the fault rate (95 %); ``classes`` (n,) uint8, indices into `HIT_CLASSES`; ``rays`` (n, 6)
+        float32, or float64 if the scene's `origin` is not 0.
     """
     scene = _scene_of(scene)
     flat, _ = scene._rays_of(np.zeros((0, 6)) if rays is None else rays)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Arrays in the memory of a scene's device, which NumPy, PyTorch and CuPy see without a copy."""
+"""Arrays in the memory of a scene's device, which NumPy, PyTorch and CuPy access without a copy."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ._cuda import ImportedMemory
 if TYPE_CHECKING:
     from .scene import Scene
 
-#: What `Scene.trace` writes of each ray; ``t`` of a miss is -1.
+#: The result of `Scene.trace` for each ray; ``t_hit`` of a miss is -1.
 HIT = np.dtype(
     [
         ("is_hit", np.uint32),
@@ -32,9 +32,9 @@ HIT = np.dtype(
 class DeviceArray:
     """An array in the memory of a scene's device, made by `Scene.device_array`.
 
-    On a GPU of NVIDIA's it is ``torch.as_tensor(array, device="cuda")`` or ``cupy.asarray(array)``, by
-    ``__cuda_array_interface__``; on a CPU ``numpy.asarray(array)`` or ``torch.from_dlpack(array)``: each the same
-    memory. A field of hits, as ``hits["t_hit"]``, is an array of its own, again the same memory.
+    On an NVIDIA GPU use ``torch.as_tensor(array, device="cuda")`` or ``cupy.asarray(array)``, through
+    ``__cuda_array_interface__``. On a CPU use ``numpy.asarray(array)`` or ``torch.from_dlpack(array)``. All of them
+    share its memory. So does a field of hits, such as ``hits["t_hit"]``, which is also a `DeviceArray`.
 
     Attributes
     ----------
@@ -58,7 +58,9 @@ class DeviceArray:
 
     def __getitem__(self, field: str) -> DeviceArray:
         if not isinstance(field, str) or self.dtype.fields is None or field not in self.dtype.fields:
-            raise KeyError(f"{field!r} is no field of {self.dtype}; slices are for the package that sees the array")
+            raise KeyError(
+                f"{field!r} is not a field of {self.dtype}; to slice, convert the array with NumPy, PyTorch or CuPy"
+            )
         dtype, offset = self.dtype.fields[field][:2]
         part = DeviceArray(self._memory, self.shape + dtype.shape, dtype.base, self._offset + offset)
         part._strides = self._strides + _strides(dtype.shape, dtype.base.itemsize)
@@ -66,7 +68,7 @@ class DeviceArray:
         return part
 
     def numpy(self) -> NDArray:
-        """As NumPy's: the same memory on a CPU, else a copy."""
+        """Return a NumPy array: the same memory on a CPU, else a copy."""
         mapped = self._memory.mapped()
         bytes_ = self._memory.download() if mapped is None else mapped
         return np.ndarray(self.shape, self.dtype, bytes_, self._offset, self._strides)
@@ -75,7 +77,7 @@ class DeviceArray:
         array = self._on_host()
         if dtype is not None and np.dtype(dtype) != array.dtype:
             if copy is False:
-                raise ValueError(f"the array is of {array.dtype}; as {np.dtype(dtype)} it would be a copy")
+                raise ValueError(f"the array has dtype {array.dtype}; {np.dtype(dtype)} would require a copy")
             return array.astype(dtype)
         return array.copy() if copy else array
 
@@ -88,7 +90,7 @@ class DeviceArray:
     @property
     def __cuda_array_interface__(self) -> dict[str, Any]:
         if self._memory.mapped() is not None:
-            raise AttributeError("__cuda_array_interface__: the array lies in the host's memory")
+            raise AttributeError("__cuda_array_interface__: the array is in the host's memory")
         if not self._imported:
             self._imported.append(ImportedMemory(self._memory))
         return {
@@ -101,12 +103,14 @@ class DeviceArray:
         }
 
     def export_fd(self) -> tuple[int, int]:
-        """A new file descriptor of the memory for other APIs (opaque, as Vulkan, CUDA and HIP import it), which the
-        caller closes or gives away, and the size of the memory in bytes."""
+        """Return a new file descriptor of the memory, and its size in bytes.
+
+        Vulkan, CUDA and HIP import it as an opaque handle. The caller closes it or transfers it.
+        """
         return self._memory.export_fd()
 
     def synchronize(self) -> None:
-        """Wait for what CUDA is to do with the array."""
+        """Wait for CUDA's work on the array."""
         for imported in self._imported:
             imported.synchronize()
 
@@ -115,15 +119,15 @@ class DeviceArray:
 
     def _on_host(self):
         if self._memory.mapped() is None:
-            raise BufferError("the array lies in the GPU's memory; .numpy() copies it")
+            raise BufferError("the array is in the GPU's memory; .numpy() copies it")
         return self.numpy()
 
 
 def device_array(scene: Scene, shape: int | tuple[int, ...], dtype: DTypeLike = np.float32) -> DeviceArray:
-    """See `Scene.device_array`, which this is."""
+    """Implement `Scene.device_array`."""
     sizes = (shape,) if hasattr(shape, "__index__") else tuple(shape)
     if not all(hasattr(n, "__index__") and n.__index__() >= 0 for n in sizes):
-        raise ValueError(f"shape: {shape!r}; wanted are integers of at least 0")
+        raise ValueError(f"shape: {shape!r}; expected integers of at least 0")
     sizes = tuple(n.__index__() for n in sizes)
     kind = np.dtype(dtype)
     count = int(np.prod(sizes, dtype=object)) * kind.itemsize
@@ -133,16 +137,16 @@ def device_array(scene: Scene, shape: int | tuple[int, ...], dtype: DTypeLike = 
 
 
 def trace(scene: Scene, rays: DeviceArray, hits: DeviceArray | None, any_hit: bool) -> DeviceArray:
-    """See `Scene.trace`, which this is."""
+    """Implement `Scene.trace`."""
     if not isinstance(rays, DeviceArray):
-        raise TypeError(f"rays: {type(rays).__name__} is no DeviceArray; Scene.device_array makes one")
+        raise TypeError(f"rays: {type(rays).__name__} is not a DeviceArray; Scene.device_array creates one")
     if rays.dtype != np.float32 or len(rays.shape) != 2 or rays.shape[1] != 8 or not rays._is_packed():
-        raise ValueError(f"rays: {rays.shape} of {rays.dtype}; wanted is (n, 8) of float32")
+        raise ValueError(f"rays: {rays.shape} of {rays.dtype}; expected (n, 8) of float32")
     hits = device_array(scene, len(rays), HIT) if hits is None else hits
     if not isinstance(hits, DeviceArray):
-        raise TypeError(f"hits: {type(hits).__name__} is no DeviceArray; Scene.device_array makes one")
+        raise TypeError(f"hits: {type(hits).__name__} is not a DeviceArray; Scene.device_array creates one")
     if hits.dtype != HIT or hits.shape != rays.shape[:1] or not hits._is_packed():
-        raise ValueError(f"hits: {hits.shape} of {hits.dtype}; wanted is {rays.shape[:1]} of twinray.HIT")
+        raise ValueError(f"hits: {hits.shape} of {hits.dtype}; expected {rays.shape[:1]} of twinray.HIT")
     rays.synchronize()
     hits.synchronize()
     _core.trace(scene._core, rays._memory, hits._memory, len(rays), any_hit)

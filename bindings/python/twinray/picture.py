@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Pictures of scenes, of rays and of what they hit, made by the scene's own rays; notebooks show them."""
+"""Pictures of scenes, rays and hits, rendered with the scene's own rays; notebooks display them."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ _HIDDEN = 0.2  # how much is seen of a ray behind a surface
 
 
 class Picture:
-    """An image, which notebooks show, and `save` writes as PNG.
+    """An image that notebooks display and `save` writes as PNG.
 
     Attributes
     ----------
@@ -61,7 +61,7 @@ class Picture:
         self.value_range = value_range
 
     def save(self, file: str | os.PathLike[str]) -> None:
-        """Write a PNG."""
+        """Write the image as PNG."""
         with open(file, "wb") as out:
             out.write(self._repr_png_())
 
@@ -95,7 +95,7 @@ class _Camera:
         self.fov, self.width, self.height = fov, width, height
         forward = center - eye
         if not np.linalg.norm(forward) > 0:
-            raise ValueError(f"eye: {eye}; the camera stands at its center")
+            raise ValueError(f"eye: {eye}; the camera is at its center")
         self.forward = forward / np.linalg.norm(forward)
         right = np.cross(self.forward, up)
         if not np.linalg.norm(right) > 0:
@@ -105,7 +105,7 @@ class _Camera:
         self.focal = 0.5 * width / np.tan(0.5 * np.deg2rad(fov))
 
     def rays(self):
-        """Through all pixels, from above; directions reach the plane at distance 1, so that t is depth."""
+        """Rays through all pixels, from the top; directions end on the plane at distance 1, so that t is depth."""
         x = (np.arange(self.width) + 0.5 - 0.5 * self.width) / self.focal
         y = (0.5 * self.height - 0.5 - np.arange(self.height)) / self.focal
         rays = np.empty((self.height, self.width, 6))
@@ -114,7 +114,7 @@ class _Camera:
         return rays
 
     def project(self, points):
-        """Columns, rows and depths; behind the camera depths are not positive."""
+        """Return columns, rows and depths of points; depths are not positive behind the camera."""
         offset = points - self.eye
         depth = offset @ self.forward
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -135,7 +135,7 @@ def _camera_for(bounds, eye, center, up, fov, width, height):
 
 
 def colors_of(values, value_range=None):
-    """Colours (n, 3) of viridis, grey for NaN, and the range of values that it spans."""
+    """Return viridis colours (n, 3), grey for NaN, and the range of values that they span."""
     finite = values[np.isfinite(values)]
     low, high = value_range or ((finite.min(), finite.max()) if finite.size else (0.0, 1.0))
     place = np.clip((values - low) / (high - low) if high > low else np.zeros_like(values), 0, 1)
@@ -146,7 +146,7 @@ def colors_of(values, value_range=None):
 
 
 def _range_above(before, behind):
-    """From where to where, in parts of them, lines between two heights are above 0: nowhere if begin >= end."""
+    """Return the part of each line between two heights that is above 0, as fractions; empty if begin >= end."""
     with np.errstate(divide="ignore", invalid="ignore"):
         cut = before / (before - behind)
     begin = np.where(before >= 0, 0.0, np.where(behind > 0, cut, 1.0))
@@ -155,7 +155,7 @@ def _range_above(before, behind):
 
 
 class _Canvas:
-    """Colours and depths of pixels, on which points and lines are drawn where nothing is nearer."""
+    """Colours and depths of pixels. Points and lines are faint behind nearer surfaces."""
 
     def __init__(self, scene, camera, face_colors):
         self.camera = camera
@@ -174,7 +174,7 @@ class _Canvas:
         self.color[is_hit] = color * (0.35 + 0.65 * facing[:, None])
 
     def dots(self, points, colors, radius):
-        """Discs of a radius in pixels of the canvas."""
+        """Draw discs with a radius in pixels of the canvas."""
         reach = np.arange(-int(radius), int(radius) + 1)
         dx, dy = np.meshgrid(reach, reach)
         inside = dx**2 + dy**2 <= radius**2
@@ -196,7 +196,7 @@ class _Canvas:
         self.color[row[is_seen], column[is_seen]] = colors[is_seen]
 
     def lines(self, starts, ends, colors, radius):
-        """Each as dots a pixel apart, where it is before the camera and in the picture."""
+        """Draw lines as dots one pixel apart, clipped to the picture."""
         near = 1e-3 * float(np.linalg.norm(self.camera.center - self.camera.eye))
         depths = [(p - self.camera.eye) @ self.camera.forward for p in (starts, ends)]
         begin, end = _range_above(depths[0] - near, depths[1] - near)
@@ -225,7 +225,7 @@ class _Canvas:
 
 
 def _segments(scene, rays, t_hit, length):
-    """Starts and ends of rays, some of them where there are many, and which hit."""
+    """Return starts and ends of rays, or of an even sample of many rays, and whether they hit."""
     flat, shape = rows_of(rays, "rays", np.float64, 6)
     if t_hit is None:
         t = np.asarray(scene.cast_rays(flat)["t_hit"], np.float64)
@@ -260,14 +260,14 @@ def show(
     size: tuple[int, int] = (640, 480),
     interactive: bool = False,
 ) -> Any:
-    """See `Scene.show`, which this is."""
+    """Implement `Scene.show`."""
     upward = vector_of(up, "up")
     width, height = size
     if not (0 < width <= 8192 and 0 < height <= 8192):
-        raise ValueError(f"size: {size}; wanted are a width and a height from 1 to 8192")
+        raise ValueError(f"size: {size}; expected a width and a height from 1 to 8192")
     fov = number_of(fov_deg, "fov_deg", 0)
     if not 0 < fov < 180:
-        raise ValueError(f"fov_deg: {fov}; wanted is an angle between 0 and 180")
+        raise ValueError(f"fov_deg: {fov}; expected an angle between 0 and 180")
     low, high = scene.bounds()
     drawn, _ = rows_of(np.zeros((0, 3)) if points is None else points, "points", np.float64, 3)
     if not np.isfinite([low, high]).all():
@@ -277,7 +277,7 @@ def show(
         numbers = _numbers(values, "values")
         faces = int(scene.first_faces()[-1])
         if numbers.shape != (faces,):
-            raise ValueError(f"values: shape {numbers.shape}; wanted is ({faces},), one number a face")
+            raise ValueError(f"values: shape {numbers.shape}; expected ({faces},), one number per face")
         face_colors, spanned = colors_of(numbers, value_range)
     length = float(np.linalg.norm(high - low)) or 1.0
     segments = None if rays is None else _segments(scene, rays, t_hit, length)
@@ -302,13 +302,13 @@ def show(
 
 
 def _numbers(values, name):
-    """As float64; those that are True or False, too."""
+    """Convert numbers or truth values to float64."""
     array = np.asarray(values)
     return (array if array.dtype == bool else array_of(values, name)).astype(np.float64)
 
 
 def _interactive(scene, face_colors, segments, points):
-    """A window or a widget of PyVista's, or of trimesh's where only that is installed."""
+    """Open a window or widget of PyVista, or of trimesh if PyVista is not installed."""
     try:
         import pyvista
     except ImportError:
@@ -335,7 +335,7 @@ def _in_trimesh(scene, face_colors, segments, points):
     try:
         import trimesh
     except ImportError:
-        raise ImportError("interactive: needs PyVista or trimesh; neither is installed") from None
+        raise ImportError("interactive: requires PyVista or trimesh; neither is installed") from None
     mesh = scene.to_trimesh()
     if face_colors is not None:
         mesh.visual.face_colors = np.rint(255 * face_colors).astype(np.uint8)

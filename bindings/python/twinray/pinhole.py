@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Rays of pinhole cameras, as Open3D makes them."""
+"""Rays of pinhole cameras, in Open3D's convention."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from ._arrays import Array, array_of, number_of
 
 
 def create_rays_pinhole(*args: Any, dtype: Any = np.float32, **options: Any) -> Array:
-    """Make the rays of a pinhole camera.
+    """Create the rays of a pinhole camera.
 
-    Called as ``create_rays_pinhole(fov_deg, center, eye, up, width_px, height_px)``: `fov_deg` is horizontal, x of
-    pixels goes along `up` x (`center` - `eye`) and y along `up`, as Open3D has it; or as
-    ``create_rays_pinhole(intrinsic_matrix, extrinsic_matrix, width_px, height_px)``: (3, 3), and (4, 4) from the
-    scene to the camera, which looks along +z.
+    There are two forms. In ``create_rays_pinhole(fov_deg, center, eye, up, width_px, height_px)``, `fov_deg` is the
+    horizontal field of view; as in Open3D, pixel x goes along `up` x (`center` - `eye`) and pixel y along `up`. In
+    ``create_rays_pinhole(intrinsic_matrix, extrinsic_matrix, width_px, height_px)``, the intrinsic matrix is (3, 3),
+    and the extrinsic matrix is (4, 4), from the scene to the camera, which looks along +z.
 
     Returns
     -------
     Array, (height_px, width_px, 6) float32
-        Through the middles of pixels; directions reach the plane at distance 1. Cameras far from 0, as in UTM, want
-        ``dtype=numpy.float64``, which a scene rounds only when it has moved it (`Scene.origin`).
+        The rays through the pixel centres; their directions end on the plane at distance 1. For a camera far from 0,
+        as in UTM coordinates, use ``dtype=numpy.float64``; a scene rounds such rays only relative to its origin.
     """
     is_looking_at = "fov_deg" in options or (args and np.ndim(args[0]) == 0)
     rays = (_rays_looking_at if is_looking_at else _rays_of_matrices)(*args, **options)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Scenes of triangle meshes, with the names, shapes and dtypes of Open3D's ``RaycastingScene``.
 
-One file, since it is one class, half of which are docstrings.
+It is one file because it is one class; half of it are docstrings.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ from .pinhole import create_rays_pinhole
 if TYPE_CHECKING:
     import subprocess
 
-INVALID_ID: int = 0xFFFFFFFF  #: in place of the number of a geometry or a triangle, where there is none
+INVALID_ID: int = 0xFFFFFFFF  #: the number of the geometry or triangle of a miss
 
-_CPU_NOTE = "right, but tens to hundreds of times slower than on a GPU"
+_CPU_NOTE = "results are correct, but a GPU is tens to hundreds of times faster"
 _log = logging.getLogger("twinray")
 _told_of_cpu: set[str] = set()
 _scenes: weakref.WeakSet[Scene] = weakref.WeakSet()
@@ -37,36 +37,37 @@ def _renew_locks():
         scene._adding = threading.Lock()
 
 
-os.register_at_fork(after_in_child=_renew_locks)  # a thread that held one is not there
+os.register_at_fork(after_in_child=_renew_locks)  # a thread that held one does not exist in the child
 
 
 class Scene:
-    """Triangle meshes on a Vulkan device, to be asked by rays and points.
+    """A scene of triangle meshes on a Vulkan device, for ray and point queries.
 
     Parameters
     ----------
     accel : {"auto", "sw", "hw"}
-        The accelerator: twinray's own compute shaders ("sw"), the driver's ("hw"), or the driver's where the device
-        is a GPU with units for rays.
+        The accelerator: twinray's own compute shaders ("sw"), or the driver's ray tracing ("hw"). "auto" selects "hw"
+        if the device supports it and is not a CPU.
     device : str, optional
-        A part of the device's name, or its index in `devices`; by default ``TWINRAY_DEVICE``, else the fastest.
+        Part of the device's name, or its index in `devices`. Default: the environment variable ``TWINRAY_DEVICE``, else
+        the fastest device.
     level : {"watertight", "refined", "certified", "fast"}
-        Of the triangle test: "watertight" loses no ray at an edge, "refined" computes t, u and v in float64,
-        "certified" decides hits and their order in float64, too; "fast" may lose rays at edges.
+        Precision of the triangle test. "watertight" loses no ray at an edge. "refined" also computes t, u and v in
+        float64. "certified" also decides hits and their order in float64. "fast" may lose rays at edges.
     origin : array_like, (3,), optional
-        What the device's float32 coordinates are counted from; by default the first mesh says: 0, unless it lies so far
-        from there that it would be rounded by more than a millionth of its extent.
+        The origin of the device's float32 coordinates. By default it is 0, unless float32 would round the first mesh
+        there by more than a millionth of its extent; then it is a point near that mesh.
 
     Notes
     -----
-    Rays are rows of six numbers, origin and direction; directions need not be unit, and ``t_hit`` counts in their
-    lengths. The device computes in float32; what is given in float64 is counted from `origin` before it is rounded,
-    so that scenes far from 0, as in UTM, keep their precision. Rays in float64 that begin more than 16 extents away,
-    as from a sun or a satellite, are brought near the scene in float64 first; ``t_hit`` counts from where they began
-    and is float64 then. Rays go to the device in blocks of a million. All calls may come from several threads.
+    A ray is a row of six numbers, origin and direction. Directions need not have unit length; ``t_hit`` is in units of
+    the direction's length. The device computes in float32. Float64 input is first made relative to `origin`, then
+    rounded, so scenes far from 0 keep their precision, for example in UTM coordinates. Float64 rays that begin more
+    than 16 extents away, for example at a satellite, are first moved near the scene in float64; their ``t_hit`` is
+    float64 and counts from where they began. Rays go to the device in blocks of a million. All methods are thread-safe.
 
-    Pickles and copies hold the scene's meshes, not its device: a copy opens the device again, and so does a scene in a
-    child process that a fork made. Warnings go to the logger "twinray". Ctrl-C ends any call.
+    Pickles and copies contain the scene's meshes, not its device. A copy opens the device again, and so does a scene in
+    a forked child process. Warnings go to the logger "twinray". Ctrl-C ends any call.
     """
 
     def __init__(
@@ -86,7 +87,7 @@ class Scene:
         if device is None:
             device = os.environ.get("TWINRAY_DEVICE", "")
         self._frame = frame
-        self._adding = threading.Lock()  # the first mesh says the origin
+        self._adding = threading.Lock()  # the first mesh decides the origin
         self._told_of_far = False
         self._core = _core.Scene(accel, str(device), level)
         _scenes.add(self)
@@ -102,12 +103,12 @@ class Scene:
 
     @property
     def backend(self) -> dict[str, str]:
-        """The device and the accelerator that answer: a dict of strings.
+        """The device and the accelerator in use, as a dict of strings.
 
         The keys are ``device``, ``driver``, ``kind``, ``accel``, ``why``, ``path``, ``level``, ``lists`` and ``note``.
-        ``lists`` is the accelerator of `count_intersections` and `list_intersections`: "sw" always, since drivers may
-        count an edge twice. Where ``accel`` is "hw" their first call builds it beside the driver's. ``note`` says how
-        slow a CPU is as the device; it is empty for a GPU.
+        ``lists`` is the accelerator of `count_intersections` and `list_intersections`. It is always "sw", because
+        drivers may count an edge twice; if ``accel`` is "hw", their first call also builds the "sw" accelerator.
+        ``note`` says how slow a CPU device is; it is empty for a GPU.
         """
         backend = self._core.backend()
         is_cpu = backend["kind"] == "CPU"
@@ -115,7 +116,7 @@ class Scene:
 
     @property
     def origin(self) -> NDArray[np.float64]:
-        """What the device's coordinates are counted from: (3,) float64."""
+        """The origin of the device's coordinates: (3,) float64."""
         return self._frame.origin
 
     def __repr__(self) -> str:
@@ -139,79 +140,83 @@ class Scene:
         return len(self._core.geometries())
 
     def view(self, *options: str) -> subprocess.Popen[bytes]:
-        """Open the scene, as it is now, in the window of the command ``twinray view``.
+        """Open the current scene in the window of the command ``twinray view``.
 
         Parameters
         ----------
         *options : str
-            Of the command, as ``"--layer", "steps"``.
+            Options of the command, for example ``"--layer", "steps"``.
 
         Returns
         -------
         subprocess.Popen
-            Of the command, which is in ``PATH`` or named by ``TWINRAY_COMMAND``.
+            The process of the command, which must be in ``PATH`` or named by ``TWINRAY_COMMAND``.
 
         Raises
         ------
         FileNotFoundError
-            Where there is no such command: it is built from the same sources, not part of this package.
+            If the command is not found. It is built from the same sources, but is not part of this package.
         """
         from . import viewing
 
         return viewing.view(self, *options)
 
     def bounds(self) -> NDArray[np.float64]:
-        """The box around all triangles, lowest and highest corner: (2, 3) float64, infinite where there are none."""
+        """Return the lowest and highest corner of the box around all triangles: (2, 3) float64.
+
+        They are infinite for an empty scene.
+        """
         return self._core.bounds() + self.origin
 
     def first_faces(self) -> NDArray[np.uint64]:
-        """The number of each geometry's first face, where faces of all are numbered: (geometries + 1,) uint64."""
+        """Return the number of each geometry's first face, in the numbering of all faces: (geometries + 1,) uint64."""
         return self._core.first_faces()
 
     def show(self, *args: Any, **options: Any) -> Any:
-        """Make a picture of the scene, of rays and of what they hit.
+        """Make a picture of the scene, with rays, hits and points.
 
         Parameters
         ----------
         rays : array_like, (..., 6), optional
-            Drawn from their origins to `t_hit`, which they are cast for where it is not given; those that miss are
-            blue. Behind surfaces they are faint. Of more than 2,000 every second, third, ... is drawn.
+            Rays to draw, from their origins to `t_hit`. Rays that miss are blue, and rays are faint behind surfaces. If
+            there are more than 2,000, an even sample is drawn.
         t_hit : array_like, (...), optional
-            Infinite for a miss.
+            Ends of the rays, infinite for a miss. Default: the rays are cast.
         points : array_like, (n, 3), optional
+            Points to draw.
         point_values : array_like, (n,), optional
-            Numbers whose colours the points get.
+            Values that the colours of the points show.
         point_size : float
-            Of points, across, in pixels; 5 by default.
+            Diameter of the points in pixels. Default: 5.
         values : array_like, (faces,), optional
-            Numbers whose colours the faces get (`first_faces` says which are whose); NaN: grey.
+            Values that the colours of the faces show, in the order of `first_faces`; NaN is grey.
         value_range : (float, float), optional
-            The values of the darkest and the brightest colour; by default the least and the greatest.
+            The values of the darkest and the brightest colour. Default: the smallest and the largest value.
         eye, center, up : array_like, (3,), optional
-            Where the camera stands, what it looks at and which way is up; by default all is seen, +y is up.
+            Position of the camera, the point it looks at, and the up direction. Default: the whole scene, with +y up.
         fov_deg : float
-            Horizontal, 40 by default.
+            Horizontal field of view in degrees. Default: 40.
         size : (int, int)
-            Width and height in pixels, (640, 480) by default.
+            Width and height in pixels. Default: (640, 480).
         interactive : bool
-            True opens the window, or in a notebook the widget, of PyVista or trimesh, with their camera.
+            Open a window of PyVista or trimesh, or in a notebook a widget, with their camera.
 
         Returns
         -------
         Picture
-            Shown by notebooks; ``save("picture.png")`` writes it. With `interactive`, what that package returns.
+            Notebooks display it; ``save("picture.png")`` writes it. With `interactive`, the result of that package.
         """
         return picture.show(self, *args, **options)
 
     def world_triangles(self) -> NDArray[np.float64]:
-        """The vertices of all triangles where they are, three rows each: (3 m, 3) float64.
+        """Return the vertices of all triangles in scene coordinates, three rows each: (3 m, 3) float64.
 
-        Triangles of a mirrored geometry have their last two vertices exchanged, so that fronts stay fronts.
+        The last two vertices of the triangles of a mirrored geometry are swapped, so that fronts stay fronts.
         """
         return self._core.world_triangles() + self.origin
 
     def to_trimesh(self) -> Any:
-        """Give all triangles where they are as a ``trimesh.Trimesh``, which trimesh is installed for."""
+        """Return all triangles in scene coordinates as a ``trimesh.Trimesh``; requires trimesh."""
         import trimesh
 
         triangles = self.world_triangles()
@@ -231,11 +236,12 @@ class Scene:
         Parameters
         ----------
         vertex_positions : array_like, (N, 3) float32, or a mesh
-            A mesh of trimesh, Open3D or PyVista stands for both arrays.
+            The vertices, or a mesh of trimesh, Open3D or PyVista in place of both arrays.
         triangle_indices : array_like, (M, 3) uint32
+            Three vertex indices per triangle.
         transform : array_like, (4, 4) or (3, 4), optional
-            From the mesh to the scene; columns are the images of the axes and of the origin. One that loses one
-            direction, as a scale of 1, 1, 0 does, flattens the geometry for good.
+            Transform from the mesh to the scene; its columns are the images of the axes and of the origin. A transform
+            that loses one direction, such as a scale of (1, 1, 0), flattens the geometry permanently.
 
         Returns
         -------
@@ -245,9 +251,9 @@ class Scene:
         Raises
         ------
         ValueError, TypeError
-            Naming the argument, its shape or dtype, and what is wanted.
+            If an argument has the wrong shape or dtype; the message names it and the expected one.
         Error
-            For an index that names no vertex, and a transform that leaves no area.
+            If an index is out of range, or a transform leaves no area.
         """
         if triangle_indices is None:
             vertex_positions, triangle_indices = arrays_of_mesh(vertex_positions)
@@ -262,7 +268,13 @@ class Scene:
         return geometry
 
     def add_instance(self, geometry: int, transform: ArrayLike | None = None) -> int:
-        """Add the mesh of a geometry once more, without another copy; returns the number of the new geometry."""
+        """Add another instance of a geometry's mesh, without a copy of it.
+
+        Returns
+        -------
+        int
+            The number of the new geometry.
+        """
         number, matrix = geometry_of(geometry, "geometry"), matrix_of(transform, "transform")
         with self._adding:
             added = self._core.add_instance(number, self._frame.matrix_of(number, matrix))
@@ -271,12 +283,12 @@ class Scene:
         return added
 
     def add_file(self, file: str | os.PathLike[str]) -> list[int]:
-        """Add all that a file shows: .gltf, .glb, .obj, .ply or .stl.
+        """Add the contents of a scene file: .gltf, .glb, .obj, .ply or .stl.
 
         Returns
         -------
         list of int
-            A number for each instance; those of one mesh share it.
+            The numbers of the new geometries, one per instance. Instances of one mesh share its memory.
         """
         name = os.fspath(file)
         with self._adding:
@@ -289,17 +301,17 @@ class Scene:
         return added
 
     def remove(self, geometry: int) -> None:
-        """Take a geometry out. Its number is not given again."""
+        """Remove a geometry. Its number is not used again."""
         self._core.remove(geometry_of(geometry, "geometry"))
 
     def set_transform(self, geometry: int, transform: ArrayLike) -> None:
-        """Move a geometry: `transform` is (4, 4) or (3, 4), from its mesh to the scene."""
+        """Move a geometry; `transform` is (4, 4) or (3, 4), from its mesh to the scene."""
         number, matrix = geometry_of(geometry, "geometry"), matrix_of(transform, "transform")
         self._core.set_transform(number, self._frame.matrix_of(number, matrix))
         self._tell_if_far([number])
 
     def update_vertices(self, geometry: int, vertex_positions: ArrayLike) -> None:
-        """Move the vertices of a mesh, and of all its instances: as many as it has, (N, 3)."""
+        """Move the vertices of a mesh and of all its instances; (N, 3), with N unchanged."""
         positions, _ = rows_of(vertex_positions, "vertex_positions", None, 3)
         number = geometry_of(geometry, "geometry")
         self._core.update_vertices(number, self._frame.moved(positions, self._frame.mesh_origin(number)))
@@ -309,25 +321,25 @@ class Scene:
     def cast_rays(
         self, rays: ArrayLike, nthreads: int = 0, *, tnear: float = 0.0, tfar: float = np.inf, normals: bool = True
     ) -> dict[str, Array]:
-        """Find what each ray meets first.
+        """Find the first hit of each ray.
 
         Parameters
         ----------
         rays : array_like, (..., 6)
         nthreads : int
-            Not used; for programs written for Open3D.
+            Ignored; accepted for compatibility with Open3D.
         tnear, tfar : float
-            Only hits between them count.
+            Only hits between these values of t count.
         normals : bool
-            False leaves ``primitive_normals`` out.
+            Whether to return ``primitive_normals``.
 
         Returns
         -------
         dict
-            ``t_hit`` (...) float32, or float64 where a ray began far off, infinite for a miss; ``geometry_ids`` and
-            ``primitive_ids`` (...) uint32, `INVALID_ID` for a miss; ``primitive_uvs`` (..., 2) float32: the point is
-            (1 - u - v) a + u b + v c; ``primitive_normals`` (..., 3) float32, unit, on the triangle's front, which
-            stays the front where a transform mirrors; 0 where the triangle has no area.
+            ``t_hit`` (...) float32, or float64 if a ray began far away; infinite for a miss. ``geometry_ids`` and
+            ``primitive_ids`` (...) uint32, `INVALID_ID` for a miss. ``primitive_uvs`` (..., 2) float32; the hit point
+            is (1 - u - v) a + u b + v c. ``primitive_normals`` (..., 3) float32, of unit length, on the front of the
+            triangle, which mirroring transforms do not change; 0 for a triangle without area.
         """
         flat, shape = self._rays_of(rays)
         found = self._core.cast(*flat, *_interval(tnear, tfar), bool(normals))
@@ -335,28 +347,28 @@ class Scene:
         return _shaped(found, shape)
 
     def test_occlusions(self, rays: ArrayLike, tnear: float = 0.0, tfar: float = np.inf, nthreads: int = 0) -> Array:
-        """Tell whether each ray meets anything between `tnear` and `tfar`; (...) bool."""
+        """Test whether each ray hits anything between `tnear` and `tfar`; (...) bool."""
         flat, shape = self._rays_of(rays)
         return self._core.occlusions(*flat, *_interval(tnear, tfar)).reshape(shape).view(Array)
 
     def count_intersections(
         self, rays: ArrayLike, nthreads: int = 0, *, tnear: float = 0.0, tfar: float = np.inf
     ) -> Array:
-        """Count the triangles that each ray meets, an edge or vertex between them once; (...) int32."""
+        """Count the triangles that each ray hits; a shared edge or vertex counts once; (...) int32."""
         flat, shape = self._rays_of(rays)
         return self._core.counts(*flat, *_interval(tnear, tfar)).reshape(shape).view(Array)
 
     def list_intersections(
         self, rays: ArrayLike, nthreads: int = 0, *, tnear: float = 0.0, tfar: float = np.inf, normals: bool = False
     ) -> dict[str, Array]:
-        """List all that each ray meets, by ray, then by t; an edge or vertex between triangles once.
+        """List all hits, ordered by ray, then by t. A hit at a shared edge or vertex is listed once.
 
         Returns
         -------
         dict
-            ``ray_splits`` (n + 1,) uint32: the hits of ray i are those from ``ray_splits[i]`` on, before
-            ``ray_splits[i + 1]``; ``ray_ids``, ``t_hit``, ``geometry_ids``, ``primitive_ids`` (m,);
-            ``primitive_uvs`` (m, 2); ``primitive_normals`` (m, 3) where asked for.
+            ``ray_splits`` (n + 1,) uint32: the hits of ray i begin at ``ray_splits[i]`` and end before
+            ``ray_splits[i + 1]``. ``ray_ids``, ``t_hit``, ``geometry_ids``, ``primitive_ids`` (m,).
+            ``primitive_uvs`` (m, 2). With `normals`, ``primitive_normals`` (m, 3).
         """
         flat, _ = self._rays_of(rays)
         splits, found = self._core.list(*flat, *_interval(tnear, tfar), bool(normals))
@@ -369,23 +381,23 @@ class Scene:
     # On the device
 
     def device_array(self, shape: int | tuple[int, ...], dtype: DTypeLike = np.float32) -> _device.DeviceArray:
-        """Make an array in the memory of the scene's device, which NumPy, PyTorch and CuPy see without a copy.
+        """Create an array in the memory of the scene's device, which NumPy, PyTorch and CuPy access without a copy.
 
         Parameters
         ----------
         shape : int or tuple of int
         dtype : dtype
-            `HIT` for hits.
+            Use `HIT` for hits.
 
         Returns
         -------
         DeviceArray
-            What it holds is not set.
+            Its contents are undefined.
 
         Raises
         ------
         Error
-            Where the driver cannot export memory (``VK_KHR_external_memory_fd``).
+            If the driver cannot export memory (``VK_KHR_external_memory_fd``).
         """
         return _device.device_array(self, shape, dtype)
 
@@ -396,40 +408,40 @@ class Scene:
         *,
         any_hit: bool = False,
     ) -> _device.DeviceArray:
-        """Find what rays in the device's memory meet, without a copy through the host; returns when it is done.
+        """Trace rays in the device's memory, without a copy through the host. Returns when the hits are written.
 
         Parameters
         ----------
         rays : DeviceArray, (n, 8) float32
-            Origin, tnear, direction, tfar of each, origins counted from `origin`. What CUDA writes there is waited for.
+            Origin (relative to `Scene.origin`), tnear, direction and tfar of each ray. Waits for CUDA's writes to them.
         hits : DeviceArray, (n,) of `HIT`, optional
-            Written; by default a new one.
+            Array for the results. Default: a new one.
         any_hit : bool
-            Any hit instead of the first.
+            Find any hit instead of the first one.
 
         Returns
         -------
         DeviceArray
-            `hits`.
+            The array `hits`.
         """
         return _device.trace(self, rays, hits, bool(any_hit))
 
     # Points
 
     def compute_closest_points(self, query_points: ArrayLike, nthreads: int = 0) -> dict[str, Array]:
-        """Find the point of the scene that is closest to each.
+        """Find the closest point of the scene to each query point.
 
         Parameters
         ----------
         query_points : array_like, (..., 3)
-            Computed with in float64.
+            Computation is in float64.
 
         Returns
         -------
         dict
-            ``points`` (..., 3) float32, or float64 where `origin` is not 0; ``geometry_ids``, ``primitive_ids`` (...)
-            uint32, ``primitive_uvs`` (..., 2), ``primitive_normals`` (..., 3) float32. Of an empty scene the numbers
-            are `INVALID_ID`.
+            ``points`` (..., 3) float32, or float64 if `origin` is not 0. ``geometry_ids``, ``primitive_ids`` (...)
+            uint32; `INVALID_ID` if the scene is empty. ``primitive_uvs`` (..., 2) and ``primitive_normals`` (..., 3)
+            float32.
         """
         flat, shape = self._points_of(query_points)
         found = self._core.closest(flat, True)
@@ -438,25 +450,25 @@ class Scene:
         return _shaped(found, shape)
 
     def compute_distance(self, query_points: ArrayLike, nthreads: int = 0) -> Array:
-        """Compute the distance of each point from the scene; (...) float32, infinite where it is empty."""
+        """Compute the distance of each point to the scene; (...) float32, infinite if the scene is empty."""
         flat, shape = self._points_of(query_points)
         return self._core.closest(flat, False)["distances"].astype(np.float32).reshape(shape).view(Array)
 
     def compute_winding_numbers(self, query_points: ArrayLike) -> Array:
-        """Compute how often the scene winds around each point; (...) float64.
+        """Compute the winding number of the scene around each point; (...) float64.
 
-        Of closed meshes with fronts outward 0 outside, 1 inside, exactly; of open ones the generalized winding number
-        (Jacobson, Kavan, Sorkine-Hornung 2013), the solid angle of all triangles over 4 pi; NaN for a point that is not
-        finite.
+        For closed meshes whose fronts face outward it is exactly 0 outside and 1 inside. For open meshes it is the
+        generalized winding number, the solid angle of all triangles divided by 4 pi (Jacobson, Kavan, Sorkine-Hornung
+        2013). It is NaN for a point that is not finite.
         """
         flat, shape = self._points_of(query_points)
         return self._windings(flat).reshape(shape).view(Array)
 
     def compute_signed_distance(self, query_points: ArrayLike, nthreads: int = 0, nsamples: int = 1) -> Array:
-        """Compute the distance of each point, negative inside; (...) float32.
+        """Compute the signed distance of each point, negative inside; (...) float32.
 
-        Inside is where the winding number, rounded, is not 0: see `compute_winding_numbers`. `nsamples` is not used: no
-        rays vote here.
+        A point is inside if its rounded winding number is not 0; see `compute_winding_numbers`. `nsamples` is ignored,
+        because no rays vote here.
         """
         flat, shape = self._points_of(query_points)
         distances = self._core.closest(flat, False)["distances"]
@@ -464,13 +476,13 @@ class Scene:
         return signed.astype(np.float32).reshape(shape).view(Array)
 
     def compute_occupancy(self, query_points: ArrayLike, nthreads: int = 0, nsamples: int = 1) -> Array:
-        """Tell which points are inside, by 1; others are 0; (...) float32. Inside is as for signed distances."""
+        """Return 1 for points inside and 0 for others, as for signed distances; (...) float32."""
         flat, shape = self._points_of(query_points)
         return self._is_inside(flat).astype(np.float32).reshape(shape).view(Array)
 
     @staticmethod
     def create_rays_pinhole(*args: Any, **options: Any) -> Array:
-        """As the function `create_rays_pinhole`."""
+        """Call the function `create_rays_pinhole`."""
         return create_rays_pinhole(*args, **options)
 
     INVALID_ID = INVALID_ID
@@ -496,7 +508,7 @@ class Scene:
         return np.nan_to_num(np.rint(self._windings(points))) != 0
 
     def _tell_if_far(self, geometries):
-        # Small parts of a large scene are no news.
+        # No warning for small parts of a large scene.
         harmless = HARMLESS if self._frame.has_one_geometry() else 1000 * HARMLESS
         for geometry in () if self._told_of_far else geometries:
             farthest, extent = self._core.reach(geometry)
@@ -504,7 +516,7 @@ class Scene:
             if 0 < harmless * extent < rounding < np.inf:
                 self._told_of_far = True
                 _log.warning(
-                    "geometry %d stands so far from the scene's origin %s that float32 moves it by up to %.2g; give "
+                    "geometry %d is so far from the scene's origin %s that float32 moves it by up to %.2g; give "
                     "Scene an origin near it",
                     geometry,
                     self.origin.tolist(),
@@ -518,7 +530,7 @@ class Scene:
         backend = self.backend
         if backend["note"] and backend["device"] not in _told_of_cpu:
             _told_of_cpu.add(backend["device"])
-            _log.warning("twinray runs on a CPU, by Vulkan device '%s': %s", backend["device"], backend["note"])
+            _log.warning("twinray runs on a CPU, Vulkan device '%s': %s", backend["device"], backend["note"])
 
 
 def _interval(tnear, tfar):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Skies in patches, and sensors, as users of Radiance have them."""
+"""Sky subdivisions and sensor files of Radiance."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def sky_patches(
     samples: int | None = None,
     seed: int = 1,
 ) -> tuple[Array, Array]:
-    """Return directions to the patches of a sky, and their solid angles.
+    """Return the directions and solid angles of sky patches.
 
     The patches are Tregenza's ("Subdivision of the sky hemisphere for luminance measurements", 1987), and Reinhart's
     division of each into 2 x 2 or 4 x 4. Their order is Radiance's: patch k is bin k + 1 of ``reinhartb.cal`` and row
@@ -28,17 +28,18 @@ def sky_patches(
     ----------
     name : {"tregenza145", "reinhart577", "reinhart2305"}
     samples : int, optional
-        So many random directions of each patch, uniform in solid angle, instead of its middle. A patch that a roof line
-        cuts counts as seen or hidden as a whole by its middle; the spread of samples gives the error.
+        Number of random directions per patch, uniform in solid angle, instead of its centre. With its centre, a patch
+        that a roof line cuts counts as wholly visible or hidden; the spread of samples gives the error of this.
     seed : int
-        For the random directions.
+        Seed of the random directions.
 
     Returns
     -------
     directions : Array, (n, 3) float64; with `samples` (samples, n, 3)
-        Unit; z is up, x east and y north. Patches go by row from the horizon up, in a row from north by east.
+        Unit vectors; z is up, x east and y north. Rows go from the horizon up, and the patches of a row from north to
+        east.
     solid_angles : Array, (n,) float64
-        In steradians; together the hemisphere's 2 pi.
+        Solid angles in steradians; their sum is 2 pi.
     """
     if not isinstance(name, str):
         raise TypeError(f"name: {name!r} is not a str")
@@ -62,7 +63,7 @@ def _within_patches(middles, count, seed):
 
 
 def read_sensors(file: str | os.PathLike[str]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Read a sensor file of Radiance: a line ``x y z dx dy dz`` a point.
+    """Read a sensor file of Radiance, with one line ``x y z dx dy dz`` per point.
 
     Returns
     -------
@@ -70,6 +71,6 @@ def read_sensors(file: str | os.PathLike[str]) -> tuple[NDArray[np.float64], NDA
     """
     rows = np.loadtxt(file, ndmin=2, comments="#")
     if rows.size and rows.shape[1] != 6:
-        raise ValueError(f"file: lines of {rows.shape[1]} numbers in {file}; wanted are six")
+        raise ValueError(f"file: lines of {rows.shape[1]} numbers in {file}; expected six")
     rows = rows.reshape(-1, 6)
     return rows[:, :3], rows[:, 3:]

@@ -16,13 +16,13 @@ _uses: list[Use] = []  # not undone yet, the latest last
 
 
 class Use:
-    """What `use` returns: at the end of a ``with`` block, or by `undo`, meshes get trimesh's own engine again."""
+    """The result of `use`. The end of a ``with`` block, or `undo`, restores trimesh's own engine for new meshes."""
 
     def __init__(self, options: dict[str, Any]) -> None:
         self._options = options
 
     def undo(self) -> None:
-        """Take it back; once more does nothing."""
+        """Undo the call of `use`. A second call does nothing."""
         if self in _uses:
             _uses.remove(self)
 
@@ -38,15 +38,15 @@ def use(
     device: str | int | None = None,
     level: Literal["fast", "watertight", "refined", "certified"] = "watertight",
 ) -> Use:
-    """Make twinray the ray engine of all meshes of trimesh that are made from now on, copies and parts of others, too.
+    """Make twinray the ray engine of all trimesh meshes created from now on, including copies and parts of others.
 
-    ``with twinray.trimesh.use(): ...`` undoes that at its end. Meshes keep the engine that they were made with. Each
-    call counts until it is undone, and the latest one of them decides.
+    ``with twinray.trimesh.use(): ...`` undoes this at its end. Meshes keep the engine with which they were created. The
+    latest call that is not undone decides.
 
     Parameters
     ----------
     accel, device, level
-        As of `twinray.Scene`.
+        See `twinray.Scene`.
     """
     from trimesh import Trimesh
 
@@ -68,22 +68,22 @@ def _with_twinray(init):
 
 
 class RayMeshIntersector:
-    """What ``trimesh.Trimesh.ray`` answers, by twinray.
+    """twinray's implementation of ``trimesh.Trimesh.ray``.
 
     Parameters
     ----------
     geometry : trimesh.Trimesh
-        Its triangles are taken at the first question, and again where they have changed.
+        The mesh. Its triangles are read at the first query, and again after a change.
     accel, device, level
-        As of `twinray.Scene`.
+        See `twinray.Scene`.
     scale_to_box : bool
-        Not used; for programs written for trimesh.
+        Ignored; accepted for compatibility with trimesh.
 
     Notes
     -----
-    Vertices and rays are moved to the middle of the mesh in float64 before they become float32. A ray that passes
-    exactly between triangles meets one of them, never none and never two; where "hw" answers, first hits and
-    `intersects_any` are the driver's, which promises nothing there. Rows are by ray, then by distance.
+    Vertices and rays are moved to the centre of the mesh in float64 before they are rounded to float32. A ray that
+    passes exactly between triangles hits one of them, never none and never two. With "hw", first hits and
+    `intersects_any` are the driver's, which does not guarantee this. Results are ordered by ray, then by distance.
     """
 
     def __init__(
@@ -109,7 +109,7 @@ class RayMeshIntersector:
 
     @property
     def scene(self) -> Scene:
-        """The `twinray.Scene` of the mesh, about `center`."""
+        """The `twinray.Scene` of the mesh, whose origin is the centre of the mesh."""
         return self._scene_and_center()[0]
 
     def _scene_and_center(self):
@@ -145,22 +145,22 @@ class RayMeshIntersector:
         max_hits: int | None = None,
         return_locations: bool = False,
     ) -> tuple[NDArray[Any], ...]:
-        """Find which triangles each ray meets.
+        """Find the triangles that each ray hits.
 
         Parameters
         ----------
         ray_origins, ray_directions : array_like, (n, 3)
         multiple_hits : bool
-            False: the first hit of each ray alone.
+            Whether to return all hits, or only the first hit of each ray.
         max_hits : int, optional
-            Of each ray; None is all.
+            Largest number of hits per ray; None returns all.
         return_locations : bool
 
         Returns
         -------
         index_tri, index_ray : (m,) int64
         locations : (m, 3) float64
-            Where asked for.
+            Only with `return_locations`.
         """
         origins, directions = self._rays(ray_origins, ray_directions)
         if multiple_hits:
@@ -179,8 +179,8 @@ class RayMeshIntersector:
         return triangles, rays, self._locations(origins[rays], directions[rays], triangles)
 
     def _locations(self, origins, directions, triangles):
-        """Where rays meet the planes of triangles, in float64; next to parallel ones the point of the plane on the ray
-        is within rounding of the triangle only along it, so the nearest point of the triangle's box is taken."""
+        """Return the points where rays meet the planes of triangles, in float64, clamped to the triangles' boxes. For a
+        ray nearly parallel to a triangle, rounding may move the point along the ray, out of the triangle."""
         corners = np.asarray(self.mesh.triangles, np.float64)[triangles].reshape(-1, 3, 3)
         normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         with np.errstate(invalid="ignore", divide="ignore"):
@@ -193,25 +193,31 @@ class RayMeshIntersector:
     def intersects_location(
         self, ray_origins: ArrayLike, ray_directions: ArrayLike, multiple_hits: bool = True, **options: Any
     ) -> tuple[NDArray[Any], ...]:
-        """Find where rays meet the mesh: ``locations`` (m, 3) float64, ``index_ray`` and ``index_tri`` (m,) int64."""
+        """Find the points where rays hit the mesh.
+
+        Returns
+        -------
+        locations : (m, 3) float64
+        index_ray, index_tri : (m,) int64
+        """
         triangles, rays, locations = self.intersects_id(
             ray_origins, ray_directions, multiple_hits=multiple_hits, return_locations=True, **options
         )
         return locations, rays, triangles
 
     def intersects_first(self, ray_origins: ArrayLike, ray_directions: ArrayLike) -> NDArray[np.int32]:
-        """Find the first triangle that each ray meets: (n,) int32, -1 for none."""
+        """Find the first triangle that each ray hits: (n,) int32, -1 for a miss."""
         origins, directions = self._rays(ray_origins, ray_directions)
         found = self._ask("cast_rays", origins, directions, normals=False)
         return found["primitive_ids"].view(np.ndarray).view(np.int32)
 
     def intersects_any(self, ray_origins: ArrayLike, ray_directions: ArrayLike) -> NDArray[np.bool_]:
-        """Tell whether each ray meets the mesh: (n,) bool."""
+        """Test whether each ray hits the mesh: (n,) bool."""
         origins, directions = self._rays(ray_origins, ray_directions)
         return self._ask("test_occlusions", origins, directions).view(np.ndarray)
 
     def contains_points(self, points: ArrayLike) -> NDArray[np.bool_]:
-        """Tell whether each point is inside: (n,) bool, by winding numbers."""
+        """Test whether each point is inside, with winding numbers: (n,) bool."""
         rows, _ = rows_of(points, "points", np.float64, 3)
         scene, center = self._scene_and_center()
         return scene.compute_occupancy(rows - center).view(np.ndarray) != 0

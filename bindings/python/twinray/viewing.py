@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Scenes in the window of the command ``twinray view``, which is told by a file."""
+"""Shows scenes in the window of the command ``twinray view``, through a temporary file."""
 
 from __future__ import annotations
 
@@ -14,11 +14,13 @@ import numpy as np
 if TYPE_CHECKING:
     from .scene import Scene
 
-_folders: list[tempfile.TemporaryDirectory[str]] = []  # until this program ends: the window may read again
+_folders: list[
+    tempfile.TemporaryDirectory[str]
+] = []  # kept until this program ends, because the window may read the file again
 
 
 def _write_ply(file, triangles):
-    """Binary PLY in float64; triangles: (3 m, 3)."""
+    """Write triangles (3 m, 3) as binary PLY in float64."""
     faces = np.empty(len(triangles) // 3, np.dtype([("count", "u1"), ("vertices", "<i4", 3)]))
     faces["count"] = 3
     faces["vertices"] = np.arange(len(triangles)).reshape(-1, 3)
@@ -32,10 +34,10 @@ def _write_ply(file, triangles):
 
 
 def view(scene: Scene, *options: str) -> subprocess.Popen[bytes]:
-    """See `Scene.view`, which this is."""
+    """Implement `Scene.view`."""
     command = shutil.which(os.environ.get("TWINRAY_COMMAND", "twinray"))
     if command is None:
-        raise FileNotFoundError("view: there is no command twinray in PATH, and TWINRAY_COMMAND names none")
+        raise FileNotFoundError("view: the command twinray is not in PATH, and TWINRAY_COMMAND does not name it")
     _folders.append(tempfile.TemporaryDirectory(prefix="twinray"))
     file = os.path.join(_folders[-1].name, "scene.ply")
     _write_ply(file, scene.world_triangles())
