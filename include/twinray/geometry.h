@@ -45,7 +45,7 @@ struct Interrupted {};
 // Scopes nest: the innermost is asked.
 class InterruptScope {
   public:
-    explicit InterruptScope(std::function<bool()> goes_on);
+    explicit InterruptScope(std::function<bool()> goes_on);  // begins to ask `goes_on`
     ~InterruptScope();
     InterruptScope(const InterruptScope&) = delete;
     InterruptScope& operator=(const InterruptScope&) = delete;
