@@ -1,8 +1,8 @@
 # Compiles GLSL for twinray, in its own build and in that of a host that found it. Each function gives <target> headers,
 # to be included by name:
 #
-#   twinray_add_kernel(<target> <name> <file> [REFINED])   a compute kernel that includes twinray/glsl/query.glsl, once for each
-#                                                      accelerator, REFINED with the levels that need
+#   twinray_add_kernel(<target> <name> <file> [REFINED])   a compute kernel that includes twinray/glsl/query.glsl, once
+#                                                      for each accelerator, REFINED with the levels that need
 #                                                      float64: "<name>_sw.spv.h" with <name>_sw_spirv[], and
 #                                                      "<name>_hw.spv.h" with <name>_hw_spirv[]
 #   twinray_add_trace_program(<target> <name> <file>)  intersect_primitive and accept_hit, compiled into each way of

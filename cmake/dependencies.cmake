@@ -11,8 +11,8 @@ if(TWINRAY_SCENE)
     find_path(TINYGLTF_INCLUDE_DIR tiny_gltf.h REQUIRED)
     find_path(STB_INCLUDE_DIR stb_image.h PATH_SUFFIXES stb REQUIRED)
 endif()
-# Formats of files of scenes: a library that is found is used, unless its option says OFF. <target> is then the library,
-# and TWINRAY_HAS_<name> is defined where it is used.
+# Libraries for formats of scene files: each is used if it is found and its option is not OFF. <target> is then the library,
+# and TWINRAY_HAS_<name> is defined for its users.
 set(TWINRAY_FORMATS "")
 function(twinray_format name text library)
     if(NOT ${library})
@@ -38,7 +38,8 @@ if(TWINRAY_SCENE)
     find_path(MESHOPT_INCLUDE_DIR meshoptimizer.h)
     find_library(MESHOPT_LIBRARY meshoptimizer)
     twinray_format(MESHOPT "glTF compressed by meshopt (Debian: libmeshoptimizer-dev)" MESHOPT_LIBRARY)
-    # The static one is merged into ours, its symbols hidden: hosts that bring another version call the wrong one else.
+    # The static library is merged into twinray's and its symbols are hidden; otherwise hosts with another version would
+    # call the wrong one.
     find_path(DRACO_INCLUDE_DIR draco/compression/decode.h)
     find_library(DRACO_LIBRARY NAMES libdraco.a)
     twinray_format(DRACO "glTF compressed by Draco (Debian: libdraco-dev)" DRACO_LIBRARY)

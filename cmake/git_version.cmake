@@ -1,5 +1,6 @@
-# Writes OUTPUT, a header with what VERSION of SOURCE this is: cmake -DSOURCE= -DVERSION= -DOUTPUT= -P git_version.cmake.
-# Rewrites it only when it changes, so that nothing is compiled for nothing.
+# Writes OUTPUT, a header with the version and commit of SOURCE:
+#   cmake -DSOURCE= -DVERSION= -DOUTPUT= -P git_version.cmake
+# Rewrites it only when it changes, so that nothing is compiled without need.
 execute_process(
     COMMAND git -C ${SOURCE} describe --always --dirty --abbrev=12 --match=NoTag
     OUTPUT_VARIABLE commit

@@ -27,14 +27,14 @@ endif()
 
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
 
-# The public face alone; beside its GLSL what that needs.
+# Only the public headers, and the files that their GLSL needs.
 install(DIRECTORY include/twinray DESTINATION ${headers_dir})
 set(glsl_dir ${headers_dir}/twinray/glsl)
 install(DIRECTORY shaders/shared shaders/scene DESTINATION ${glsl_dir}/shaders)
 install(FILES shaders/engine/trace.comp DESTINATION ${glsl_dir}/shaders/engine)
 install(DIRECTORY shaders/hwtlas DESTINATION ${glsl_dir}/shaders FILES_MATCHING PATTERN "*.glsl" PATTERN "trace.r*")
 
-# A static library leaves it to the host to link what it uses itself.
+# A host of a static library links the library's dependencies itself.
 set(find_link_only "")
 set(requires_link_only "")
 set(libs_link_only "")

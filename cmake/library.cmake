@@ -1,6 +1,6 @@
-# twinray::core, ::scene, ::analysis and ::validation, and twinray::twinray, all that is built. Each is its parts
-# as one object file, in which only namespace twinray is global. A host may then bring its own Vulkan Memory Allocator, stb
-# or tinygltf, of whatever version; and an inline function of our headers that the host compiles with its own options
+# Makes twinray::core, ::scene, ::analysis and ::validation, and twinray::twinray, which is all of them. Each is one object
+# file made of its parts, in which only namespace twinray is global. So a host may bring any version of Vulkan Memory
+# Allocator, stb or tinygltf, and an inline function of twinray's headers that the host compiles with its own options
 # (-ffast-math) never replaces the one that the library was tested with.
 set(TWINRAY_LIBRARIES "")
 set(TWINRAY_PARTS "")

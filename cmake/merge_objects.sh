@@ -13,7 +13,7 @@ if [[ $("$linker" --help 2>&1) != *--force-group-allocation* ]]; then
         "set CMAKE_LINKER to GNU ld, or to LLD 19 or newer" >&2
     exit 1
 fi
-# Groups go: a linker drops a group that a host's object has too, and our local names would point into nothing.
+# Groups are removed: a linker drops a group that a host's object also has, and twinray's local names would dangle.
 "$linker" -r --force-group-allocation -o "$merged" "$@"
 "$nm" --extern-only --defined-only --no-demangle "$merged" |
     awk '$2 ~ /[TDBR]/ && $3 ~ /^_ZNK?7twinray/ { print $3 }

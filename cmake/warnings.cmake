@@ -1,8 +1,8 @@
-# One place for how twinray's own code is compiled, but no host's. GPU kernels have serial twins in C++ that must round
+# The compile options of twinray's own code, not of a host's. GPU kernels have serial twins in C++ that must round
 # alike, so contraction is off everywhere.
 add_library(twinray_options INTERFACE)
 target_compile_features(twinray_options INTERFACE cxx_std_20)
-# No code of ours calls a global vk* function; in the headers this would decide for the host, too.
+# twinray's code calls no global vk* function; in the headers this would also decide for the host.
 target_compile_definitions(twinray_options INTERFACE VK_NO_PROTOTYPES=)
 target_include_directories(twinray_options INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/include)
 target_include_directories(twinray_options SYSTEM INTERFACE ${VOLK_INCLUDE_DIR})

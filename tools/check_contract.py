@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Checks docs/contract.md against the tests: each test it names exists, each row names one, and each test of the contract
-body is in a row. Usage: check_contract.py [ROOT]; prints what is wrong and exits with 1, else how many rows and tests."""
+body is in a row. Usage: check_contract.py [ROOT]; prints the faults and exits with 1, else prints the numbers of rows and tests."""
 import pathlib
 import re
 import sys

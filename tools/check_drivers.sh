@@ -1,16 +1,16 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Runs the programs and tests that are built on other Vulkan drivers than this machine's: each has a room, a minimal
-# Debian with nothing else (tools/room.sh). A table ends it; exit status 1: something failed on one of them; 77: a room
-# could not be made, and it says why.
+# Debian with nothing else (tools/room.sh). Ends with a table. Exit status 1: something failed on one of them; 77: a room
+# could not be made, for the printed reason.
 #   tools/check_drivers.sh [--quick] [--build FOLDER] [--rooms FOLDER] [NAME...]
 #     NAME       mesa-25.0 (backports of Debian 12), mesa-26.1 (of Debian 13), mesa-26.2 (sid), swiftshader
-#                (chromium-common of Debian 12): all of them unless given; newest: what sid has. The table has the
-#                version that it was.
+#                (chromium-common of Debian 12), default: all; newest: the one that sid has. The table names its
+#                version.
 #     --quick    the contract, verify, leaks and the conformance suite: minutes
-#     --build    build/release unless given
-#     --rooms    build/rooms unless given; they stay there. Without its folder a room is made anew, in two minutes.
-# Needs root and debootstrap. What the programs need of this machine's libraries, and a room lacks, is copied into it.
+#     --build    default: build/release
+#     --rooms    default: build/rooms; rooms stay there. A missing room is made in two minutes.
+# Needs root and debootstrap. Libraries of this machine that the programs need, and a room lacks, are copied into it.
 set -euo pipefail
 
 declare -A suites=([mesa-25.0]=bookworm-backports [mesa-26.1]=trixie-backports [mesa-26.2]=sid [newest]=sid
@@ -48,7 +48,7 @@ cached() { sed -n "s/^$1:[A-Z]*=//p" "$build/CMakeCache.txt"; }
 source_folder=$(cached CMAKE_HOME_DIRECTORY)
 python=$(cached _Python3_EXECUTABLE)
 
-# Makes a driver's room, if there is none, with what tests run.
+# Makes a driver's room, if there is none, with the programs that tests need.
 furnish() { # room, suite, driver
     local packages=(cmake python3 gcc libc6-dev libvulkan-dev vulkan-validationlayers xvfb xauth gnuplot-nox
         assimp-testmodels)

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Checks the public face: that each header compiles alone, that none needs more of other projects than Vulkan, and that
-# a kernel of an application finds the GLSL.
+# Checks the public headers: each compiles alone, none needs another project but Vulkan, and a kernel of an application
+# finds the GLSL.
 #   tools/check_headers.sh CXX GLSLANG_VALIDATOR FOLDER     FOLDER: where twinray/twinray.h is
 set -euo pipefail
 

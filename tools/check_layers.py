@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Checks who includes whom, how large the public face in include/ is, and how much of the project is behind a header.
+"""Checks who includes whom, the size of the public interface in include/, and how much of the project is behind a header.
 Usage: check_layers.py [ROOT]; prints file:line of each violation and exits with 1."""
 import collections
 import os

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Checks docs/architecture.md against the tree: each folder has its sentence under "## Rooms", and each sentence its
 folder; files that sources, pages and figures name exist, and so do functions that figures name.
-Usage: check_rooms.py [ROOT]; prints what is wrong and exits with 1."""
+Usage: check_rooms.py [ROOT]; prints the faults and exits with 1."""
 import os
 import pathlib
 import re

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # Fails if a library makes anything global that is not of namespace twinray, or a weak function. Else it would clash
 # with a host that has its own Vulkan loader, volk, Vulkan Memory Allocator, stb or tinygltf, and an inline function
-# that the host compiled with other options could replace ours.
+# that the host compiled with other options could replace twinray's.
 #   tools/check_symbols.sh LIBRARY.a|LIBRARY.so...
 set -euo pipefail
 

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Builds this checkout with the oldest and the newest compilers and libraries that it is for, warnings being errors, and
-# runs what `tools/test.sh quick` runs; each in a room (tools/room.sh). A table ends it; exit status 1: one failed.
+# Builds this checkout with the oldest and the newest compilers and libraries that it is for, with warnings as errors, and
+# runs the tests of `tools/test.sh quick`, each in a room (tools/room.sh). Ends with a table. Exit status 1: one failed.
 #   tools/check_toolchains.sh [--rooms FOLDER] [NAME...]
-#     NAME       gcc-oldest, clang-oldest (Debian 12's), gcc-newest, clang-newest (the newest that sid has): all of them
-#                unless given
-#     --rooms    build/rooms unless given; they and what is built in them stay there. Remove one to have it made anew.
+#     NAME       gcc-oldest, clang-oldest (Debian 12's), gcc-newest, clang-newest (the newest of sid); default:
+#                all of them
+#     --rooms    default: build/rooms; rooms and their builds stay there. Remove one to make it again.
 # Needs root, debootstrap and 12 GB.
 set -euo pipefail
 

@@ -3,7 +3,7 @@
 # From a checkout to a picture: installs the packages, builds path_tracer and what it links, renders a scene with the
 # faster accelerator of this device, and lets the other one check its rays.
 #   tools/demo.sh [SCENE]         SCENE: .gltf, .glb, .obj, .ply or .stl; without it a sunflower of beads, made by formula
-#   TWINRAY_DEMO_SECONDS=N        how long to render: 100 unless it is set; a coarse picture is there after seconds
+#   TWINRAY_DEMO_SECONDS=N        how long to render, default 100; a coarse picture exists after seconds
 set -euo pipefail
 
 bin=build/release/bin

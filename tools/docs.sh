@@ -3,8 +3,8 @@
 # Builds the documentation site from docs/, the comments of the public headers, the Python package and the command's
 # help: build/docs/html/index.html. Fails on any warning and any broken link.
 #   tools/docs.sh            installs what is missing and builds twinray first: its programs make pictures and pages
-#   tools/docs.sh --check    and looks at pages in a browser: axe's rules of accessibility (needs npm and chromium)
-#   TWINRAY=FILE             takes this command, of a build with samples and Python, and builds none
+#   tools/docs.sh --check    also checks axe's accessibility rules in a browser (needs npm and chromium)
+#   TWINRAY=FILE             uses this command, of a build with samples and Python, and builds nothing
 #   SKIP_APT=1               install no package of the system
 # Once installed, nothing is fetched.
 set -euo pipefail
@@ -20,7 +20,7 @@ die() {
     exit 1
 }
 
-# A build that is there is brought up to date as it is configured; else one without tests is made.
+# Updates an existing build as it is configured; otherwise makes one without tests.
 build_twinray() {
     if [[ -x $twinray ]] && grep -q '^TWINRAY_PYTHON:BOOL=ON' build/release/CMakeCache.txt; then
         cmake --build --preset release

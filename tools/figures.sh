@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # Makes docs/figures/NAME.svg of docs/figures/NAME.dot. Needs dot, of graphviz.
 #   tools/figures.sh            writes them
-#   tools/figures.sh --check    writes nothing; exit 1 where a picture does not say what its text says, 77 without dot
+#   tools/figures.sh --check    writes nothing; exit 1 if a picture and its text differ, 77 without dot
 # Coordinates are not compared: they depend on the version of dot and on the fonts that it finds.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../docs/figures"

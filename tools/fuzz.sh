@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Fuzzes what reads files, command lines and the accelerators' interface: docs/fuzzing.md says what each target promises.
+# Fuzzes the readers of files and command lines and the accelerators' interface (docs/fuzzing.md).
 #   tools/fuzz.sh [--seconds N | --runs N] [TARGET...]     60 s each; all targets unless some are named
-#   tools/fuzz.sh --coverage [TARGET...]                   what the corpus of earlier calls reaches, without fuzzing
-# Installs clang (tools/setup.sh fuzz; SKIP_APT=1: not), builds into build/fuzz and keeps there what was learned
-# (corpus/), so that a later call goes on. A finding's input is left in build/fuzz/findings, and the exit status is 1.
+#   tools/fuzz.sh --coverage [TARGET...]                   coverage of the corpus of earlier calls, without fuzzing
+# Installs clang (tools/setup.sh fuzz; not with SKIP_APT=1), builds into build/fuzz and keeps the corpus there
+# (corpus/), so that a later call continues. A finding's input is left in build/fuzz/findings, and the exit status is 1.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 . tools/lib.sh
 
-# By target, what it reads with: of these files lines are counted.
+# The sources of each target, whose lines are counted.
 importers=engine/scene/importers
 declare -A readers=(
     [accel]="engine/accel/accel_backend.cpp engine/accel/instances.cpp engine/accel/sync.cpp engine/accel/geometry.cpp

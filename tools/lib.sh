@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 # shellcheck shell=bash
-# What the scripts of this folder share; they change to the checkout, then source it.
+# Functions that the scripts of this folder share; they change to the checkout, then source this file.
 
-# A relative folder of assets is meant from where the user called the script.
+# A relative folder of assets is relative to the folder in which the user called the script.
 if [[ -n ${TWINRAY_ASSETS-} ]]; then
     TWINRAY_ASSETS=$(cd "$OLDPWD" && realpath -m "$TWINRAY_ASSETS")
     export TWINRAY_ASSETS
@@ -20,8 +20,8 @@ section_end() {
     section_start=
 }
 
-# A Python with what the package twinray is built and tested with, at versions that are known to work: prints its path,
-# or says on standard error why there is none.
+# A Python with the packages that build and test twinray's package, at versions that are known to work: prints its path,
+# or on standard error why there is none.
 python_for_package() {
     local folder=$PWD/build/venv
     local packages=(nanobind==3.1.0 nanobind-backend==1.0.0 numpy scipy pytest==9.2.0 trimesh==5.2.0)
@@ -34,7 +34,7 @@ python_for_package() {
     echo "$folder/bin/python"
 }
 
-# The same for what builds the documentation and runs what its pages show.
+# The same for building the documentation and running the code of its pages.
 python_for_docs() {
     local folder=$PWD/build/docs/venv wanted=docs/site/requirements.txt
     if ! cmp -s "$wanted" "$folder/installed.txt"; then

@@ -3,7 +3,7 @@
 # Rooms: folders with a minimal Debian of their own, in which scripts run commands by chroot. Scripts that run as root
 # source it; it needs debootstrap.
 
-# Says why there can be no rooms here, and fails, if so.
+# Fails with the reason if rooms cannot be made here.
 can_make_rooms() {
     if ((EUID != 0)); then
         echo "rooms need root" >&2
@@ -13,7 +13,7 @@ can_make_rooms() {
         echo "rooms need debootstrap (apt-get install debootstrap)" >&2
         return 1
     fi
-    # Mounts of a room are seen by what runs there alone.
+    # Only programs in a room see its mounts.
     if ! unshare --mount true 2>/dev/null; then
         echo "rooms need mounts, which this container does not allow" >&2
         return 1
@@ -42,7 +42,7 @@ make_room() { # folder, suite
     if [[ $2 == *-backports ]]; then echo "deb $mirror $2 main" >>"$room/etc/apt/sources.list"; fi
 
     # The network as this machine sees it: names (localhost is one), name servers, apt's proxies and other transport
-    # settings, and whom pip trusts.
+    # settings, and pip's trusted certificates.
     cp -L /etc/resolv.conf /etc/hosts "$room/etc"
     apt-config dump | grep -E '^Acquire::(https?::.*|Check-[A-Za-z-]*|Retries) "' \
         >"$room/etc/apt/apt.conf.d/99transport" || true
@@ -78,7 +78,7 @@ install_in_room() { # room, what apt-get install takes
     rm "$log"
 }
 
-# Copies the working tree, but what git ignores, into a folder, in which what was built stays.
+# Copies the working tree, except files that git ignores, into a folder, whose builds stay.
 copy_checkout() { # folder
     mkdir -p "$1"
     find "$1" -mindepth 1 -maxdepth 1 ! -name build -exec rm -rf {} +

@@ -49,7 +49,7 @@ die() {
     exit 1
 }
 
-# Prints what is missing or too old, one per line.
+# Prints the missing and outdated packages, one per line.
 missing_packages() {
     local -A version=()
     local status package number
@@ -81,7 +81,7 @@ match_shim_to_driver() {
     done
 }
 
-# Leaves out what apt does not serve, and names it.
+# Leaves out packages that apt does not serve, and names them.
 leave_out_what_is_not_served() {
     local -A served=()
     local package wanted=("${packages[@]}")
@@ -96,7 +96,7 @@ leave_out_what_is_not_served() {
     done
 }
 
-# Prints what is missing and apt's indexes, where there are any, serve.
+# Prints the missing packages that apt's indexes serve.
 left_to_install() {
     if ((!is_bookworm)) && [[ -n $(apt_sources) ]]; then leave_out_what_is_not_served >/dev/null; fi
     missing_packages
@@ -156,7 +156,7 @@ debian_mirror() {
                              END { print uri }'
 }
 
-# Whether a file that is not ours offers the suite; a second entry could then contradict it.
+# Whether a file that twinray did not write offers the suite; a second entry could then contradict it.
 is_configured() {
     apt_sources | awk -F'|' -v suite="$1" '$2 == suite && $3 == "main" && $4 !~ /\/twinray-/ { found = 1 }
                                            END { exit !found }'
@@ -197,7 +197,7 @@ install_packages() {
     become_root
     log=$(mktemp --suffix=.log "${TMPDIR:-/tmp}/twinray-setup.XXXXXX")
     if ((is_bookworm)); then configure_bookworm; fi
-    # An unrelated source of this system may fail without harm; ours may not.
+    # An unrelated source of this system may fail without harm; twinray's may not.
     if ! apt_get update && grep -qE '^(E|Err).*(bookworm-backports|trixie)' "$log"; then
         apt_failed "reading the package indexes"
     fi

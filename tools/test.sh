@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Installs the packages, builds and runs the tests. `full` also runs those that take minutes: the documentation's site,
-# its tutorials and all that its pages show, a shared library, a second CPU driver, the layouts that are no default,
-# pictures of many paths a pixel. `quick` runs those that need no device, and of the others those of the accelerators'
-# common contract, in a minute on two cores.
+# its tutorials and the code of its pages, a shared library, a second CPU driver, non-default layouts, pictures with many
+# paths per pixel. `quick` runs the tests that need no device, and those of the accelerators' common contract, in a minute
+# on two cores.
 #   tools/test.sh [quick|full|release|debug|asan]
 # TWINRAY_REQUIRE names the devices without which tests fail instead of skipping:
-# "vulkan,ray_tracing,descriptor_indexing" unless it is set; with "python" or "docs" in it the Python package must be
-# built, or the documentation, for which PyPI must be reached.
-# The last lines are of tools/run_tests.py: the slowest, what failed, how many were skipped and why.
+# default "vulkan,ray_tracing,descriptor_indexing"; with "python" or "docs" the Python package, or the documentation, must
+# be built; the latter needs PyPI.
+# Ends with a summary by tools/run_tests.py: the slowest tests, the failed ones, and the skipped ones with reasons.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 . tools/lib.sh
@@ -26,7 +26,7 @@ if [[ ! $preset =~ ^(release|debug|asan)$ || $# -gt 1 ]]; then
     exit 2
 fi
 
-# Sanitizers want to be loaded before Python; quick is about other things.
+# Sanitizers must be loaded before Python; quick does not test Python.
 if [[ $preset == release && ${1-} != quick ]]; then with_python=1; fi
 build "$preset"
 if [[ ${with_python-} ]] && ! python_for_docs >/dev/null && [[ ${TWINRAY_REQUIRE-} == *docs* ]]; then exit 1; fi

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# What docs/python.md says to a user with nothing installed: packages, `pip install .` into a new environment, the
-# README's five lines; with the time of each. For tools/check_clean_room.sh.
+# Follows docs/python.md like a user with nothing installed: packages, `pip install .` into a new environment, the
+# README's five lines; prints the time of each. For tools/check_clean_room.sh.
 #   tools/try_python.sh [FOLDER OF THE ENVIRONMENT]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
