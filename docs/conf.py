@@ -24,7 +24,7 @@ breathe_default_project = "twinray"
 breathe_show_include = False
 
 # The package's Python is the reference; its extension module is not needed to read it.
-autodoc_mock_imports = ["twinray._core"]
+autodoc_mock_imports = ["twinray._core", "dask"]
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"  # docstrings say more: shapes and dtypes
 napoleon_google_docstring = False

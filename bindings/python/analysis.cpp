@@ -42,29 +42,52 @@ void append(Matrix& matrix, const ViewFactorRow& row) {
 
 }  // namespace
 
-Matrix view_factors(Scene& scene, MatrixOptions options) {
+struct MatrixRows::State {
+    State(AbstractAccel& accel, MatrixOptions&& options)
+        : faces(accel),
+          asked{.grouping = group(faces, std::move(options.groups)),
+                .sides = sides_of(options.both_sides),
+                .rays = options.rays,
+                .target_error = options.target_error,
+                .seed = options.seed},
+          pairs(pairs_of(accel, faces, asked, estimator_of(options.estimator))),
+          factors(accel, faces, asked, pairs.known) {}
+
+    Faces faces;
+    ViewFactorOptions asked;
+    PairExchanges pairs;
+    ViewFactors factors;
+};
+
+MatrixRows::MatrixRows(Scene& scene, MatrixOptions options) : scene_(scene) {
     const Scene::Turn turn(scene);
     scene.progress().done = 0;
     scene.progress().total = 0;
-    Faces faces(turn.accel());
-    const ViewFactorOptions asked{.grouping = group(faces, std::move(options.groups)),
-                                  .sides = sides_of(options.both_sides),
-                                  .rays = options.rays,
-                                  .target_error = options.target_error,
-                                  .seed = options.seed};
-    const PairExchanges pairs = pairs_of(turn.accel(), faces, asked, estimator_of(options.estimator));
-    ViewFactors factors(turn.accel(), faces, asked, pairs.known);
+    state_ = std::make_unique<State>(turn.accel(), std::move(options));
+}
+
+MatrixRows::~MatrixRows() {
+    const Scene::Turn turn(scene_);
+    state_.reset();
+}
+
+std::size_t MatrixRows::count() const { return state_->factors.row_count(); }
+
+Matrix MatrixRows::rows(std::size_t first, std::size_t last) {
+    if (first > last || last > count())
+        throw Error("view factors: rows " + std::to_string(first) + " to " + std::to_string(last) + "; there are " +
+                    std::to_string(count()));
+    const Scene::Turn turn(scene_);
+    ViewFactors& factors = state_->factors;
     Matrix matrix;
     matrix.first.push_back(0);
-    matrix.area = factors.areas();
-    scene.progress().total = factors.row_count();
-    for (std::size_t first = 0; first < factors.row_count(); first += factors.batch_size()) {
-        scene.progress().done = first;
-        for (const ViewFactorRow& row :
-             factors.rows(first, std::min(first + factors.batch_size(), factors.row_count())))
+    scene_.progress().total = last - first;
+    for (std::size_t next = first; next < last; next += factors.batch_size()) {
+        scene_.progress().done = next - first;
+        for (const ViewFactorRow& row : factors.rows(next, std::min(next + factors.batch_size(), last)))
             append(matrix, row);
     }
-    matrix.rays += pairs.rays;
+    if (first == 0) matrix.rays += state_->pairs.rays;
     return matrix;
 }
 

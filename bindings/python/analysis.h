@@ -6,6 +6,8 @@
 #include <twinray/analysis.h>
 #include <twinray/validation.h>
 
+#include <memory>
+
 #include "bindings/python/scene.h"
 
 namespace twinray::python {
@@ -15,7 +17,7 @@ struct Matrix {
     std::vector<std::uint64_t> first;
     std::vector<uint> column;
     std::vector<float> value, low, high;
-    std::vector<double> area, open;  // by row
+    std::vector<double> open;  // by row
     std::uint64_t rays = 0;
 };
 
@@ -40,8 +42,24 @@ struct Touching {
     std::vector<ContactSegment> segments;
 };
 
+// View factors of a scene, which must not change meanwhile: any rows, in any order and any number at a time. Pairs of
+// faces are looked at once. The scene must outlive it.
+class MatrixRows {
+  public:
+    MatrixRows(Scene& scene, MatrixOptions options);
+    ~MatrixRows();
+
+    std::size_t count() const;
+    // Rows [first, last); a row does not depend on the others. Throws Error also for rows that are not there.
+    Matrix rows(std::size_t first, std::size_t last);
+
+  private:
+    struct State;
+    Scene& scene_;
+    std::unique_ptr<State> state_;
+};
+
 // All throw Error as the functions of twinray/analysis.h and queries.h do.
-Matrix view_factors(Scene& scene, MatrixOptions options);
 Light illumination(Scene& scene, dvec3 direction, std::uint32_t side, bool both_sides, std::uint64_t seed,
                    const std::vector<uint>& groups);
 // By face: value, low, high.

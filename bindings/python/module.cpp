@@ -275,21 +275,22 @@ void bind_scene(nb::module_& m) {
         .def("take_log", [](Scene& scene) { return unlocked([&] { return scene.take_log(); }); });
 }
 
-nb::dict bound_view_factors(Scene& scene, std::vector<uint> groups, bool both_sides, std::uint64_t rays,
-                            std::optional<double> target_error, std::uint32_t seed, const std::string& estimator) {
-    Matrix matrix = unlocked([&] {
-        return view_factors(scene, {std::move(groups), both_sides, rays, target_error, seed, estimator});
-    });
+nb::dict bound_rows(MatrixRows& rows, std::size_t first, std::size_t last) {
+    Matrix matrix = unlocked([&] { return rows.rows(first, last); });
     nb::dict arrays;
     arrays["first"] = given<std::uint64_t>(std::move(matrix.first));
     arrays["column"] = given<uint>(std::move(matrix.column));
     arrays["value"] = given<float>(std::move(matrix.value));
     arrays["low"] = given<float>(std::move(matrix.low));
     arrays["high"] = given<float>(std::move(matrix.high));
-    arrays["area"] = given<double>(std::move(matrix.area));
     arrays["open"] = given<double>(std::move(matrix.open));
     arrays["rays"] = matrix.rays;
     return arrays;
+}
+
+void make_rows(MatrixRows* to, Scene& scene, std::vector<uint> groups, bool both_sides, std::uint64_t rays,
+               std::optional<double> target_error, std::uint32_t seed, const std::string& estimator) {
+    unlocked([&] { new (to) MatrixRows(scene, {std::move(groups), both_sides, rays, target_error, seed, estimator}); });
 }
 
 nb::tuple bound_centroid(Scene& scene, const Vector& direction, std::uint32_t side, std::uint64_t seed) {
@@ -319,7 +320,11 @@ nb::dict bound_verify(Scene& scene, const RayArray<T>& array, const Vector& orig
 }
 
 void bind_analysis(nb::module_& m) {
-    m.def("view_factors", &bound_view_factors);
+    nb::class_<MatrixRows>(m, "ViewFactors")
+        .def("__init__", &make_rows, nb::keep_alive<1, 2>(), nb::arg("scene"), nb::arg("groups"), nb::arg("both_sides"),
+             nb::arg("rays"), nb::arg("target_error").none(), nb::arg("seed"), nb::arg("estimator"))
+        .def("count", &MatrixRows::count)
+        .def("rows", &bound_rows);
     m.def("illumination", [](Scene& scene, const Vector& direction, std::uint32_t side, bool both_sides,
                              std::uint64_t seed, const std::vector<uint>& groups) {
         Light light =

@@ -53,16 +53,20 @@ def _direction(value, name):
     return [float(x) for x in array]
 
 
-def _groups(groups, scene):
+def groups_of(groups, faces):
+    """Integers (faces,), or None."""
     if groups is None:
-        return []
+        return None
     array = array_of(groups, "groups")
-    faces = scene._core.triangle_count()
     if array.shape != (faces,) or array.dtype.kind == "f" or (array.size and array.min() < 0):
         raise ValueError(
             f"groups: shape {array.shape}, dtype {array.dtype}; expected {faces} integers from 0, one per face"
         )
-    return array.astype(np.uint32).tolist()
+    return array.astype(np.uint32)
+
+
+def _groups(groups, scene):
+    return [] if groups is None else groups_of(groups, scene._core.triangle_count()).tolist()
 
 
 def _tell_of_own_surfaces(scene, points, vectors):
@@ -178,30 +182,42 @@ def view_factors(
     half_width : (n, n) float64
         Half the width of the 95 % confidence interval of each entry; 0 if F is 0 or exact.
     """
+    scene = _scene_of(scene)
+    groups = groups_of(groups, scene._core.triangle_count())
+    options = factor_arguments(groups, sides, rays, target_error, seed, estimator)
+
+    def all_rows():
+        factors = _core.ViewFactors(scene._core, *options)
+        return factors.rows(0, factors.count())
+
+    found = watched(scene, "view factors", all_rows) if progress else all_rows()
+    return matrices_of(found, len(found["first"]) - 1, sparse)
+
+
+def factor_arguments(groups, sides, rays, target_error, seed, estimator):
+    """Return the arguments of the extension module's ViewFactors after the scene."""
     if sides not in ("front", "both"):
         raise ValueError(f"sides: {sides!r} is not one of front, both")
-    scene = _scene_of(scene)
-    error = None if target_error is None else number_of(target_error, "target_error", 0)
-    arguments = (
-        scene._core, _groups(groups, scene), sides == "both", count_of(rays, "rays", 1, 2**31), error,
+    return (
+        [] if groups is None else groups.tolist(), sides == "both", count_of(rays, "rays", 1, 2**31),
+        None if target_error is None else number_of(target_error, "target_error", 0),
         count_of(seed, "seed", 0, 2**32 - 1), estimator,
     )  # fmt: skip
-    if progress:
-        found = watched(scene, "view factors", lambda: _core.view_factors(*arguments))
-    else:
-        found = _core.view_factors(*arguments)
-    n = len(found["area"])
+
+
+def matrices_of(found, columns, sparse):
+    """F and the half-widths of its intervals, of rows that the extension module gives."""
     half = (found["high"].astype(np.float64) - found["low"]) / 2
+    first, count = found["first"].astype(np.int64), len(found["first"]) - 1
     matrices = []
     for values in (found["value"].astype(np.float64), half):
         if sparse:
             from scipy.sparse import csr_matrix
 
-            first = found["first"].astype(np.int64)
-            matrices.append(csr_matrix((values, found["column"].astype(np.int64), first), shape=(n, n)))
+            matrices.append(csr_matrix((values, found["column"].astype(np.int64), first), shape=(count, columns)))
         else:
-            dense = np.zeros((n, n))
-            dense[np.repeat(np.arange(n), np.diff(found["first"].astype(np.int64))), found["column"]] = values
+            dense = np.zeros((count, columns))
+            dense[np.repeat(np.arange(count), np.diff(first)), found["column"]] = values
             matrices.append(dense)
     return tuple(matrices)
 

@@ -1,0 +1,361 @@
+# SPDX-License-Identifier: MIT
+"""Sky and sun of rasters of heights, tile by tile, so that they need not fit into memory: extra ``twinray[dask]``.
+
+A raster is a surface of triangles between the middles of cells; cells without a height (NaN) are holes in it. Each tile
+is a scene of its own, with a halo as wide as anything could stand that hides the lowest ray. Results are lazy arrays of
+Dask, a chunk a tile.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from typing import Any, Literal
+
+import dask.array as da
+import numpy as np
+from dask import delayed
+from numpy.typing import ArrayLike
+
+from . import _core
+from ._arrays import number_of
+from ._workers import SceneSpec, twice
+from .dask import suns_of, weighted, weights_of
+from .sky import sky_patches
+
+__all__ = ["sky_view", "sun_hours", "visible"]
+
+EARTH_RADIUS = 6_371_000.0  #: metres
+_SIDE_OF_BLOCK = 256  # in cells
+_SIDE_OF_CURVED_BLOCK = 64  # which has one vertical
+_LIFT = 2.0**-10  # of a cell: where sensors on the ground begin, so that rays uphill meet the slope ahead
+
+
+def sky_view(
+    heights: Any,
+    spacing: float | tuple[float, float] | None = None,
+    *,
+    patches: Literal["tregenza145", "reinhart577", "reinhart2305"] = "tregenza145",
+    weights: ArrayLike | None = None,
+    measure: Literal["light", "solid_angle"] = "light",
+    **options: Any,
+) -> Any:
+    """Compute how much of the sky each cell sees, (rows, columns) float32; NaN where it has no height.
+
+    Parameters
+    ----------
+    heights : xarray.DataArray, dask.array, array_like or the name of a GeoTIFF, (rows, columns)
+        In the unit of the cells' spacing. A GeoTIFF needs rioxarray.
+    spacing : float or (float, float), optional
+        From column to column, eastward, and from row to row, northward, negative where rows go south; one number: of
+        square cells whose rows go south. By default the coordinates of the DataArray tell.
+    patches : {"tregenza145", "reinhart577", "reinhart2305"}
+        Of the sky, a ray each.
+    weights : array_like, (patches,), optional
+        The brightness of each patch; by default a uniform sky's.
+    measure : {"light", "solid_angle"}
+        The part of the light on a horizontal plane, or of the hemisphere itself.
+    relief : float, optional
+        The highest less the lowest height; by default the raster is read once for it.
+    height : float
+        Of sensors above ground; 0 by default.
+    curvature : float
+        Of the earth: 0 is a plane, 1 a sphere, 0.857 a sphere as light sees it, which the air bends. Heights must be in
+        metres. 64 x 64 cells share the vertical of their middle.
+    tile : int
+        Cells along a side of a tile; 1024 by default.
+    accel, device : optional
+        As of `twinray.Scene`.
+    """
+    directions, angles = sky_patches(patches)
+    if measure not in ("light", "solid_angle"):
+        raise ValueError(f"measure: {measure!r} is not one of light, solid_angle")
+    light = np.asarray(angles) * (1 if weights is None else weights_of(weights, "weights", len(angles)))
+    if measure == "light":
+        light = light * np.asarray(directions)[:, 2]
+    return _over_tiles(heights, spacing, np.asarray(directions), _Sum(light / light.sum()), options)
+
+
+def sun_hours(
+    heights: Any,
+    suns: ArrayLike,
+    hours: ArrayLike | float = 1.0,
+    spacing: float | tuple[float, float] | None = None,
+    **options: Any,
+) -> Any:
+    """Compute how many hours the sun shines on each cell, (rows, columns) float32; NaN where it has no height.
+
+    Parameters
+    ----------
+    heights, spacing, relief, height, curvature, tile, accel, device
+        As of `sky_view`. The lowest sun says how wide halos are.
+    suns : array_like, (S, 3)
+        Towards the sun: x east, y north, z up; those that are not above the horizon bring nothing.
+    hours : array_like, (S,), or float
+        How long each stays there.
+    """
+    vectors, stay = suns_of(suns, hours)
+    return _over_tiles(heights, spacing, vectors.astype(np.float64), _Sum(stay), options)
+
+
+def visible(
+    heights: Any, vectors: ArrayLike, spacing: float | tuple[float, float] | None = None, **options: Any
+) -> Any:
+    """Tell along which vectors (V, 3) each cell sees the sky, (rows, columns, V) uint8; 0 where it has no height.
+
+    The other parameters are those of `sky_view`. All vectors must lead above the horizon.
+    """
+    across = np.asarray(vectors, np.float64).reshape(-1, 3)
+    if not (across[:, 2] > 0).all():
+        raise ValueError("vectors: not all lead above the horizon (z above 0)")
+    return _over_tiles(heights, spacing, across, _Each(len(across)), options)
+
+
+class _Sum:
+    """What a cell gets of the directions that it sees."""
+
+    dtype, fill, more = np.dtype(np.float32), np.nan, ()
+
+    def __init__(self, weights):
+        self.weights = weights
+
+    def __call__(self, seen):
+        return weighted(seen, self.weights)
+
+
+class _Each:
+    """The directions that a cell sees."""
+
+    dtype, fill = np.dtype(np.uint8), 0
+
+    def __init__(self, count):
+        self.more = (count,)
+
+    def __call__(self, seen):
+        return seen
+
+
+class _Grid:
+    """Where cells are: metres (or what the unit is) from column to column and from row to row."""
+
+    def __init__(self, spacing):
+        pair = (spacing, -spacing) if np.ndim(spacing) == 0 else tuple(spacing)
+        if len(pair) != 2:
+            raise ValueError(f"spacing: {spacing!r}; wanted are one or two numbers")
+        self.dx, self.dy = (number_of(value, "spacing") for value in pair)
+        if not all(math.isfinite(value) and value != 0 for value in (self.dx, self.dy)):
+            raise ValueError(f"spacing: {spacing!r}; wanted are finite numbers other than 0")
+        self.unit = min(abs(self.dx), abs(self.dy))
+
+    def halo(self, way):
+        """Rows and columns of so long a way, and one more for the triangles there."""
+        return math.ceil(way / abs(self.dy)) + 1, math.ceil(way / abs(self.dx)) + 1
+
+    def in_cells(self, directions):
+        """Directions where columns, rows and heights in units of `unit` are axes."""
+        return directions / (self.dx, self.dy, self.unit)
+
+
+def _over_tiles(
+    heights,
+    spacing,
+    directions,
+    answer,
+    options,
+    *,
+    _names=("relief", "height", "curvature", "tile", "accel", "device"),
+):
+    unknown = sorted(set(options) - set(_names))
+    if unknown:
+        raise TypeError(f"unknown options {unknown}; there are {', '.join(_names)}")
+    tile = options.get("tile", 1024)
+    if not hasattr(tile, "__index__") or tile < 1:
+        raise ValueError(f"tile: {tile!r}; wanted is an integer of at least 1")
+    source, array, grid = _raster(heights, spacing, tile)
+    curvature = number_of(options.get("curvature", 0.0), "curvature", 0)
+    lifted = number_of(options.get("height", 0.0), "height", 0)
+    relief = options.get("relief")
+    relief = _relief_of(array) if relief is None else number_of(relief, "relief", 0)
+    halo = grid.halo(_way(relief, directions, curvature))
+    spec = SceneSpec(accel=options.get("accel", "auto"), device=options.get("device"))
+    plan = delayed(_Plan(spec, grid, directions, answer, lifted, curvature), pure=True)
+    rows = [_tile_row(array, first, tile, halo, plan, answer) for first in range(0, array.shape[0], tile)]
+    found = da.concatenate(rows) if rows else da.zeros((*array.shape, *answer.more), dtype=answer.dtype)
+    return found if source is None else _labelled(found, source, answer)
+
+
+def _tile_row(array, first, tile, halo, plan, answer):
+    tiles = []
+    for left in range(0, array.shape[1], tile):
+        spans, inside = [], []
+        for start, size, around in ((first, array.shape[0], halo[0]), (left, array.shape[1], halo[1])):
+            end = min(start + tile, size)
+            low = max(0, start - around)
+            spans.append(slice(low, min(end + around, size)))
+            inside.append(slice(start - low, end - low))
+        chunks = tuple((part.stop - part.start,) for part in inside) + tuple((n,) for n in answer.more)
+        kwargs = {"new_axis": [2]} if answer.more else {}
+        tiles.append(
+            array[tuple(spans)]
+            .rechunk(-1)
+            .map_blocks(
+                _tile,
+                plan,
+                tuple(inside),
+                (first, left),
+                dtype=answer.dtype,
+                chunks=chunks,
+                meta=np.empty((0,) * len(chunks), answer.dtype),
+                **kwargs,
+            )  # fmt: skip
+        )
+    return da.concatenate(tiles, axis=1)
+
+
+class _Plan:
+    """What all tiles share."""
+
+    def __init__(self, spec, grid, directions, answer, lifted, curvature):
+        self.spec, self.grid, self.directions, self.answer = spec, grid, directions, answer
+        self.lift = lifted / grid.unit if lifted > 0 else _LIFT
+        self.curvature = curvature
+
+    def directions_at(self, point):
+        """The directions, in cells, as they are where the surface is bent about the middle of the tile."""
+        along = self.directions.copy()
+        if self.curvature:
+            away = point[:2] * (self.grid.dx, self.grid.dy)
+            along[:, 2] -= self.curvature / EARTH_RADIUS * (along[:, :2] @ away)
+        return self.grid.in_cells(along).astype(np.float32)
+
+    def __dask_tokenize__(self):
+        weights = getattr(self.answer, "weights", np.zeros(0))
+        grid = (self.grid.dx, self.grid.dy, self.lift, self.curvature)
+        return (type(self.answer).__name__, self.spec.key, grid, self.directions.tobytes(), weights.tobytes())
+
+
+def _tile(heights, plan, inside, corner):
+    rows, columns = (f"{first}:{first + part.stop - part.start}" for first, part in zip(corner, inside, strict=True))
+    what = f"terrain of rows {rows}, columns {columns}"
+    return twice(lambda: _answered(heights, plan, inside), plan.spec, what)
+
+
+def _answered(heights, plan, inside):
+    """The answers of the cells inside, of a tile with its halo."""
+    shape = tuple(part.stop - part.start for part in inside)
+    result = np.full((*shape, *plan.answer.more), plan.answer.fill, plan.answer.dtype)
+    z = np.asarray(heights, np.float64)
+    z = np.where(np.isfinite(z), z, np.nan)
+    is_asked = np.isfinite(z[inside])
+    if not is_asked.any():
+        return result
+    vertices = _vertices(z, plan, inside)
+    scene = plan.spec.build()
+    scene.add_triangles(vertices.reshape(-1, 3), triangles_of(np.isfinite(z)))
+    points = vertices[inside]
+    points[..., 2] += plan.lift
+    side = _SIDE_OF_CURVED_BLOCK if plan.curvature else _SIDE_OF_BLOCK
+    for row in range(0, shape[0], side):
+        for column in range(0, shape[1], side):
+            block = (slice(row, row + side), slice(column, column + side))
+            if is_asked[block].any():
+                across = plan.directions_at(points[block].reshape(-1, 3).mean(axis=0))
+                result[block][is_asked[block]] = plan.answer(_seen(scene, points[block][is_asked[block]], across))
+    return result
+
+
+def _seen(scene, points, across):
+    moved = scene._frame.moved(points, scene.origin)
+    seen = _core.visible(scene._core, moved, across, np.zeros((0, 3), np.float32), 0.0)
+    return seen.reshape(-1, len(across))
+
+
+def _vertices(z, plan, inside):
+    """(rows, columns, 3) float64: column, row and height in cells, from the middle of the tile; NaN at 0."""
+    middle = [(part.start + part.stop) // 2 for part in inside]
+    row, column = np.arange(z.shape[0]) - middle[0], np.arange(z.shape[1]) - middle[1]
+    z = z - np.round(np.nanmean(z[inside]))
+    if plan.curvature:
+        away = (row * plan.grid.dy)[:, None] ** 2 + (column * plan.grid.dx)[None, :] ** 2
+        z = z - plan.curvature * away / (2 * EARTH_RADIUS)
+    vertices = np.empty((*z.shape, 3))
+    vertices[..., 0] = column[None, :]
+    vertices[..., 1] = row[:, None]
+    vertices[..., 2] = np.nan_to_num(z) / plan.grid.unit
+    return vertices
+
+
+def triangles_of(is_there):
+    """(m, 3) uint32: two of each square of four cells, but for those with a corner that is not there."""
+    index = np.arange(is_there.size, dtype=np.uint32).reshape(is_there.shape)
+    a, b, c, d = index[:-1, :-1], index[:-1, 1:], index[1:, 1:], index[1:, :-1]
+    corners = np.stack([a, b, c, a, c, d], axis=-1).reshape(-1, 3)
+    return corners if is_there.all() else corners[is_there.reshape(-1)[corners].all(axis=1)]
+
+
+def _way(relief, directions, curvature):
+    """How far anything that is so much higher may hide the lowest of the directions."""
+    if len(directions) == 0 or relief == 0:
+        return 0.0
+    slope = float((directions[:, 2] / np.hypot(directions[:, 0], directions[:, 1]).clip(1e-300)).min())
+    if curvature == 0:
+        return relief / slope
+    radius = EARTH_RADIUS / curvature
+    return radius * (math.sqrt(slope * slope + 2 * relief / radius) - slope)
+
+
+def _relief_of(array):
+    finite = da.where(da.isfinite(array), array, np.nan)
+    low, high = da.compute(da.nanmin(finite), da.nanmax(finite))
+    return float(high - low) if high >= low else 0.0
+
+
+def _raster(heights, spacing, tile):
+    """The DataArray or None, dask's array, and the grid."""
+    if isinstance(heights, str | os.PathLike):
+        heights = _opened(heights, tile)
+    is_labelled = hasattr(heights, "dims") and hasattr(heights, "coords")
+    array = heights.data if is_labelled else heights
+    array = array if isinstance(array, da.Array) else da.from_array(np.asarray(array), chunks=tile)
+    if array.ndim != 2 or array.dtype.kind not in "fiu":
+        raise ValueError(f"heights: shape {array.shape}, dtype {array.dtype}; wanted are numbers (rows, columns)")
+    if spacing is None:
+        if not is_labelled:
+            raise ValueError("spacing: an array without coordinates needs it")
+        spacing = _spacing_of(heights)
+    return heights if is_labelled else None, array, _Grid(spacing)
+
+
+def _opened(name, tile):
+    try:
+        import rioxarray
+    except ImportError:
+        raise ImportError("heights: a file needs rioxarray, which is not installed") from None
+    opened = rioxarray.open_rasterio(os.fspath(name), masked=True, chunks={"x": tile, "y": tile})
+    if opened.sizes["band"] != 1:
+        raise ValueError(f"heights: '{name}' has {opened.sizes['band']} bands; wanted is one")
+    return opened.squeeze("band", drop=True)
+
+
+def _spacing_of(heights):
+    crs = getattr(getattr(heights, "rio", None), "crs", None)
+    if crs is not None and crs.is_geographic:
+        raise ValueError("heights: coordinates are degrees; project them, as by .rio.reproject(), or give spacing")
+    steps = []
+    for dim in reversed(heights.dims):
+        if dim not in heights.coords or heights.sizes[dim] < 2:
+            raise ValueError(f"heights: dimension '{dim}' has no coordinates; give spacing")
+        values = np.asarray(heights.coords[dim], np.float64)
+        step = (values[-1] - values[0]) / (len(values) - 1)
+        if not np.abs(np.diff(values) - step).max() <= 1e-3 * abs(step):
+            raise ValueError(f"heights: coordinates '{dim}' are not evenly spaced")
+        steps.append(step)
+    return tuple(steps)
+
+
+def _labelled(found, source, answer):
+    import xarray
+
+    dims = (*source.dims, *(("vector",) if answer.more else ()))
+    coords = {name: value for name, value in source.coords.items() if value.dtype.kind != "O"}
+    return xarray.DataArray(found, dims=dims, coords=coords)
