@@ -13,6 +13,7 @@
 #include "cli/common.h"
 #include "cli/coordinates.h"
 #include "cli/csv_files.h"
+#include "cli/shards.h"
 #include "engine/analysis/npz.h"
 #include "engine/core/error.h"
 #include "engine/core/stopwatch.h"
@@ -83,6 +84,7 @@ struct SliceOptions {
 
 struct DistanceOptions {
     CommonOptions common;
+    ShardOptions shards;
     std::filesystem::path scene, output;
     QueryPointOptions points;
     SliceOptions slice;
@@ -185,9 +187,29 @@ struct Search {
     }
 };
 
-void run_within(const DistanceOptions& options, Search& search) {
+Agreement agreement_for(const DistanceOptions& options, const Search& search) {
+    Agreement agreement = agreement_of("distance", search.scene, "");
+    agreement.push_back({"points", checksum_text(std::as_bytes(std::span(search.points)))});
+    agreement.push_back({"--signed", options.is_signed ? "yes" : "no"});
+    agreement.push_back({"--max-distance", text(std::hexfloat, options.max_distance)});
+    agreement.push_back({"--within", options.within ? text(std::hexfloat, *options.within) : "no"});
+    return agreement;
+}
+
+std::span<const dvec3> points_in(const Search& search, Rows rows) {
+    return std::span(search.points).subspan(rows.first, rows.count());
+}
+
+void run_within(const Shards& shards, const DistanceOptions& options, Search& search) {
     const Stopwatch start;
-    const std::vector<NearTriangle> near = search.query.within(search.points, *options.within);
+    const auto found =
+        compute_rows<NearTriangle>(shards, search.points.size(), agreement_for(options, search), [&](Rows rows) {
+            std::vector<NearTriangle> near = search.query.within(points_in(search, rows), *options.within);
+            for (NearTriangle& each : near) each.point += static_cast<uint>(rows.first);
+            return near;
+        });
+    if (!found) return;
+    const std::vector<NearTriangle>& near = *found;
     const double seconds = start.seconds();
     if (!options.output.empty()) write_csv(options.output, near);
     if (!options.common.quiet) {
@@ -199,18 +221,24 @@ void run_within(const DistanceOptions& options, Search& search) {
     append_json(options.common.json, record);
 }
 
-void run_closest(const DistanceOptions& options, Search& search) {
+// Inside, distances are below 0, or -0.
+std::vector<ClosestPoint> closest(const DistanceOptions& options, Search& search, Rows rows) {
+    std::vector<ClosestPoint> found = search.query.closest(points_in(search, rows), options.max_distance);
+    if (!options.is_signed) return found;
+    const std::vector<int> windings = search.query.winding_numbers(points_in(search, rows));
+    for (std::size_t i = 0; i < found.size(); ++i)
+        if (windings[i] != 0) found[i].distance = -found[i].distance;
+    return found;
+}
+
+void run_closest(const Shards& shards, const DistanceOptions& options, Search& search) {
     const Stopwatch start;
-    std::vector<ClosestPoint> found = search.query.closest(search.points, options.max_distance);
-    std::size_t inside = 0;
-    if (options.is_signed) {
-        const std::vector<int> windings = search.query.winding_numbers(search.points);
-        for (std::size_t i = 0; i < found.size(); ++i) {
-            if (windings[i] == 0) continue;
-            ++inside;
-            found[i].distance = -found[i].distance;
-        }
-    }
+    const auto computed = compute_rows<ClosestPoint>(shards, search.points.size(), agreement_for(options, search),
+                                                     [&](Rows rows) { return closest(options, search, rows); });
+    if (!computed) return;
+    const std::vector<ClosestPoint>& found = *computed;
+    const auto inside = std::count_if(found.begin(), found.end(),
+                                      [](const ClosestPoint& point) { return std::signbit(point.distance); });
     const double seconds = start.seconds();
     if (is_npz(options.output))
         write_npz(options, search.points, found, search.scene.origin);
@@ -254,15 +282,19 @@ void write_slice(const SliceOptions& options, const Scene& scene, PointQuery& qu
     write_png(options.file, page.width, page.height, page.pixels);
 }
 
-void run(const DistanceOptions& options) {
+void run(DistanceOptions options) {
     if (!options.points.is_asked_for() && options.slice.file.empty())
         throw UsageError("one of --points, --random, --grid, --slice is required");
     check_writable(options.output);
     check_writable(options.slice.file);
     if (options.within && is_npz(options.output))
         throw UsageError(text("--output is '", options.output.string(), "', but --within writes .csv"));
+    const Shards shards(options.shards, options.common, options.output);
+    if (!shards.is_whole() && !options.points.is_asked_for())
+        throw UsageError("one of --points, --random, --grid is required: their rows are shared");
     Search search(options);
-    if (options.points.is_asked_for()) options.within ? run_within(options, search) : run_closest(options, search);
+    if (options.points.is_asked_for())
+        options.within ? run_within(shards, options, search) : run_closest(shards, options, search);
     if (!options.slice.file.empty())
         write_slice(options.slice, search.scene, search.query, options.is_signed,
                     options.scene.filename().string() + ": distances");
@@ -333,6 +365,7 @@ Command distance_command() {
             .sections = {{"Points", query_point_options(options->points)},
                          search,
                          slice_options(options->slice),
+                         shard_options(options->shards, {"--slice"}),
                          common_options(options->common)},
             .alternatives = {{.names = {"--points", "--random", "--grid"}}},
             .examples = {{"twinray distance part.stl --points probes.csv --signed -o distances.csv",

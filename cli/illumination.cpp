@@ -12,7 +12,10 @@
 #include "cli/csv_files.h"
 #include "cli/face_groups.h"
 #include "cli/ray_grid_options.h"
+#include "cli/shards.h"
+#include "engine/analysis/light_counts.h"
 #include "engine/core/error.h"
+#include "engine/core/stopwatch.h"
 #include "samples/support/progress.h"
 
 namespace twinray::cli {
@@ -29,6 +32,7 @@ struct SkyOptions {
 
 struct IlluminationOptions {
     AnalysisOptions analysis;
+    ShardOptions shards;
     RayGridOptions grid;
     SkyOptions sky;
     Sides sides = Sides::both;
@@ -98,20 +102,48 @@ void print(const IlluminationOptions& options, const Analysed& analysed, const I
     std::cout << ", without shadows " << total.unobstructed << '\n';
 }
 
-void run(const IlluminationOptions& options) {
+// Rows are pairs of rays, whose counts are added up. Nothing where other processes go on.
+std::optional<Illumination> compute(const Shards& shards, const IlluminationOptions& options, const Analysed& analysed,
+                                    const Faces& faces, const RayGridDesc& grid) {
+    samples::Progress progress("illumination", std::uint64_t{grid.side} * grid.side, options.analysis.common.quiet);
+    const IlluminationDesc desc{
+        .grid = grid, .sides = options.sides, .by = options.groups.by, .progress = [&](std::uint64_t rays) {
+            progress.advance(rays);
+        }};
+    if (shards.is_whole()) return illuminate(*analysed.accel, analysed.scene, faces, desc);
+    Agreement agreement = agreement_of("illumination", analysed.scene, analysed.choice.name());
+    const std::vector<uint> groups = faces.groups(options.groups.by);
+    agreement.push_back({"groups", checksum_text(std::as_bytes(std::span(groups)))});
+    agreement.push_back({"--sides", name_in(sides_by_name, options.sides)});
+    agreement.push_back({"--seed", std::to_string(grid.seed)});
+    agreement.push_back({"grid", options.grid.record().dump()});
+    const std::uint64_t rays = grid_ray_count(analysed.scene, desc);
+    const auto parts = shards.parts((rays + 1) / 2, agreement, [&](Rows rows) {
+        const std::vector<GroupCount> counts =
+            count_light(*analysed.accel, analysed.scene, faces, desc, rows.first * 2, std::min(rays, rows.last * 2));
+        return joined<GroupCount, std::byte>(counts, {});
+    });
+    if (!parts) return {};
+    std::vector<GroupCount> sums(faces.group_count(options.groups.by) + 1);
+    for (const std::vector<std::byte>& part : *parts) {
+        std::vector<GroupCount> counts;
+        append_bytes(counts, part);
+        for (std::size_t i = 0; i < sums.size(); ++i) sums[i].hits += counts[i].hits, sums[i].odd += counts[i].odd;
+    }
+    return illumination_of(analysed.scene, faces, desc, sums);
+}
+
+void run(IlluminationOptions options) {
+    const Shards shards(options.shards, options.analysis.common, options.analysis.output);
     const Analysed analysed(options.analysis);
     Faces faces(*analysed.context, analysed.scene);
     options.groups.set_groups(faces);
     const RayGridDesc grid = options.grid.desc(options.analysis.common);
-    Illumination result;
-    const double seconds = seconds_of([&] {
-        samples::Progress progress("illumination", std::uint64_t{grid.side} * grid.side, options.analysis.common.quiet);
-        result = illuminate(
-            *analysed.accel, analysed.scene, faces,
-            {.grid = grid, .sides = options.sides, .by = options.groups.by, .progress = [&](std::uint64_t rays) {
-                 progress.advance(rays);
-             }});
-    });
+    const Stopwatch start;
+    const std::optional<Illumination> computed = compute(shards, options, analysed, faces, grid);
+    if (!computed) return;
+    const Illumination& result = *computed;
+    const double seconds = start.seconds();
     if (!options.analysis.output.empty()) write(options, result);
     if (!options.analysis.pictures.files.empty())
         write_pictures(options.analysis.pictures, *analysed.accel, analysed.scene, picture_of(options, faces, result));
@@ -182,24 +214,49 @@ std::vector<Option> sky_options(SkyOptions& options) {
          .needs = {"--sun"}}};
 }
 
-void run_sky(const AnalysisOptions& analysis, const SkyOptions& options, Sides sides) {
+// Of faces in `rows`.
+std::vector<Received> receive(const Analysed& analysed, const Faces& faces, const SkyOptions& options,
+                              std::span<const SunPosition> sun, SkyRaysDesc desc, Rows rows) {
+    desc.first_face = rows.first, desc.last_face = rows.last;
+    const SkyLight light = options.sky ? sky_light(*analysed.accel, analysed.scene, faces,
+                                                   {options.up[0], options.up[1], options.up[2]}, desc)
+                                       : sun_hours(*analysed.accel, analysed.scene, faces, sun, desc);
+    return {light.faces.begin() + static_cast<std::ptrdiff_t>(rows.first),
+            light.faces.begin() + static_cast<std::ptrdiff_t>(rows.last)};
+}
+
+Agreement agreement_for(const Analysed& analysed, const SkyOptions& options, std::span<const SunPosition> sun,
+                        const SkyRaysDesc& desc) {
+    Agreement agreement = agreement_of("illumination", analysed.scene, analysed.choice.name());
+    agreement.push_back({"light", options.sky ? "sky" : "sun"});
+    agreement.push_back({"up", checksum_text(std::as_bytes(std::span(options.up)))});
+    agreement.push_back({"sun", checksum_text(std::as_bytes(sun))});
+    agreement.push_back({"samples", std::to_string(desc.samples)});
+    agreement.push_back({"--sides", name_in(sides_by_name, desc.sides)});
+    agreement.push_back({"--seed", std::to_string(desc.seed)});
+    return agreement;
+}
+
+void run_sky(AnalysisOptions analysis, const ShardOptions& parts, const SkyOptions& options, Sides sides) {
+    const Shards shards(parts, analysis.common, analysis.output);
     const std::vector<SunPosition> sun = options.sky ? std::vector<SunPosition>() : read_sun(options.sun);
     const Analysed analysed(analysis);
     const Faces faces(*analysed.context, analysed.scene);
     const uint samples = options.sky ? options.sky : options.samples;
     const std::string what = options.sky ? "sky" : "hours";
-    SkyLight light;
-    const double seconds = seconds_of([&] {
-        samples::Progress progress(what, faces.count() * samples * std::max<std::size_t>(sun.size(), 1),
-                                   analysis.common.quiet);
-        const SkyRaysDesc desc{
-            .samples = samples, .sides = sides, .seed = analysis.common.seed, .progress = [&](std::uint64_t rays) {
-                progress.advance(rays);
-            }};
-        light = options.sky ? sky_light(*analysed.accel, analysed.scene, faces,
-                                        {options.up[0], options.up[1], options.up[2]}, desc)
-                            : sun_hours(*analysed.accel, analysed.scene, faces, sun, desc);
-    });
+    const Stopwatch start;
+    const std::uint64_t rays_of_face = samples * (options.sky ? 1 : sun.size());
+    const SkyRaysDesc desc{.samples = samples, .sides = sides, .seed = analysis.common.seed};
+    auto computed =
+        compute_rows<Received>(shards, faces.count(), agreement_for(analysed, options, sun, desc), [&](Rows rows) {
+            samples::Progress progress(what, rows.count() * rays_of_face, analysis.common.quiet);
+            SkyRaysDesc shown = desc;
+            shown.progress = [&](std::uint64_t rays) { progress.advance(rays); };
+            return receive(analysed, faces, options, sun, shown, rows);
+        });
+    if (!computed) return;
+    const SkyLight light{.faces = std::move(*computed), .ray_count = faces.count() * rays_of_face};
+    const double seconds = start.seconds();
     if (!analysis.output.empty()) write(analysis.output, what, light);
     if (!analysis.pictures.files.empty())
         write_pictures(analysis.pictures, *analysed.accel, analysed.scene,
@@ -245,13 +302,15 @@ Command illumination_command() {
                 "Computes how much of each face parallel light reaches, how much of a uniform sky it sees, or for how "
                 "many hours the sun shines on it, with 95 % confidence intervals.",
             .positionals = {scene_argument(options->analysis.scene)},
-            .sections = {light, output, pictures, common_options(options->analysis.common)},
+            .sections = {light, output, pictures, shard_options(options->shards, {"--picture"}),
+                         common_options(options->analysis.common)},
             .alternatives = {{.names = {"--direction", "--sky", "--sun"}, .is_required = true}},
             .examples = {{"twinray illumination house.glb --direction 0.3 -1 0.2 -o lit.csv --picture lit.png",
                           "the faces that the sun reaches, as a table and as a picture"}},
             .run = [options] {
-                options->grid.direction.empty() ? run_sky(options->analysis, options->sky, options->sides)
-                                                : run(*options);
+                options->grid.direction.empty()
+                    ? run_sky(options->analysis, options->shards, options->sky, options->sides)
+                    : run(*options);
                 return 0;
             }};
 }

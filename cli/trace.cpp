@@ -12,6 +12,7 @@
 #include "cli/commands.h"
 #include "cli/common.h"
 #include "cli/picture_options.h"
+#include "cli/shards.h"
 #include "engine/scene/ray_file.h"
 #include <twinray/queries.h>
 #include "engine/core/error.h"
@@ -25,6 +26,7 @@ namespace {
 
 struct TraceOptions {
     CommonOptions common;
+    ShardOptions shards;
     std::filesystem::path scene, rays, hits, counts;
     std::string accel = "auto";
     std::string query = "closest";
@@ -71,15 +73,18 @@ TraceDesc desc_of(const TraceOptions& options) {
     return {.mask = static_cast<std::uint8_t>(options.mask), .cull = options.cull, .level = options.level};
 }
 
-// The hits of all rays, one after the other; writes how many each has.
-std::vector<Hit> trace_all(AbstractAccel& accel, std::span<const Ray> rays, const TraceOptions& options) {
+// How many hits each ray has, and all of them, one after the other.
+struct CountedHits {
+    std::vector<std::uint32_t> counts;
+    std::vector<Hit> hits;
+};
+
+CountedHits trace_all(AbstractAccel& accel, std::span<const Ray> rays, const TraceOptions& options) {
     HitsOfRays found = AllHits(accel)(rays, desc_of(options));
     std::vector<std::uint32_t> counts;
     for (std::size_t i = 0; i < rays.size(); ++i)
         counts.push_back(static_cast<std::uint32_t>(found.first[i + 1] - found.first[i]));
-    const std::span<const std::byte> piece = std::as_bytes(std::span(counts));
-    write_file(options.counts, std::span(&piece, 1));
-    return std::move(found.hits);
+    return {std::move(counts), std::move(found.hits)};
 }
 
 std::vector<Hit> trace_in_batches(AbstractAccel& accel, std::span<const Ray> rays, const TraceOptions& options) {
@@ -98,6 +103,44 @@ std::vector<Hit> trace_in_batches(AbstractAccel& accel, std::span<const Ray> ray
     return hits;
 }
 
+Agreement agreement_for(const TraceOptions& options, const Scene& scene, const AccelChoice& choice,
+                        std::span<const Ray> rays) {
+    Agreement agreement = agreement_of("trace", scene, choice.name());
+    agreement.push_back({"rays", checksum_text(std::as_bytes(rays))});
+    agreement.push_back({"--query", options.query});
+    agreement.push_back({"--level", std::string(name_of(options.level))});
+    agreement.push_back({"--cull", std::to_string(static_cast<int>(options.cull))});
+    std::string masks = std::to_string(options.mask);
+    for (const std::string& mask : options.instance_masks) masks += ' ' + mask;
+    agreement.push_back({"masks", masks});
+    return agreement;
+}
+
+// The hits of all rays; with --query all their counts are written. Nothing where other processes go on.
+std::optional<std::vector<Hit>> compute(const Shards& shards, const TraceOptions& options, const Agreement& agreement,
+                                        AbstractAccel& accel, std::span<const Ray> rays) {
+    const auto own = [&](Rows rows) { return rays.subspan(rows.first, rows.count()); };
+    if (options.query != "all")
+        return compute_rows<Hit>(shards, rays.size(), agreement,
+                                 [&](Rows rows) { return trace_in_batches(accel, own(rows), options); });
+    CountedHits all;
+    if (shards.is_whole()) {
+        all = trace_all(accel, rays, options);
+    } else {
+        const auto parts = shards.parts(rays.size(), agreement, [&](Rows rows) {
+            const CountedHits found = trace_all(accel, own(rows), options);
+            return joined<std::uint32_t, Hit>(found.counts, found.hits);
+        });
+        if (!parts) return {};
+        for (std::size_t i = 0; i < parts->size(); ++i)
+            split<std::uint32_t, Hit>((*parts)[i], shards.rows(static_cast<uint>(i), rays.size()).count(), all.counts,
+                                      all.hits);
+    }
+    const std::span<const std::byte> piece = std::as_bytes(std::span(all.counts));
+    write_file(options.counts, std::span(&piece, 1));
+    return std::move(all.hits);
+}
+
 ScenePicture picture_of(const TraceOptions& options, const Scene& scene, std::span<const Ray> rays,
                         std::span<const Hit> hits) {
     ScenePicture picture = picture_of_rays(options.pictures, scene, rays, hits, options.rays_shown);
@@ -109,7 +152,8 @@ ScenePicture picture_of(const TraceOptions& options, const Scene& scene, std::sp
     return picture;
 }
 
-void run(const TraceOptions& options) {
+void run(TraceOptions options) {
+    const Shards shards(options.shards, options.common, options.hits);
     const bool is_all = options.query == "all";
     if (is_all == options.counts.empty())
         throw UsageError(is_all ? "--query all requires --counts, the number of hits of each ray"
@@ -131,7 +175,9 @@ void run(const TraceOptions& options) {
     const std::unique_ptr<AbstractAccel> accel = make_accel(*context, choice, scene, options.level);
     set_masks(*accel, scene, masks);
     const Stopwatch start;
-    const std::vector<Hit> hits = is_all ? trace_all(*accel, rays, options) : trace_in_batches(*accel, rays, options);
+    const auto computed = compute(shards, options, agreement_for(options, scene, choice, rays), *accel, rays);
+    if (!computed) return;
+    const std::vector<Hit>& hits = *computed;
     const double seconds = start.seconds();
     write_hits(options.hits, hits);
     if (!options.pictures.files.empty())
@@ -212,7 +258,8 @@ Command trace_command() {
                 "ray's direction, which need not be normalised. Indices begin at 0 and number the triangles in the "
                 "order of the scene's file.",
             .positionals = {scene_argument(options->scene)},
-            .sections = {rays, tracing, pictures, common_options(options->common)},
+            .sections = {rays, tracing, pictures, shard_options(options->shards, {"--picture"}, "--hits"),
+                         common_options(options->common)},
             .examples = {{"twinray trace bunny.ply --rays rays.bin --hits hits.bin",
                           "closest hits of all rays, at a level that loses no ray at edges"}},
             .run = [options] {

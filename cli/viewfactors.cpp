@@ -14,11 +14,13 @@
 #include "cli/common.h"
 #include "cli/face_groups.h"
 #include "cli/picture_options.h"
+#include "cli/shards.h"
 #include "engine/analysis/matrix_file.h"
 #include "engine/analysis/row_run.h"
 #include "engine/core/error.h"
 #include "engine/core/stopwatch.h"
 #include "engine/scene/bytes.h"
+#include "twinray_version.h"
 #include "samples/support/progress.h"
 #include "viewer/picture/matrix_picture.h"
 
@@ -37,7 +39,7 @@ struct Options {
     FaceGroupOptions groups;
     ViewFactorOptions factors;  // of which this sets the grouping
     PairEstimator estimator = PairEstimator::automatic;
-    bool resumes = false;
+    ShardOptions shards;
     bool projects = false;
     PictureOptions pictures;
     ViewFactorPictureOptions shown;
@@ -60,14 +62,45 @@ PairExchanges compute_pairs(const Options& options, AbstractAccel& accel, const 
 
 std::filesystem::path rows_file(const std::filesystem::path& output) { return output.string() + ".rows"; }
 
-ComputedRows compute(const Options& options, ViewFactors& factors, const std::string& configuration) {
-    std::optional<RowFile> file;
-    if (!options.output.empty()) file.emplace(rows_file(options.output), configuration);
-    ComputedRows computed = begin_rows(file ? &*file : nullptr, options.resumes);
+ComputedRows compute_to(const Options& options, ViewFactors& factors, Rows rows, RowFile* file) {
+    ComputedRows computed = begin_rows(file, options.shards.resumes);
     if (computed.resumed > 0 && !options.common.quiet)
-        std::cout << "resumed after " << computed.resumed << " of " << factors.row_count() << " rows\n";
-    samples::Progress progress("view factors", factors.row_count(), options.common.quiet);
-    complete_rows(computed, factors, file ? &*file : nullptr, [&](std::uint64_t rows) { progress.advance(rows); });
+        std::cout << "resumed after " << computed.resumed << " of " << rows.count() << " rows\n";
+    samples::Progress progress("view factors", rows.count(), options.common.quiet);
+    complete_rows(computed, factors, rows.first, rows.last, file,
+                  [&](std::uint64_t count) { progress.advance(count); });
+    return computed;
+}
+
+// Nothing where other processes go on.
+std::optional<ComputedRows> compute(const Shards& shards, const Options& options, ViewFactors& factors,
+                                    const std::string& configuration) {
+    const std::size_t count = factors.row_count();
+    if (shards.is_whole()) {
+        std::optional<RowFile> file;
+        if (!options.output.empty()) file.emplace(rows_file(options.output), configuration);
+        return compute_to(options, factors, {0, count}, file ? &*file : nullptr);
+    }
+    const auto file_of = [&](Rows rows, const std::filesystem::path& file) {
+        return RowFile(file,
+                       text("twinray ", twinray_version, ", ", configuration, ", rows ", rows.first, " to ", rows.last),
+                       rows.first);
+    };
+    ComputedRows computed;
+    const bool goes_on = shards.for_parts(
+        count,
+        [&](Rows rows, const std::filesystem::path& name) {
+            RowFile file = file_of(rows, name);
+            compute_to(options, factors, rows, &file);
+        },
+        [&](Rows rows, const std::filesystem::path& name) {
+            const std::vector<ViewFactorRow> part = file_of(rows, name).load();
+            if (part.size() != rows.count())
+                fail("'", name.string(), "': ", part.size(), " of ", rows.count(),
+                     " rows are finished; --resume goes on");
+            computed.rows.insert(computed.rows.end(), part.begin(), part.end());
+        });
+    if (!goes_on) return {};
     return computed;
 }
 
@@ -197,7 +230,8 @@ void check_shown(const ViewFactorPictureOptions& options, std::size_t row_count)
         fail("--from ", *options.from, ": there are ", row_count, " rows, numbered from 0");
 }
 
-void run(const Options& options) {
+void run(Options options) {
+    const Shards shards(options.shards, options.common, options.output);
     check_outputs(options);
     const Scene scene = load_scene(options.scene, options.common);
     const std::unique_ptr<Context> context = make_context(options.common);
@@ -210,15 +244,16 @@ void run(const Options& options) {
     Summary summary;
     summary.choice = choice;
     const Stopwatch start;
-    const PairExchanges pairs = compute_pairs(options, *accel, scene, faces);
+    const PairExchanges pairs = options.shards.merged ? PairExchanges{} : compute_pairs(options, *accel, scene, faces);
     summary.rays_between_faces = pairs.rays;
     summary.seconds_of_pairs = start.seconds();
     ViewFactors factors(*accel, faces, options.factors, pairs.known);
-    ComputedRows computed =
-        compute(options, factors, configuration_of(options.factors, options.estimator, choice.name(), scene, faces));
+    std::optional<ComputedRows> computed = compute(
+        shards, options, factors, configuration_of(options.factors, options.estimator, choice.name(), scene, faces));
+    if (!computed) return;
     summary.seconds = start.seconds();
-    summary.rays = computed.rays();
-    std::vector<ViewFactorRow>& rows = computed.rows;
+    summary.rays = computed->rays();
+    std::vector<ViewFactorRow>& rows = computed->rows;
     summary.rows = rows.size();
     summary.totals = totals_of(rows);
     summary.counted = residuals_of(rows, factors.areas());
@@ -231,7 +266,7 @@ void run(const Options& options) {
         write_pictures(options.pictures, *accel, scene,
                        picture_of_view_factors(options.pictures, options.shown, options.scene.filename().string(),
                                                faces.groups(options.factors.grouping), rows));
-    if (!options.output.empty()) RowFile(rows_file(options.output), {}).remove();
+    if (!options.output.empty() && shards.is_whole()) RowFile(rows_file(options.output), {}).remove();
     if (!options.common.quiet) print(summary, options);
     nlohmann::json record = base_record("twinray-viewfactors/1", *context, options.scene, scene);
     record.update(describe(choice));
@@ -283,10 +318,6 @@ Command viewfactors_command() {
         {.name = "--project",
          .value = flag(options->projects),
          .help = "write the nearest matrix that satisfies reciprocity and closure, instead of the counted one"});
-    output.options.push_back({.name = "--resume",
-                              .value = flag(options->resumes),
-                              .help = "continue with the rows that an interrupted run left beside the output",
-                              .needs = {"--output"}});
     Section pictures =
         picture_options(options->pictures, "the open fraction, or the view factors of one row with --from");
     pictures.options.push_back(color_scale_option(options->pictures));
@@ -299,7 +330,8 @@ Command viewfactors_command() {
                 "faces, and reaches each other one, with 95 % confidence intervals. Prints how far the matrix is from "
                 "reciprocity and closure.",
             .positionals = {scene_argument(options->scene)},
-            .sections = {output, sampling, pictures, common_options(options->common)},
+            .sections = {output, sampling, pictures, shard_options(options->shards, {"--picture", "--matrix"}),
+                         common_options(options->common)},
             .examples = {{"twinray viewfactors room.obj --by instance -o room.npz",
                           "view factors between the objects of a room, as a matrix for SciPy"}},
             .run = [options] {

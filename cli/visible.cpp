@@ -10,8 +10,10 @@
 #include "cli/command/values.h"
 #include "cli/commands.h"
 #include "cli/ray_grid_options.h"
+#include "cli/shards.h"
 #include "engine/analysis/npz.h"
 #include "engine/core/error.h"
+#include "engine/core/stopwatch.h"
 #include "engine/scene/bytes.h"
 #include "engine/scene/number_lines.h"
 #include "twinray/glsl/vector_math.h"
@@ -22,6 +24,7 @@ namespace {
 
 struct VisibleOptions {
     AnalysisOptions analysis;
+    ShardOptions shards;
     std::filesystem::path sensors;
     std::string patches = std::string(sky_names[0]);
     std::vector<double> up = {0, 1, 0};
@@ -98,18 +101,35 @@ void write(const std::filesystem::path& file, std::span<const std::uint8_t> free
     npz.write(file);
 }
 
-void run(const VisibleOptions& options) {
+// Nothing where other processes go on.
+std::optional<std::vector<std::uint8_t>> free_patches(const Shards& shards, const VisibleOptions& options,
+                                                      const Analysed& analysed, const Sensors& sensors,
+                                                      std::span<const vec3> directions) {
+    Agreement agreement = agreement_of("visible", analysed.scene, analysed.choice.name());
+    agreement.push_back({"points", checksum_text(std::as_bytes(std::span(sensors.points)))});
+    agreement.push_back({"normals", checksum_text(std::as_bytes(std::span(sensors.normals)))});
+    agreement.push_back({"directions", checksum_text(std::as_bytes(directions))});
+    agreement.push_back({"--t-near", text(std::hexfloat, options.t_near)});
+    return compute_rows<std::uint8_t>(shards, sensors.points.size(), agreement, [&](Rows rows) {
+        samples::Progress progress("visible", rows.count() * directions.size(), options.analysis.common.quiet);
+        return visibility(*analysed.accel, std::span(sensors.points).subspan(rows.first, rows.count()), directions,
+                          std::span(sensors.normals).subspan(rows.first, rows.count()),
+                          {.t_near = options.t_near, .progress = [&](std::uint64_t n) { progress.advance(n); }});
+    });
+}
+
+void run(VisibleOptions options) {
+    const Shards shards(options.shards, options.analysis.common, options.analysis.output);
     const Analysed analysed(options.analysis);
     const Sensors sensors = read_sensors(options.sensors, analysed.scene.origin);
     const std::vector<SkyPatch> sky = sky_patches(options.patches);
     const std::vector<vec3> directions = directions_of(sky, {options.up[0], options.up[1], options.up[2]});
     const std::uint64_t rays = sensors.points.size() * sky.size();
-    std::vector<std::uint8_t> free;
-    const double seconds = seconds_of([&] {
-        samples::Progress progress("visible", rays, options.analysis.common.quiet);
-        free = visibility(*analysed.accel, sensors.points, directions, sensors.normals,
-                          {.t_near = options.t_near, .progress = [&](std::uint64_t n) { progress.advance(n); }});
-    });
+    const Stopwatch start;
+    const auto found = free_patches(shards, options, analysed, sensors, directions);
+    if (!found) return;
+    const std::vector<std::uint8_t>& free = *found;
+    const double seconds = start.seconds();
     const std::vector<double> shares = shares_of(free, sensors, directions, sky);
     if (!options.analysis.output.empty()) write(options.analysis.output, free, shares, directions, sky);
     double mean = 0;
@@ -156,7 +176,7 @@ Command visible_command() {
                                          "write .npz: visible (sensors, patches) of 0 and 1, share, directions, "
                                          "solid_angles; or .csv: sensor, free_patches, share. share is the part of the "
                                          "light of a uniform sky that reaches the sensor, relative to no obstruction"),
-                         common_options(options->analysis.common)},
+                         shard_options(options->shards, {}), common_options(options->analysis.common)},
             .examples = {{"twinray visible street.glb --sensors windows.pts --patches reinhart577 -o windows.npz",
                           "visibility of 577 patches from each window"}},
             .run = [options] {

@@ -51,7 +51,7 @@ if(TWINRAY_ANALYSIS)
     find_package(Eigen3 CONFIG REQUIRED)
 endif()
 if(TWINRAY_BUILD_PATH_TRACER OR TWINRAY_BUILD_SAMPLES OR TWINRAY_BUILD_CLI)
-    find_package(MPI QUIET COMPONENTS C) # optional, for the path tracer: Debian's libopenmpi-dev and openmpi-bin
+    find_package(MPI QUIET COMPONENTS C) # optional: Debian's libopenmpi-dev and openmpi-bin
     find_package(CLI11 CONFIG REQUIRED)
 endif()
 if(TWINRAY_BUILD_CLI)

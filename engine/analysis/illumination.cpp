@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "analysis_count_faces.spv.h"
-#include "engine/analysis/count_faces.h"
+#include "engine/analysis/light_counts.h"
 #include "engine/analysis/estimate.h"
 #include "engine/analysis/ray_grid.h"
 #include "engine/core/error.h"
@@ -71,10 +71,11 @@ std::vector<uint> groups_that_count(const Faces& faces, FaceGrouping by, std::sp
     return groups;
 }
 
-std::vector<GroupCount> count_hits(AbstractAccel& accel, const RayGridPlan& plan, const GroupCounts& counts,
-                                   const ProgressCallback& progress) {
+std::vector<GroupCount> count_hits(AbstractAccel& accel, const RayGridPlan& plan, std::uint64_t first,
+                                   std::uint64_t last, const GroupCounts& counts, const ProgressCallback& progress) {
     RayGridTrace trace(accel, plan);
-    for (const RayBatch batch : ray_batches(plan.ray_count)) {
+    for (RayBatch batch : ray_batches(last - first)) {
+        batch.first += static_cast<uint>(first);
         Commands commands(accel.context(), "illumination");
         trace.record(commands, batch);
         counts.record(commands, trace.hits(), batch);
@@ -99,9 +100,25 @@ void estimate(LitArea& lit, const GroupCount& count, const RayGridPlan& plan) {
 
 }  // namespace
 
-Illumination illuminate(AbstractAccel& accel, const Scene& scene, const Faces& faces, const IlluminationDesc& desc) {
+std::uint64_t grid_ray_count(const Scene& scene, const IlluminationDesc& desc) {
+    return plan_ray_grid(scene, desc.grid).ray_count;
+}
+
+std::vector<GroupCount> count_light(AbstractAccel& accel, const Scene& scene, const Faces& faces,
+                                    const IlluminationDesc& desc, std::uint64_t first, std::uint64_t last) {
     check_faces(scene, faces);
     check_filled(accel, faces.triangle_counts(), "illumination");
+    const RayGridPlan plan = plan_ray_grid(scene, desc.grid);
+    const std::size_t group_count = faces.group_count(desc.by);
+    if (first == last) return std::vector<GroupCount>(group_count + 1);
+    const std::vector<uint> counted =
+        groups_that_count(faces, desc.by, unobstructed_areas(scene, faces, plan, desc.sides));
+    const GroupCounts counts(accel.context(), faces, counted, group_count);
+    return count_hits(accel, plan, first, last, counts, desc.progress);
+}
+
+Illumination illumination_of(const Scene& scene, const Faces& faces, const IlluminationDesc& desc,
+                             std::span<const GroupCount> hits) {
     const RayGridPlan plan = plan_ray_grid(scene, desc.grid);
     const std::vector<double> unobstructed = unobstructed_areas(scene, faces, plan, desc.sides);
     Illumination result{.groups = std::vector<LitArea>(faces.group_count(desc.by)),
@@ -116,10 +133,6 @@ Illumination illuminate(AbstractAccel& accel, const Scene& scene, const Faces& f
         }
     }
     if (plan.ray_count == 0) return result;
-
-    const std::vector<uint> counted = groups_that_count(faces, desc.by, unobstructed);
-    const GroupCounts counts(accel.context(), faces, counted, result.groups.size());
-    const std::vector<GroupCount> hits = count_hits(accel, plan, counts, desc.progress);
     for (std::size_t group = 0; group < result.groups.size(); ++group) {
         result.groups[group].hits = hits[group].hits;
         result.total.hits += hits[group].hits;
@@ -127,6 +140,10 @@ Illumination illuminate(AbstractAccel& accel, const Scene& scene, const Faces& f
     }
     estimate(result.total, hits.back(), plan);
     return result;
+}
+
+Illumination illuminate(AbstractAccel& accel, const Scene& scene, const Faces& faces, const IlluminationDesc& desc) {
+    return illumination_of(scene, faces, desc, count_light(accel, scene, faces, desc, 0, grid_ray_count(scene, desc)));
 }
 
 Illumination illuminate(AbstractAccel& accel, const Faces& faces, const IlluminationDesc& desc) {

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <fstream>
 #include <optional>
+#include <utility>
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
@@ -75,7 +76,9 @@ class Reader {
 struct RowFile::State {
     std::filesystem::path file;
     std::string configuration;
+    std::size_t first_row;
     std::ofstream out;
+    std::optional<std::uint64_t> end;  // of what was loaded
 
     void open_at(std::uint64_t bytes) {
         out.open(file, std::ios::binary | std::ios::app);
@@ -85,8 +88,8 @@ struct RowFile::State {
     }
 };
 
-RowFile::RowFile(std::filesystem::path file, const std::string& configuration)
-    : state_(new State{std::move(file), text(magic, configuration, '\n'), {}}) {}
+RowFile::RowFile(std::filesystem::path file, const std::string& configuration, std::size_t first_row)
+    : state_(new State{std::move(file), text(magic, configuration, '\n'), first_row, {}, {}}) {}
 RowFile::~RowFile() = default;
 
 std::vector<ViewFactorRow> RowFile::load() {
@@ -98,19 +101,17 @@ std::vector<ViewFactorRow> RowFile::load() {
     const std::string_view head(reinterpret_cast<const char*>(bytes.data()),
                                 std::min(bytes.size(), state_->configuration.size()));
     if (head != state_->configuration)
-        fail("'", state_->file.string(),
-             "': unfinished rows of another scene or of other options; they cannot be resumed");
+        fail("'", state_->file.string(), "': rows of another scene, of other options or of another part");
     Reader reader(bytes);
     reader.skip(state_->configuration.size());
     std::vector<ViewFactorRow> rows;
     std::size_t whole = reader.at();
     while (std::optional<ViewFactorRow> row = reader.row()) {
-        if (row->group != rows.size()) break;
+        if (row->group != state_->first_row + rows.size()) break;
         rows.push_back(std::move(*row));
         whole = reader.at();
     }
-    std::filesystem::resize_file(state_->file, whole);
-    state_->open_at(whole);
+    state_->end = whole;
     return rows;
 }
 
@@ -120,6 +121,10 @@ void RowFile::create() {
 }
 
 void RowFile::append(std::span<const ViewFactorRow> rows) {
+    if (const auto end = std::exchange(state_->end, std::nullopt)) {
+        std::filesystem::resize_file(state_->file, *end);
+        state_->open_at(*end);
+    }
     for (const ViewFactorRow& row : rows) {
         const std::vector<std::byte> bytes = bytes_of(row);
         state_->out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));

@@ -34,13 +34,13 @@ ComputedRows begin_rows(RowFile* file, bool resumes) {
     return computed;
 }
 
-void complete_rows(ComputedRows& computed, ViewFactors& factors, RowFile* file,
+void complete_rows(ComputedRows& computed, ViewFactors& factors, std::size_t first, std::size_t last, RowFile* file,
                    const std::function<void(std::uint64_t)>& advance) {
     std::vector<ViewFactorRow>& rows = computed.rows;
     advance(rows.size());
-    while (rows.size() < factors.row_count()) {
-        const std::size_t last = std::min(rows.size() + factors.batch_size(), factors.row_count());
-        const std::vector<ViewFactorRow> block = factors.rows(rows.size(), last);
+    while (first + rows.size() < last) {
+        const std::size_t next = first + rows.size();
+        const std::vector<ViewFactorRow> block = factors.rows(next, std::min(next + factors.batch_size(), last));
         if (file) file->append(block);
         rows.insert(rows.end(), block.begin(), block.end());
         advance(block.size());

@@ -23,8 +23,8 @@ struct ComputedRows {
 
 // Returns the rows of an earlier run if it `resumes`, else none, and an empty file. `file` may be null.
 ComputedRows begin_rows(RowFile* file, bool resumes);
-// Computes the missing rows and appends them to the file; passes the number of new rows to `advance`.
-void complete_rows(ComputedRows& computed, ViewFactors& factors, RowFile* file,
+// Computes the missing rows of [first, last) and appends them to the file; passes the number of new rows to `advance`.
+void complete_rows(ComputedRows& computed, ViewFactors& factors, std::size_t first, std::size_t last, RowFile* file,
                    const std::function<void(std::uint64_t)>& advance);
 
 struct MatrixTotals {

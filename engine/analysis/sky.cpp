@@ -49,6 +49,11 @@ double open_sky(dvec3 area_vector, dvec3 zenith, Sides sides) {
     return sides == Sides::both ? 1 : (1 + dot(normalize(area_vector), zenith)) / 2;
 }
 
+std::uint64_t asked(const Faces& faces, const SkyRaysDesc& desc) {
+    const std::size_t last = std::min(desc.last_face, faces.count());
+    return last - std::min(desc.first_face, last);
+}
+
 Received received(std::uint64_t free_rays, double possible, double value, const Interval& interval) {
     const Estimate estimate = within({0, possible}, value, interval);
     return {free_rays, estimate.value, estimate.interval_95};
@@ -61,9 +66,9 @@ SkyLight sky_light(AbstractAccel& accel, const Scene& scene, const Faces& faces,
     check_faces(scene, faces);
     const dvec3 up = unit_direction(zenith);
     const SkyRays rays(accel, faces, desc);
-    SkyLight light{.faces = std::vector<Received>(faces.count()), .ray_count = faces.count() * desc.samples};
+    SkyLight light{.faces = std::vector<Received>(faces.count()), .ray_count = asked(faces, desc) * desc.samples};
     const std::vector<GroupCount> counts = rays.free_to_sky(up);
-    for (std::size_t face = 0; face < counts.size(); ++face) {
+    for (std::size_t face = desc.first_face; face < std::min(counts.size(), desc.last_face); ++face) {
         if (faces.areas()[face] == 0) continue;
         const double samples = desc.samples;
         const Interval free = paired_count_interval_95(counts[face].hits, counts[face].odd, desc.samples);
@@ -87,8 +92,8 @@ SkyLight sun_hours(AbstractAccel& accel, const Scene& scene, const Faces& faces,
         add_possible(sums, scene, faces, positions[i], desc.sides);
     }
     SkyLight light{.faces = std::vector<Received>(faces.count()),
-                   .ray_count = faces.count() * desc.samples * positions.size()};
-    for (std::size_t face = 0; face < sums.size(); ++face) {
+                   .ray_count = asked(faces, desc) * desc.samples * positions.size()};
+    for (std::size_t face = desc.first_face; face < std::min(sums.size(), desc.last_face); ++face) {
         if (faces.areas()[face] == 0) continue;
         const HoursOfFace& sum = sums[face];
         const double margin = paired_margin(sum.squared_differences, most, 0.05);

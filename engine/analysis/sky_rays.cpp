@@ -33,7 +33,7 @@ SkyRays::SkyRays(AbstractAccel& accel, const Faces& faces, const SkyRaysDesc& de
 }
 
 std::vector<GroupCount> SkyRays::trace(dvec3 towards, bool to_sun, uint stream) const {
-    if (faces_.count() == 0) return {};
+    if (desc_.first_face >= std::min(desc_.last_face, faces_.count())) return std::vector<GroupCount>(faces_.count());
     SkyRaysArgs args{.table = faces_.state().table(),
                      .rays = rays_.ref<Ray>(),
                      .towards = vec3(unit_direction(towards)),
@@ -47,12 +47,12 @@ std::vector<GroupCount> SkyRays::trace(dvec3 towards, bool to_sun, uint stream) 
                      .seed_low = static_cast<uint>(desc_.seed),
                      .seed_high = static_cast<uint>(desc_.seed >> 32)};
     Pace pace(accel_.context());
-    for (std::uint64_t first = 0; first < faces_.count(); first += faces_of_batch_) {
+    const std::uint64_t last = std::min<std::uint64_t>(desc_.last_face, faces_.count());
+    for (std::uint64_t first = desc_.first_face; first < last; first += faces_of_batch_) {
         args.first_face = static_cast<uint>(first);
-        args.ray_count =
-            desc_.samples * static_cast<uint>(std::min<std::uint64_t>(faces_of_batch_, faces_.count() - first));
+        args.ray_count = desc_.samples * static_cast<uint>(std::min<std::uint64_t>(faces_of_batch_, last - first));
         Commands commands(accel_.context(), "rays from faces");
-        if (first == 0) {
+        if (first == desc_.first_face) {
             const auto pass = commands.pass("rays from faces start");
             commands.fill(counts_, 0, counts_.bytes(), 0);
         }

@@ -223,7 +223,7 @@ std::vector<std::string> command_line(const Options& options) {
 int main(int argc, char** argv) {
     using namespace twinray::path_tracer;
     return twinray::samples::run_program("path_tracer", [&]() -> int {
-        Ranks ranks(argc, argv);
+        Ranks ranks;
         ParsedOptions parsed = parse_options(argc, argv);
         if (parsed.exit_status) return *parsed.exit_status;
         if (parsed.options.view) view(parsed.options);

@@ -336,7 +336,7 @@ class FilmRenderer {
         const bool has_checkpoint = options_.checkpoint_seconds &&
                                     (options_.resume || checkpoint_.elapsed() < time_.elapsed() || ranks_.count() > 1);
         if (ranks_.count() > 1) save_film(file_, result_.film);  // a rank may be lost while others wait for it
-        ranks_.gather(result_.film, result_.stats);
+        gather(ranks_, result_.film, result_.stats);
         const std::filesystem::path whole = film_file(options_.output);
         if (ranks_.index() == 0) {
             write_output(layers());

@@ -2,7 +2,6 @@
 // Renders a film round by round until the stopping options are met, and saves and shows it meanwhile.
 #pragma once
 
-#include "renderer/ranks.h"
 #include "samples/path_tracer/session.h"
 
 namespace twinray::path_tracer {
@@ -17,6 +16,9 @@ struct Rendering {
 // The file for unfinished work: PICTURE.film beside a picture; a film is its own. With many ranks each has one of its
 // own: OUTPUT.rank0of2.film.
 std::filesystem::path checkpoint_file(const std::filesystem::path& output, const Ranks& ranks);
+
+// Rank 0 gets the films and statistics of the others, in their order; the others keep theirs. Waits for all.
+void gather(const Ranks& ranks, Film& film, RenderStats& stats);
 
 // Reads and writes the files of the options: the checkpoint to resume from, checkpoints, pictures on the way, and at
 // the end the output, for all ranks by rank 0. Throws Error naming the file.

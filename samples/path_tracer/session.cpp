@@ -148,7 +148,7 @@ Shard make_shard(const Options& options, const Ranks& ranks) {
 ContextDesc desc_for(const Options& options, const Ranks& ranks) {
     ContextDesc desc = context_desc(options);
     if (ranks.count() > 1 && options.device.empty())
-        desc.device = std::to_string(device_of_rank(list_devices(), ranks.local_index()));
+        desc.device = std::to_string(samples::device_of_rank(list_devices(), ranks.local_index()));
     return desc;
 }
 

@@ -11,13 +11,14 @@
 #include <twinray/tlas.h>
 #include "renderer/environment.h"
 #include "renderer/lights.h"
-#include "renderer/ranks.h"
 #include "renderer/renderer.h"
 #include "renderer/rounds.h"
 #include "renderer/sequence.h"
 #include "samples/support/program.h"
+#include "samples/support/ranks.h"
 
 namespace twinray::path_tracer {
+using samples::Ranks;
 
 struct Options : samples::DeviceOptions {
     std::filesystem::path scene, output, environment, json, cross_check, reference;

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "renderer/ranks.h"
+#include "samples/support/ranks.h"
 #include "renderer/renderer.h"
 
 namespace twinray::path_tracer {
@@ -156,11 +156,11 @@ DeviceProperties device(DeviceKind kind) {
 TEST(Ranks, TakeTurnsOnTheBestDevices) {
     const std::vector<DeviceProperties> machine = {device(DeviceKind::cpu), device(DeviceKind::discrete),
                                                    device(DeviceKind::integrated), device(DeviceKind::discrete)};
-    EXPECT_EQ(device_of_rank(machine, 0), 1u);
-    EXPECT_EQ(device_of_rank(machine, 1), 3u);
-    EXPECT_EQ(device_of_rank(machine, 2), 1u);
-    EXPECT_EQ(device_of_rank(std::span(machine).first(1), 5), 0u);
-    EXPECT_EQ(device_of_rank({}, 1), 0u);
+    EXPECT_EQ(samples::device_of_rank(machine, 0), 1u);
+    EXPECT_EQ(samples::device_of_rank(machine, 1), 3u);
+    EXPECT_EQ(samples::device_of_rank(machine, 2), 1u);
+    EXPECT_EQ(samples::device_of_rank(std::span(machine).first(1), 5), 0u);
+    EXPECT_EQ(samples::device_of_rank({}, 1), 0u);
 }
 
 }  // namespace

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/ranks.h"
+#include "samples/support/ranks.h"
 
 #include <vector>
 
-#include <twinray/context.h>
-
-namespace twinray::path_tracer {
+namespace twinray::samples {
 
 std::size_t device_of_rank(std::span<const DeviceProperties> devices, uint local_index) {
     const int best = choose_device(devices, "").index;
@@ -19,4 +17,4 @@ std::size_t device_of_rank(std::span<const DeviceProperties> devices, uint local
     return alike[local_index % alike.size()];
 }
 
-}  // namespace twinray::path_tracer
+}  // namespace twinray::samples

@@ -2,15 +2,17 @@
 // The processes that mpirun started, if the program was built with MPI; else this one alone.
 #pragma once
 
+#include <cstddef>
 #include <span>
 
-#include "renderer/renderer.h"
+#include <twinray/context.h>
 
-namespace twinray::path_tracer {
+namespace twinray::samples {
 
 class Ranks {
   public:
-    Ranks(int& argc, char**& argv);
+    // Throws Error where mpirun started a program that was built without MPI.
+    Ranks();
     // Waits for the others, unless abandon() was called.
     ~Ranks();
     Ranks(const Ranks&) = delete;
@@ -20,8 +22,10 @@ class Ranks {
     uint count() const { return count_; }
     uint local_index() const { return local_index_; }  // among those on this machine
 
-    // Rank 0 gets the films and statistics of the others, in their order; the others keep theirs. Waits for all.
-    void gather(Film& film, RenderStats& stats) const;
+    // Rank 0 receives what others send, in their order.
+    void send(std::span<const std::byte> bytes) const;
+    void receive(std::span<std::byte> bytes, uint from) const;
+    void wait_for_all() const;
     // Ends without the others, one of which is lost: from now on nothing waits for them.
     void abandon() { is_abandoned_ = true; }
 
@@ -33,4 +37,4 @@ class Ranks {
 // Processes of one machine take turns on its best devices. Returns the index of the device.
 std::size_t device_of_rank(std::span<const DeviceProperties> devices, uint local_index);
 
-}  // namespace twinray::path_tracer
+}  // namespace twinray::samples
