@@ -241,13 +241,12 @@ void project(std::vector<ViewFactorRow>& rows, const std::vector<double>& areas)
 // Finished rows on disk, so that an interrupted run can continue: appended in order and flushed, each with a checksum.
 class RowFile {
   public:
-    // `configuration` describes the rows; it must be the same in all runs that share the file. Rows begin with
-    // `first_row`.
+    // `configuration` describes the rows, which begin with `first_row`: the same in all runs that share the file.
     RowFile(std::filesystem::path file, const std::string& configuration, std::size_t first_row = 0);
     ~RowFile();
 
-    // Returns the rows in the file, in order up to the first gap; append() cuts off what follows them. Returns none if
-    // there is no such file. Throws Error if the file is of another configuration.
+    // Returns the rows in the file up to the first gap, none if there is no file; append() cuts off what follows them.
+    // Throws Error if the file is of another configuration.
     std::vector<ViewFactorRow> load();
     void create();  // starts an empty file
     // Needs load() or create() before. Throws Error naming the file if it cannot be written.
@@ -334,7 +333,7 @@ struct SkyRaysDesc {
     Sides sides = Sides::both;
     std::uint64_t seed = 1;
     ProgressCallback progress = {};
-    std::size_t first_face = 0, last_face = SIZE_MAX;  // only faces from the first to before the last, others get 0
+    std::size_t first_face = 0, last_face = SIZE_MAX;  // faces before and from there on get 0
 };
 
 // The light that a face received.

@@ -26,6 +26,7 @@ OPTIONS = {"not-run": RUN - {"text"} | {"cmake"}, "exit": {"sh"}, "wrap": {"cpp"
 OPTIONS |= {"printed-by": {"text"}, "needs": RUN}
 # The needs of blocks, by the command that succeeds if they are met.
 NEEDS = {
+    "dask": "python3 -c 'import dask.distributed, matplotlib, rioxarray'",
     "llvmpipe": "twinray devices | grep -q '^[*].*llvmpipe'",
     "radv": "twinray kernels --family navi31 --filter sort_scan",
     "nvk": "twinray kernels --family ampere --filter sort_scan",

@@ -154,6 +154,9 @@ def test_wrong_arguments_are_told_before_work():
         (lambda: terrain.sky_view(np.zeros((3, 3))), "spacing: an array"),
         (lambda: terrain.sky_view(np.zeros(3), 1), "heights: shape"),
         (lambda: terrain.sky_view(np.zeros((3, 3)), 0), "spacing: 0"),
+        (lambda: terrain.horizon(np.zeros((3, 3)), 1, steps=0), "steps: 0"),
+        (lambda: terrain.horizon(np.zeros((3, 3)), 1, lowest=90), "lowest: 90"),
+        (lambda: terrain.sky_view(np.zeros((3, 3)), 1, weights=[1]), "weights: they are of patches"),
         (lambda: terrain.visible(np.zeros((3, 3)), [[0, 0, -1]], 1), "vectors: not all"),
         (lambda: terrain.sky_view(raster().assign_coords(x=np.arange(50.0) ** 2)), "'x' are not evenly spaced"),
     ]:
@@ -227,6 +230,29 @@ def test_terrain_against_a_scene_of_all():
     wanted = twinray.visible(points, directions, scene=scene, tnear=1e-9).reshape(*there.shape, -1)
     found = terrain.visible(heights, directions, tile=16).compute()
     assert (found != wanted).mean() < 1e-4  # rays within rounding of an edge
+
+
+def test_the_horizon_and_the_sky_above_it():
+    heights = raster()
+    heights[:] = np.nan_to_num(heights)
+    found = terrain.horizon(heights, azimuths=8, steps=12, lowest=0.5, tile=16).compute()
+    assert found.dims == ("y", "x", "azimuth") and found.attrs["units"] == "degrees" and found.name == "horizon"
+    for azimuth, above, below in ((0, 0.1, -0.1), (5, 0.1, -0.1)):
+        angle = np.radians((azimuth + 0.5) * 45)
+        cell = found.values[20, 25, azimuth]
+        rays = [
+            [np.sin(angle), np.cos(angle), np.tan(np.radians(cell + more))] for more in (above, below)
+        ]  # of twice the last step
+        assert terrain.visible(heights, rays, tile=64)[20, 25].compute().values.tolist() == [1, 0]
+    view = terrain.sky_view(heights, azimuths=8, steps=12, lowest=0.5, tile=64).compute().values
+    assert np.abs(view - (np.cos(np.radians(found.values)) ** 2).mean(axis=2)).max() < 1e-6
+    whole = terrain.sky_view(heights, azimuths=8, steps=12, lowest=0.5, tile=64, measure="solid_angle").compute()
+    assert np.abs(whole.values - (1 - np.sin(np.radians(found.values))).mean(axis=2)).max() < 1e-6
+    wall = np.zeros((3, 64))
+    wall[:, 40:] = 1000.0
+    east = terrain.horizon(wall, 10.0, azimuths=2, steps=16).compute()[1, 30, 0]
+    assert abs(east - np.degrees(np.arctan(1000 / 100))) < 0.01
+    assert (terrain.horizon(wall[:, :30], 10.0).compute() == 1.5).all()
 
 
 def test_a_wall_hides_what_it_must():

@@ -10,7 +10,7 @@ from conftest import needed
 
 FOLDER = Path(__file__).resolve().parents[2] / "docs" / "notebooks"
 NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
-IMPORTED = ("matplotlib", "scipy", "trimesh")  # beside NumPy, where a notebook says so
+IMPORTED = ("matplotlib", "scipy", "trimesh", "xarray")  # beside NumPy, where a notebook says so
 
 
 def source_of(notebook):

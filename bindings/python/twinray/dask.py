@@ -81,7 +81,9 @@ def _cast(scene, rays, dtype, tnear, tfar):
 def test_occlusions(scene: SceneSpec | Any, rays: Any, tnear: float = 0.0, tfar: float = np.inf) -> Any:
     """Tell whether each ray (..., 6) meets anything between `tnear` and `tfar`; (...) bool, lazily."""
     array, labels = _rows(rays, "rays", 6)
-    return _labelled(_mapped(_occluded, scene, array, np.dtype(bool), (), {"tnear": tnear, "tfar": tfar}), labels)
+    return _labelled(
+        _mapped(_occluded, scene, array, np.dtype(bool), (), {"tnear": tnear, "tfar": tfar}), labels, "occluded"
+    )
 
 
 test_occlusions.__test__ = False  # type: ignore[attr-defined]  # no test of pytest's
@@ -94,7 +96,7 @@ def _occluded(scene, rays, dtype, tnear, tfar):
 def compute_distance(scene: SceneSpec | Any, query_points: Any) -> Any:
     """Compute the distance of each point (..., 3) from the scene; (...) float32, lazily."""
     array, labels = _rows(query_points, "query_points", 3)
-    return _labelled(_mapped(_distance, scene, array, np.dtype(np.float32), (), {}), labels)
+    return _labelled(_mapped(_distance, scene, array, np.dtype(np.float32), (), {}), labels, "distance")
 
 
 def _distance(scene, points, dtype):
@@ -128,7 +130,7 @@ def visible(
     array, labels = _sensors(points, normals)
     options = {"vectors": across, "tnear": number_of(tnear, "tnear", 0)}
     found = _mapped(_visible, scene, array, np.dtype(np.uint8), (len(across),), options)
-    return labels.array(found, ("vector",)) if labels else found
+    return labels.array(found, "visible", ("vector",)) if labels else found
 
 
 def _visible(scene, sensors, dtype, vectors, tnear):
@@ -168,7 +170,7 @@ def sky_view(
     bright = angles * (1 if weights is None else weights_of(weights, "weights", len(angles)))
     options = {"directions": directions.numpy(), "light": np.asarray(bright), "tnear": number_of(tnear, "tnear", 0)}
     array, labels = _sensors(points, normals)
-    return _labelled(_mapped(_sky, scene, array, np.dtype(np.float64), (), options), labels)
+    return _labelled(_mapped(_sky, scene, array, np.dtype(np.float64), (), options), labels, "sky_view")
 
 
 def _sky(scene, sensors, dtype, directions, light, tnear):
@@ -220,7 +222,7 @@ def sun_hours(
     vectors, stay = suns_of(suns, hours)
     array, labels = _sensors(points, normals)
     options = {"vectors": vectors, "stay": stay, "tnear": number_of(tnear, "tnear", 0)}
-    return _labelled(_mapped(_hours, scene, array, np.dtype(np.float64), (), options), labels)
+    return _labelled(_mapped(_hours, scene, array, np.dtype(np.float64), (), options), labels, "sun_hours")
 
 
 def suns_of(suns, hours):
@@ -352,19 +354,19 @@ class _Labels:
         last = array.dims[-1]
         self.coords = {name: value for name, value in array.coords.items() if last not in value.dims}
 
-    def array(self, values, more=()):
+    def array(self, values, name, more=()):
         import xarray
 
-        return xarray.DataArray(values, dims=(*self.dims, *more), coords=self.coords)
+        return xarray.DataArray(values, dims=(*self.dims, *more), coords=self.coords).rename(name)
 
     def dataset(self, found, axes):
         import xarray
 
-        return xarray.Dataset({name: self.array(values, axes.get(name, ())) for name, values in found.items()})
+        return xarray.Dataset({name: self.array(values, name, axes.get(name, ())) for name, values in found.items()})
 
 
-def _labelled(values, labels):
-    return labels.array(values) if labels else values
+def _labelled(values, labels, name):
+    return labels.array(values, name) if labels else values
 
 
 def _rows(values, name, columns):

@@ -23,11 +23,12 @@ from ._workers import SceneSpec, twice
 from .dask import suns_of, weighted, weights_of
 from .sky import sky_patches
 
-__all__ = ["sky_view", "sun_hours", "visible"]
+__all__ = ["horizon", "sky_view", "sun_hours", "visible"]
 
 EARTH_RADIUS = 6_371_000.0  #: metres
 _SIDE_OF_BLOCK = 256  # in cells
 _SIDE_OF_CURVED_BLOCK = 64  # which has one vertical
+_FINE = 2.0**13  # heights are whole numbers of so small parts of a cell, so that tiles round them alike
 _LIFT = 2.0**-10  # of a cell: where sensors on the ground begin, so that rays uphill meet the slope ahead
 
 
@@ -35,9 +36,12 @@ def sky_view(
     heights: Any,
     spacing: float | tuple[float, float] | None = None,
     *,
-    patches: Literal["tregenza145", "reinhart577", "reinhart2305"] = "tregenza145",
+    patches: Literal["tregenza145", "reinhart577", "reinhart2305"] | None = None,
     weights: ArrayLike | None = None,
     measure: Literal["light", "solid_angle"] = "light",
+    azimuths: int = 24,
+    steps: int = 7,
+    lowest: float = 3.0,
     **options: Any,
 ) -> Any:
     """Compute how much of the sky each cell sees, (rows, columns) float32; NaN where it has no height.
@@ -49,10 +53,13 @@ def sky_view(
     spacing : float or (float, float), optional
         From column to column, eastward, and from row to row, northward, negative where rows go south; one number: of
         square cells whose rows go south. By default the coordinates of the DataArray tell.
-    patches : {"tregenza145", "reinhart577", "reinhart2305"}
-        Of the sky, a ray each.
+    patches : {"tregenza145", "reinhart577", "reinhart2305"}, optional
+        Of the sky, a ray each. By default the sky is what lies above the `horizon`, which is more exact after as many
+        rays.
     weights : array_like, (patches,), optional
         The brightness of each patch; by default a uniform sky's.
+    azimuths, steps, lowest
+        As of `horizon`, without patches.
     measure : {"light", "solid_angle"}
         The part of the light on a horizontal plane, or of the hemisphere itself.
     relief : float, optional
@@ -67,13 +74,45 @@ def sky_view(
     accel, device : optional
         As of `twinray.Scene`.
     """
-    directions, angles = sky_patches(patches)
     if measure not in ("light", "solid_angle"):
         raise ValueError(f"measure: {measure!r} is not one of light, solid_angle")
+    if patches is None:
+        if weights is not None:
+            raise ValueError("weights: they are of patches, which are not chosen")
+        search = _Search(azimuths, steps, lowest, measure)
+        return _over_tiles(heights, spacing, search.lowest_rays(), search, options)
+    directions, angles = sky_patches(patches)
     light = np.asarray(angles) * (1 if weights is None else weights_of(weights, "weights", len(angles)))
     if measure == "light":
         light = light * np.asarray(directions)[:, 2]
-    return _over_tiles(heights, spacing, np.asarray(directions), _Sum(light / light.sum()), options)
+    return _over_tiles(heights, spacing, np.asarray(directions), _Sum(light / light.sum(), "sky_view", "1"), options)
+
+
+def horizon(
+    heights: Any,
+    spacing: float | tuple[float, float] | None = None,
+    *,
+    azimuths: int = 24,
+    steps: int = 7,
+    lowest: float = 3.0,
+    **options: Any,
+) -> Any:
+    """Find how high the horizon is, in degrees, (rows, columns, azimuths) float32; NaN where a cell has no height.
+
+    Each step is a ray an azimuth. Above the horizon the sky is free where nothing overhangs, as in a raster without
+    holes. Parameters that are not listed are those of `sky_view`.
+
+    Parameters
+    ----------
+    azimuths : int
+        From half a step east of north on, clockwise.
+    steps : int
+        From 1 to 24. Each halves the angle from 0 to 90 degrees in which the horizon lies.
+    lowest : float
+        In degrees, of the lowest ray, which says how wide halos are. A horizon below is given as half of it.
+    """
+    search = _Search(azimuths, steps, lowest, None)
+    return _over_tiles(heights, spacing, search.lowest_rays(), search, options)
 
 
 def sun_hours(
@@ -95,7 +134,7 @@ def sun_hours(
         How long each stays there.
     """
     vectors, stay = suns_of(suns, hours)
-    return _over_tiles(heights, spacing, vectors.astype(np.float64), _Sum(stay), options)
+    return _over_tiles(heights, spacing, vectors.astype(np.float64), _Sum(stay, "sun_hours", "hours"), options)
 
 
 def visible(
@@ -116,23 +155,62 @@ class _Sum:
 
     dtype, fill, more = np.dtype(np.float32), np.nan, ()
 
-    def __init__(self, weights):
-        self.weights = weights
+    def __init__(self, weights, name, units):
+        self.weights, self.name, self.units = weights, name, units
 
-    def __call__(self, seen):
-        return weighted(seen, self.weights)
+    def __call__(self, scene, points, across, unit):
+        return weighted(_seen(scene, points, across), self.weights)
 
 
 class _Each:
     """The directions that a cell sees."""
 
-    dtype, fill = np.dtype(np.uint8), 0
+    dtype, fill, name, units = np.dtype(np.uint8), 0, "visible", "1"
 
     def __init__(self, count):
-        self.more = (count,)
+        self.more, self.axis = (count,), "vector"
 
-    def __call__(self, seen):
-        return seen
+    def __call__(self, scene, points, across, unit):
+        return _seen(scene, points, across)
+
+
+class _Search:
+    """The horizon of a cell, or how much of the sky is above it."""
+
+    dtype, fill = np.dtype(np.float32), np.nan
+
+    def __init__(self, azimuths, steps, lowest, measure):
+        for name, value, most in (("azimuths", azimuths, 1 << 16), ("steps", steps, 24)):
+            if not hasattr(value, "__index__") or not 1 <= value <= most:
+                raise ValueError(f"{name}: {value!r}; wanted is an integer from 1 to {most}")
+        if not 0 < number_of(lowest, "lowest") < 90:
+            raise ValueError(f"lowest: {lowest}; wanted are degrees above 0 and below 90")
+        self.steps, self.lowest, self.measure = steps, math.radians(lowest), measure
+        self.around = (np.arange(azimuths) + 0.5) * (2 * math.pi / azimuths)
+        self.more, self.axis = ((azimuths,) if measure is None else ()), "azimuth"
+        self.name, self.units = ("horizon", "degrees") if measure is None else ("sky_view", "1")
+        self.weights = np.array([azimuths, steps, lowest, ("light", "solid_angle", None).index(measure)])
+
+    def lowest_rays(self):
+        slope = np.full(len(self.around), math.tan(self.lowest))
+        return np.stack([np.sin(self.around), np.cos(self.around), slope], axis=-1)
+
+    def __call__(self, scene, points, across, unit):
+        low, high = np.zeros((2, len(points), len(across)))
+        high += math.pi / 2
+        rays = np.empty((*low.shape, 6), np.float32)
+        rays[..., :3] = scene._frame.moved(points, scene.origin)[:, None, :]
+        rays[..., 3:5] = across[:, :2]
+        for _ in range(self.steps):
+            middle = np.maximum((low + high) / 2, self.lowest)
+            rays[..., 5] = across[:, 2] + (np.tan(middle) - math.tan(self.lowest)) / unit
+            is_hidden = scene._core.occlusions(rays.reshape(-1, 6), [0.0, 0.0, 0.0], 0.0, np.inf).reshape(low.shape)
+            low, high = np.where(is_hidden, middle, low), np.where(is_hidden, high, middle)
+        middle = (low + high) / 2
+        if self.measure is None:
+            return np.degrees(middle)
+        part = np.cos(middle) ** 2 if self.measure == "light" else 1 - np.sin(middle)
+        return weighted(part, np.full(len(across), 1 / len(across)))
 
 
 class _Grid:
@@ -217,7 +295,7 @@ class _Plan:
 
     def __init__(self, spec, grid, directions, answer, lifted, curvature):
         self.spec, self.grid, self.directions, self.answer = spec, grid, directions, answer
-        self.lift = lifted / grid.unit if lifted > 0 else _LIFT
+        self.lift = np.round(lifted / grid.unit * _FINE) / _FINE + _LIFT
         self.curvature = curvature
 
     def directions_at(self, point):
@@ -259,8 +337,9 @@ def _answered(heights, plan, inside):
         for column in range(0, shape[1], side):
             block = (slice(row, row + side), slice(column, column + side))
             if is_asked[block].any():
+                asked = points[block][is_asked[block]]
                 across = plan.directions_at(points[block].reshape(-1, 3).mean(axis=0))
-                result[block][is_asked[block]] = plan.answer(_seen(scene, points[block][is_asked[block]], across))
+                result[block][is_asked[block]] = plan.answer(scene, asked, across, plan.grid.unit)
     return result
 
 
@@ -274,14 +353,14 @@ def _vertices(z, plan, inside):
     """(rows, columns, 3) float64: column, row and height in cells, from the middle of the tile; NaN at 0."""
     middle = [(part.start + part.stop) // 2 for part in inside]
     row, column = np.arange(z.shape[0]) - middle[0], np.arange(z.shape[1]) - middle[1]
-    z = z - np.round(np.nanmean(z[inside]))
     if plan.curvature:
         away = (row * plan.grid.dy)[:, None] ** 2 + (column * plan.grid.dx)[None, :] ** 2
         z = z - plan.curvature * away / (2 * EARTH_RADIUS)
     vertices = np.empty((*z.shape, 3))
     vertices[..., 0] = column[None, :]
     vertices[..., 1] = row[:, None]
-    vertices[..., 2] = np.nan_to_num(z) / plan.grid.unit
+    fine = np.round(z * (_FINE / plan.grid.unit))
+    vertices[..., 2] = np.nan_to_num(fine - np.round(np.nanmean(fine[inside]))) / _FINE
     return vertices
 
 
@@ -356,6 +435,7 @@ def _spacing_of(heights):
 def _labelled(found, source, answer):
     import xarray
 
-    dims = (*source.dims, *(("vector",) if answer.more else ()))
+    dims = (*source.dims, *((answer.axis,) if answer.more else ()))
     coords = {name: value for name, value in source.coords.items() if value.dtype.kind != "O"}
-    return xarray.DataArray(found, dims=dims, coords=coords)
+    labelled = xarray.DataArray(found, dims=dims, coords=coords, attrs={"units": answer.units})
+    return labelled.rename(answer.name)
