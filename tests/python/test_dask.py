@@ -2,10 +2,14 @@
 """twinray.dask and twinray.terrain: the same bits for any chunks, workers and restarts."""
 
 import os
+import re
 import signal
+import subprocess
+import sys
 import threading
 import time
 import warnings
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -326,3 +330,43 @@ def test_a_killed_worker_changes_no_bit():
         assert set(client.run(os.getpid).values()) != set(pids.values())
         over_workers = client.compute(terrain.sky_view(heights, tile=16)).result(timeout=120)
     assert same(over_workers.values, terrain.sky_view(heights, tile=64).compute().values)
+
+
+# Pages
+
+
+def blocks_of(page, mark):
+    """The blocks of Python of a page whose fence says so."""
+    text = (Path(__file__).resolve().parents[2] / "docs" / page).read_text(encoding="utf-8")
+    return re.findall(rf"```python [^\n]*{mark}[^\n]*\n(.*?)```", text, re.DOTALL)
+
+
+def run_in(folder, block):
+    path = Path(twinray.__file__).parents[1]
+    environment = os.environ | {"PYTHONPATH": str(path), "MPLBACKEND": "Agg", "PYTHONWARNINGS": "ignore"}
+    file = folder / "block.py"
+    file.write_text(block)
+    done = subprocess.run([sys.executable, file], cwd=folder, env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+def test_the_example_of_ray(tmp_path):
+    pytest.importorskip("ray")
+    (block,) = blocks_of("python.md", "needs Ray")
+    assert len(block.strip().splitlines()) <= 24
+    scene = twinray.Scene()
+    scene.add_triangles([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+    rays = np.random.default_rng(1).uniform(-1, 1, (100_000, 6))
+    assert run_in(tmp_path, block).strip().endswith(str(scene.test_occlusions(rays).mean()))
+
+
+def test_the_page_of_sun_hours(tmp_path):
+    pytest.importorskip("rioxarray")
+    needed("matplotlib")
+    blocks = blocks_of("how-to/sun_hours_of_a_raster.md", "dask")
+    assert len(blocks) == 2
+    out = [run_in(tmp_path, block) for block in blocks]
+    low, high = map(float, re.findall(r"[\d.]+", out[1]))
+    assert 0 < low < high <= 16
+    assert (tmp_path / "hours.tif").exists() and (tmp_path / "hours.png").exists()
