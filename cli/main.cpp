@@ -10,6 +10,7 @@
 #include "cli/command/suggest.h"
 #include "cli/command/values.h"
 #include "cli/commands.h"
+#include "engine/core/platform.h"
 #include "twinray_version.h"
 #include <twinray/context.h>
 
@@ -90,7 +91,7 @@ std::vector<Command> all_commands() {
 }  // namespace twinray::cli
 
 int main(int argc, char** argv) {
-    const int status = twinray::cli::run({argv + 1, argv + argc});
+    const int status = twinray::cli::run(twinray::platform::arguments_of(argc, argv));
     errno = 0;
     if (std::cout.flush()) return status;
     std::cerr << "twinray: the standard output cannot be written: "

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/qualified_devices.h"
 
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
 
 #include "engine/core/cpu_vectors.h"
@@ -63,29 +59,11 @@ std::vector<QualifiedDevice> devices_to_qualify() {
     return devices_to_qualify(list_devices(), twinray::has_512_bit_vectors(), swiftshader_here());
 }
 
-int run_twinray(const std::vector<std::string>& arguments, const std::map<std::string, std::string>& environment) {
-    const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
-    std::vector<std::string> words = {self};
-    words.insert(words.end(), arguments.begin(), arguments.end());
-    std::vector<std::string> variables;
-    for (char** variable = environ; *variable; ++variable) {
-        const std::string name(*variable, std::string_view(*variable).find('='));
-        if (!environment.contains(name)) variables.emplace_back(*variable);
-    }
-    for (const auto& [name, value] : environment) variables.push_back(name + '=' + value);
-    const auto pointers = [](std::vector<std::string>& strings) {
-        std::vector<char*> result;
-        for (std::string& string : strings) result.push_back(string.data());
-        result.push_back(nullptr);
-        return result;
-    };
-    pid_t child = 0;
-    if (const int error =
-            posix_spawn(&child, self.c_str(), nullptr, nullptr, pointers(words).data(), pointers(variables).data()))
-        fail("'", self, "' cannot be started: error ", error);
-    int status = 0;
-    if (waitpid(child, &status, 0) != child) fail("'", self, "' cannot be waited for");
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+platform::ProgramEnd run_twinray(const std::vector<std::string>& arguments,
+                                 const std::map<std::string, std::string>& environment) {
+    const auto end = platform::run_program({{}, arguments, environment});
+    if (!end) fail("'", platform::this_program().string(), "' cannot be started");
+    return *end;
 }
 
 }  // namespace twinray::cli

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <twinray/context.h>
+#include "engine/core/platform.h"
 
 namespace twinray::cli {
 
@@ -24,8 +25,8 @@ std::vector<QualifiedDevice> devices_to_qualify(std::span<const DeviceProperties
                                                 const std::filesystem::path& swiftshader);
 std::vector<QualifiedDevice> devices_to_qualify();  // of this machine
 
-// Runs this program with these arguments and changes of its environment. Returns its exit status, 128 and more where a
-// signal ended it.
-int run_twinray(const std::vector<std::string>& arguments, const std::map<std::string, std::string>& environment);
+// Runs this program with these arguments and changes of its environment.
+platform::ProgramEnd run_twinray(const std::vector<std::string>& arguments,
+                                 const std::map<std::string, std::string>& environment);
 
 }  // namespace twinray::cli

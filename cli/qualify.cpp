@@ -69,8 +69,9 @@ std::vector<Record> records_of_all(const QualifyOptions& options) {
         if (options.budget) arguments.insert(arguments.end(), {"--budget", std::to_string(*options.budget)});
         if (options.common.quiet) arguments.push_back("--quiet");
         if (options.common.validation) arguments.push_back("--validation");
-        const int status = run_twinray(arguments, device.environment);
-        if (status > 1) fail("qualify: device '", device.name, "' ended with status ", status);
+        const platform::ProgramEnd end = run_twinray(arguments, device.environment);
+        if (!end.fault.empty()) fail("qualify: device '", device.name, "': its process was ended: ", end.fault);
+        if (end.status > 1) fail("qualify: device '", device.name, "' ended with status ", end.status);
         for (Record& record : read_json_lines(folder / "report.jsonl").records) records.push_back(std::move(record));
     }
     return records;

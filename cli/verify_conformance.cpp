@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/verify_conformance.h"
 
-#include <cstring>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -67,12 +66,13 @@ void run_conformance(const CommonOptions& options, const std::vector<std::string
         const TemporaryFolder folder;
         const std::string file = (folder.path() / "records.json").string();
         std::ofstream{file};  // there, also where the process writes none
-        const int status = run_twinray(arguments_of(options, left, is_full, file), {{here_variable, "1"}});
+        const platform::ProgramEnd end =
+            run_twinray(arguments_of(options, left, is_full, file), {{here_variable, "1"}});
         const std::vector<Record> records = read_json_lines(file).records;
         for (const Record& record : records) take(record);
-        if (status == 0) return;
-        if (status < 128) fail("the conformance cases could not be run; see above");
-        const std::string how = text("the driver ended the process: ", strsignal(status - 128));
+        if (end.fault.empty() && end.status == 0) return;
+        if (end.fault.empty()) fail("the conformance cases could not be run; see above");
+        const std::string how = "the driver ended the process: " + end.fault;
         for (const conformance::Case& row : left) {
             const std::vector<Record> ended =
                 conformance::records_of_ended(row, records, {.is_full = is_full, .seed = options.seed}, how);

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Checks who includes whom, the size of the public interface in include/, and how much of the project is behind a header.
+"""Checks who includes whom, that code of one system is in its place, the size of the public interface in include/, and
+how much of the project is behind a header.
 Usage: check_layers.py [ROOT]; prints file:line of each violation and exits with 1."""
 import collections
 import os
@@ -48,6 +49,16 @@ SEES = {  # besides itself, include and, unless AS_HOSTS, shaders/shared
     # Each other folder of shaders, but shaders/shared, which sees nothing else.
     "shaders": ["shaders/engine", "shaders/scene"],
 }
+# Code of one system, which asks for nothing of twinray's: programs that see include alone may have it, too.
+PLATFORM, PLATFORM_READERS = "engine/core/platform.h", ("samples", "samples/support")
+# Everything else is compiled for every system. Python's package is for Linux; the other files are left out elsewhere
+# by CMake, or are programs of their own.
+OF_SYSTEMS = ("engine/core/platform/", "bindings/", "tests/core/processes_test.cpp", "tests/fuzz/contract.cpp",
+              "tests/fuzz/replay.cpp", "tests/python/", "tests/report/reproducer/write_test.cpp",
+              "tests/support/broken_driver/", "tests/support/leaks_of_others.cpp", "tests/swtlas/full_disk_test.cpp")
+SYSTEM = re.compile(r"\b_WIN32\b|\b_MSC_VER\b|\b__MINGW32__\b|\b__linux__\b|\b__unix__\b|\b__APPLE__\b|"
+                    r"#\s*include\s*<(unistd|dlfcn|fcntl|spawn|netdb|poll|termios|pthread|windows|winsock2|io|process|direct|"
+                    r"sys/\w+)\.h>")
 MOST_HEADERS = {  # of this project behind a header, directly or not; lower them whenever they fall
     "include/twinray/tlas.h": 12, "engine/accel/accel_backend.h": 38,
 }
@@ -87,6 +98,8 @@ def violation(root, source, bracket, target):
     origin, seen = layer(source), layer(file)
     kernels_of_others = GLSL.search(source) and not origin.startswith("shaders/") and seen.startswith("shaders/")
     sees = [] if origin == "shaders/shared" else SEES[origin if origin in SEES else "shaders"]
+    if file == PLATFORM and origin in PLATFORM_READERS:
+        return None
     shared = [] if origin in AS_HOSTS and not source.startswith(INSIDE) else ["shaders/shared"]
     if seen in [origin, "include"] + shared + sees or kernels_of_others:
         return None
@@ -96,6 +109,11 @@ def violation(root, source, bracket, target):
 def includes_of(root, source):
     with open(os.path.join(root, source), encoding="utf-8") as lines:
         return [(number, m[1], m[2]) for number, line in enumerate(lines, 1) if (m := INCLUDE.match(line))]
+
+
+def lines_of_systems(root, source):
+    with open(os.path.join(root, source), encoding="utf-8") as lines:
+        return [number for number, line in enumerate(lines, 1) if SYSTEM.search(line)]
 
 
 def headers_behind(root, header):
@@ -130,6 +148,9 @@ for top in sorted({name.split("/")[0] for name in SEES}):
             reasons = [(n, target, violation(root, source, bracket, target))
                        for n, bracket, target in includes_of(root, source)]
             found += [f'{source}:{n}: "{target}": {reason}' for n, target, reason in reasons if reason]
+            if not source.startswith(OF_SYSTEMS):
+                found += [f"{source}:{n}: code of one system belongs into engine/core/platform/"
+                          for n in lines_of_systems(root, source)]
             for file in filter(None, (resolved(root, source, target) for _, _, target in includes_of(root, source))):
                 readers[file].add(source)
                 seen_by_room.add((layer(source), layer(file)))

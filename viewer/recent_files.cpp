@@ -2,9 +2,10 @@
 #include "viewer/recent_files.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <fstream>
 #include <string>
+
+#include "engine/core/platform.h"
 
 namespace twinray::viewer {
 namespace {
@@ -14,11 +15,8 @@ constexpr std::size_t most_files = 8;
 }  // namespace
 
 std::filesystem::path recent_list() {
-    const char* state = std::getenv("XDG_STATE_HOME");
-    const char* home = std::getenv("HOME");
-    if (state && *state) return std::filesystem::path(state) / "twinray" / "recent";
-    if (home && *home) return std::filesystem::path(home) / ".local" / "state" / "twinray" / "recent";
-    return {};
+    const std::filesystem::path folder = platform::state_folder();
+    return folder.empty() ? folder : folder / "recent";
 }
 
 std::vector<std::filesystem::path> recent_files(const std::filesystem::path& list) {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "cli/command/help_text.h"
 
-#include <sys/ioctl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <sstream>
+
+#include "engine/core/platform.h"
 
 namespace twinray::cli {
 namespace {
@@ -86,9 +85,8 @@ std::string list_text(std::span<const Command> commands, std::size_t width) {
 }
 
 std::size_t terminal_width() {
-    winsize size{};
-    const bool is_terminal = isatty(STDOUT_FILENO) && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
-    return is_terminal ? std::clamp<std::size_t>(size.ws_col, least_width, most_width) : 80;
+    const std::size_t columns = platform::terminal_width();
+    return columns ? std::clamp(columns, least_width, most_width) : 80;
 }
 
 }  // namespace twinray::cli

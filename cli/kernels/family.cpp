@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "cli/kernels/family.h"
 
-#include <dlfcn.h>
-#include <fcntl.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
-#include <optional>
+#include <map>
 
 #include "engine/core/context.h"
 #include "engine/core/error.h"
+#include "engine/core/platform.h"
 
 namespace twinray::kernels {
 namespace {
@@ -49,8 +45,8 @@ std::string find_manifest(const std::string& beginning) {
 }
 
 bool can_be_loaded(const char* library) {
-    void* handle = dlopen(library, RTLD_LAZY | RTLD_LOCAL);
-    if (handle) dlclose(handle);
+    void* const handle = platform::open_library(library);
+    if (handle) platform::close_library(handle);
     return handle != nullptr;
 }
 
@@ -58,28 +54,12 @@ std::string in_front(const char* first, const char* others) {
     return others && *others ? text(first, ':', others) : first;
 }
 
-void set_environment(const Family& family, const std::string& manifest) {
-    // The second name is for loaders before 1.3.207.
-    for (const char* name : {"VK_DRIVER_FILES", "VK_ICD_FILENAMES"}) setenv(name, manifest.c_str(), 1);
-    setenv("LD_PRELOAD", in_front(family.shim, std::getenv("LD_PRELOAD")).c_str(), 1);
-    setenv(family.variable, family.value, 1);
-}
-
-[[noreturn]] void become_again(const std::vector<std::string>& arguments) {
-    std::string program = "twinray";
-    std::vector<std::string> copies = arguments;
-    std::vector<char*> words{program.data()};
-    for (std::string& copy : copies) words.push_back(copy.data());
-    words.push_back(nullptr);
-    execv("/proc/self/exe", words.data());
-    _exit(127);
-}
-
-// Nothing where a signal ended it.
-std::optional<int> exit_status_of(pid_t child) {
-    int status = 0;
-    if (child < 0 || waitpid(child, &status, 0) != child || !WIFEXITED(status)) return std::nullopt;
-    return WEXITSTATUS(status);
+// The second name of the driver's manifest is for loaders before 1.3.207.
+std::map<std::string, std::string> environment_of(const Family& family, const std::string& manifest) {
+    return {{"VK_DRIVER_FILES", manifest},
+            {"VK_ICD_FILENAMES", manifest},
+            {"LD_PRELOAD", in_front(family.shim, std::getenv("LD_PRELOAD"))},
+            {family.variable, family.value}};
 }
 
 int index_of_device(const Family& family) {
@@ -91,16 +71,8 @@ int index_of_device(const Family& family) {
 
 // A shim ends its process if it does not know the GPU, so a child process asks.
 bool has_device(const Family& family) {
-    const pid_t child = fork();
-    if (child == 0) {
-        dup2(open("/dev/null", O_WRONLY), STDERR_FILENO);
-        try {
-            _exit(index_of_device(family) < 0);
-        } catch (const Error&) {  // the driver knows no such GPU
-            _exit(1);
-        }
-    }
-    return exit_status_of(child) == 0;
+    const auto end = platform::run_program({{}, {"devices"}, {}, true});
+    return end && end->fault.empty() && end->status == 0 && index_of_device(family) >= 0;
 }
 
 }  // namespace
@@ -131,16 +103,11 @@ int run_again(const Family& family, const std::vector<std::string>& arguments) {
         fail("family '", family.name, "' is not available: ", family.shim,
              " is not installed (Debian: apt-get install mesa-drm-shim)");
     std::cout.flush();
-    const pid_t child = fork();
-    if (child == 0) {
-        set_environment(family, manifest);
-        become_again(arguments);
-    }
-    const std::optional<int> status = exit_status_of(child);
-    if (!status)
+    const auto end = platform::run_program({{}, arguments, environment_of(family, manifest)});
+    if (!end || !end->fault.empty())
         fail("family '", family.name, "': a signal ended the process that compiled for it; check that ", family.shim,
              " and the driver ", family.driver, " are of the same version of Mesa");
-    return *status;
+    return end->status;
 }
 
 std::string find_device(const Family& family) {

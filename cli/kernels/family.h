@@ -30,8 +30,8 @@ bool is_in_effect(const Family& family);
 // Error where the driver or the shim is not installed, and where the driver ends the process.
 int run_again(const Family& family, const std::vector<std::string>& arguments);
 
-// The family's device, as ContextDesc::device. Throws Error where shim or driver know no such GPU. Before anything else
-// of Vulkan, since it forks; only where is_in_effect().
+// The family's device, as ContextDesc::device. Throws Error where shim or driver know no such GPU. Only where
+// is_in_effect().
 std::string find_device(const Family& family);
 
 }  // namespace twinray::kernels

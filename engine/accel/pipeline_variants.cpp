@@ -11,7 +11,7 @@ PipelineVariants::PipelineVariants(Create create, uint all, bool in_background)
     : create_(std::move(create)), all_(all), in_background_(in_background) {}
 
 PipelineVariants::~PipelineVariants() {
-    if (background_->process != getpid()) {
+    if (background_->process != platform::process_id()) {
         // Its worker is not there to be waited for.
         static_cast<void>(background_.release());
         return;
@@ -39,7 +39,7 @@ const TraceProgram& PipelineVariants::get(uint features, Query query, Level leve
 }
 
 void PipelineVariants::wait() const {
-    if (background_->process != getpid()) return;
+    if (background_->process != platform::process_id()) return;
     std::unique_lock lock(background_->mutex);
     background_->changed.wait(lock, [&] { return background_->queue.empty(); });
 }

@@ -2,8 +2,6 @@
 // The programs that an accelerator traces with if the scene needs none of the user's: one for each set of features.
 #pragma once
 
-#include <unistd.h>
-
 #include <condition_variable>
 #include <deque>
 #include <functional>
@@ -13,6 +11,7 @@
 #include <thread>
 
 #include "engine/accel/trace_program.h"
+#include "engine/core/platform.h"
 
 namespace twinray {
 
@@ -47,8 +46,8 @@ class PipelineVariants {
     };
     enum class State : std::uint8_t { missing, queued, ready, failed };
     struct Background {
-        pid_t process = getpid();  // the only one that has the worker
-        std::mutex mutex;          // of what follows
+        int process = platform::process_id();  // the only one that has the worker
+        std::mutex mutex;                      // of what follows
         std::condition_variable changed;
         std::map<Job, State> states;
         std::deque<Job> queue;  // the first one is being compiled

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "engine/core/buffer.h"
 
-#include <unistd.h>
-
 #include <utility>
 
 #include "engine/core/error.h"
+#include "engine/core/platform.h"
 #include "engine/core/vulkan.h"
 
 namespace twinray {
@@ -62,7 +61,7 @@ VkDeviceMemory new_memory(const Context::State& state, std::uint32_t type, std::
     info.memoryTypeIndex = type;
     VkDeviceMemory memory = VK_NULL_HANDLE;
     const VkResult result = state.vk().vkAllocateMemory(state.device(), &info, nullptr, &memory);
-    if (result != VK_SUCCESS && fd >= 0) close(fd);
+    if (result != VK_SUCCESS && fd >= 0) platform::close_descriptor(fd);
     vk_check(result, fd < 0 ? "allocate memory to be shared" : "import memory");
     return memory;
 }
@@ -70,7 +69,7 @@ VkDeviceMemory new_memory(const Context::State& state, std::uint32_t type, std::
 // Returns a copy because the driver owns an imported file descriptor, whatever fails then.
 int copy_of(int fd) {
     if (fd < 0) return fd;
-    const int copy = dup(fd);
+    const int copy = platform::copy_descriptor(fd);
     if (copy < 0) fail("file descriptor ", fd, " cannot be copied");
     return copy;
 }
@@ -161,7 +160,7 @@ Buffer Buffer::exportable(Context& context, const BufferDesc& desc) { return {co
 Buffer Buffer::imported(Context& context, const BufferDesc& desc, const ExportedMemory& memory) {
     if (memory.fd < 0) fail("buffer '", desc.name, "' to be shared: file descriptor ", memory.fd);
     Buffer made(context, desc, memory);
-    close(memory.fd);
+    platform::close_descriptor(memory.fd);
     return made;
 }
 

@@ -2,8 +2,6 @@
 // The parts of a Context that the library itself needs: Vulkan's functions, memory, pipelines, submissions.
 #pragma once
 
-#include <unistd.h>
-
 #include <deque>
 #include <mutex>
 
@@ -87,7 +85,7 @@ struct Context::State {
 
     // A device does not outlive a fork: a child process must leave it alone. Its threads are the parent's, and the
     // memory that a driver frees may be the parent's, too. Any thread.
-    bool is_of_this_process() const noexcept { return process_ == getpid(); }
+    bool is_of_this_process() const noexcept;
     // Throws Error unless it is.
     void check_process() const;
     // Throws as check_process, and DeviceLost, with the work in flight and the driver's report, once the device has
@@ -140,7 +138,7 @@ struct Context::State {
     KernelTuning tuning_;
     Log log_;
     KernelWatch watch_;
-    pid_t process_ = getpid();
+    int process_;
     bool owns_device_ = true;
     VkInstance instance_ = VK_NULL_HANDLE;
     VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;

@@ -13,6 +13,7 @@
 #include "engine/core/device_properties.h"
 #include "engine/core/dry_device.h"
 #include "engine/core/error.h"
+#include "engine/core/platform.h"
 #include "engine/core/vulkan.h"
 #include "twinray/glsl/cpp.h"
 
@@ -122,6 +123,7 @@ Context::State::State(const ContextDesc& desc)
       vk_(*table_),
       log_(desc.log),
       watch_(desc.watch_kernels),
+      process_(platform::process_id()),
       most_wait_seconds_(desc.most_wait_seconds) {
     vk_.load_global(desc.get_instance_proc_addr);
     try {
@@ -138,6 +140,7 @@ Context::State::State(const AdoptedDevice& adopted)
     : table_(std::make_unique<VulkanTable>()),
       vk_(*table_),
       log_(adopted.log),
+      process_(platform::process_id()),
       owns_device_(false),
       instance_(adopted.instance),
       physical_device_(adopted.physical_device),

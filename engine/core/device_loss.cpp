@@ -3,6 +3,7 @@
 #include "engine/core/context.h"
 #include "engine/core/device_fault.h"
 #include "engine/core/error.h"
+#include "engine/core/platform.h"
 #include "engine/core/vulkan.h"
 
 namespace twinray {
@@ -24,9 +25,12 @@ void Context::State::check(VkResult result, const char* action) const {
     vk_check(result, action);
 }
 
+bool Context::State::is_of_this_process() const noexcept { return process_ == platform::process_id(); }
+
 void Context::State::check_process() const {
     if (!is_of_this_process())
-        fail("device '", properties_.name, "': process ", process_, " opened it, and a fork made process ", getpid(),
+        fail("device '", properties_.name, "': process ", process_, " opened it, and a fork made process ",
+             platform::process_id(),
              " of that; a device does not outlive a fork. Open one in the new process, or start that by spawn");
 }
 

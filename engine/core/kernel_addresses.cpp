@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "engine/core/kernel_addresses.h"
 
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include <cstring>
 #include <map>
 
 #include "engine/core/context.h"
 #include "engine/core/error.h"
+#include "engine/core/platform.h"
 #include "engine/core/spirv_words.h"
 
 namespace twinray {
@@ -77,12 +75,6 @@ class Declarations {
     std::uint32_t pushed_ = 0;
 };
 
-// Returns whether the host has memory there.
-bool is_mapped(std::uint64_t address) {
-    const auto page = static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
-    return msync(reinterpret_cast<void*>(address / page * page), 1, MS_ASYNC) == 0;
-}
-
 }  // namespace
 
 std::vector<KernelAddress> kernel_addresses(std::span<const std::uint32_t> spirv) {
@@ -103,7 +95,7 @@ std::vector<std::byte> readable_args(Context& context, const std::string& kernel
         std::memcpy(&address, at, sizeof(address));
         if (address == 0) address = absent;
         std::memcpy(at, &address, sizeof(address));
-        if (is_checked && !is_mapped(address))
+        if (is_checked && !platform::is_mapped(address))
             context.state().add_validation_message(
                 text("kernel '", kernel, "': nothing can be read at '", member.name, "', address ", address));
     }

@@ -2,11 +2,11 @@
 #include "engine/core/pipeline_store.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <cstring>
 #include <iomanip>
 
 #include "engine/core/error.h"
+#include "engine/core/platform.h"
 
 namespace twinray {
 namespace {
@@ -88,10 +88,6 @@ void PipelineStore::replace(std::span<const std::byte> pipelines) const {
     remove_oldest(file_.parent_path(), most_files);
 }
 
-fs::path user_pipeline_folder() {
-    if (const char* caches = std::getenv("XDG_CACHE_HOME"); caches && *caches) return fs::path(caches) / "twinray";
-    if (const char* home = std::getenv("HOME"); home && *home) return fs::path(home) / ".cache" / "twinray";
-    return {};
-}
+fs::path user_pipeline_folder() { return platform::cache_folder(); }
 
 }  // namespace twinray

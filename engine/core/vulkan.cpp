@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "engine/core/vulkan.h"
 
-#include <dlfcn.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <mutex>
@@ -10,19 +8,13 @@
 #include <vector>
 
 #include "engine/core/error.h"
+#include "engine/core/platform.h"
 
 #define VOLK_IMPLEMENTATION
 #include <volk.h>
 
 namespace twinray {
 namespace {
-
-PFN_vkGetInstanceProcAddr open_system_loader() {
-    // It stays open for the life of the process: drivers and layers do not survive being unloaded.
-    void* loader = dlopen("libvulkan.so.1", RTLD_NOW | RTLD_LOCAL);
-    if (!loader) fail("no Vulkan loader: libvulkan.so.1 cannot be opened (Debian: apt-get install libvulkan1)");
-    return reinterpret_cast<PFN_vkGetInstanceProcAddr>(dlsym(loader, "vkGetInstanceProcAddr"));
-}
 
 std::vector<VkLayerProperties> installed_layers(const VulkanTable& vk) {
     if (!vk.vkEnumerateInstanceLayerProperties) return {};  // a host's lookup may know its own instance only
@@ -35,6 +27,13 @@ std::vector<VkLayerProperties> installed_layers(const VulkanTable& vk) {
 }
 
 }  // namespace
+
+PFN_vkGetInstanceProcAddr open_system_loader() {
+    const auto [library, hint] = platform::vulkan_loader;
+    void* const loader = platform::open_library(library);
+    if (!loader) fail("no Vulkan loader: ", library, " cannot be opened (", hint, ")");
+    return reinterpret_cast<PFN_vkGetInstanceProcAddr>(platform::symbol_of(loader, "vkGetInstanceProcAddr"));
+}
 
 void VulkanTable::load_global(PFN_vkGetInstanceProcAddr get_instance_proc_addr) {
     vkGetInstanceProcAddr = get_instance_proc_addr ? get_instance_proc_addr : open_system_loader();

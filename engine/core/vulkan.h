@@ -45,6 +45,10 @@ struct VulkanTable : VolkDeviceTable {
     void load_device(VkDevice device);
 };
 
+// Opens the system's Vulkan loader, for the life of the process: drivers and layers do not survive being unloaded.
+// Throws Error if there is none.
+PFN_vkGetInstanceProcAddr open_system_loader();
+
 // Returns false if one of the layers is a Khronos validation layer older than 1.3.243. It forgets the labels of a
 // destroyed command buffer on a thread of its own without its lock, by the handle, which a new command buffer may have
 // by then: the heap is corrupted, seldom (KhronosGroup/Vulkan-ValidationLayers, 5172).

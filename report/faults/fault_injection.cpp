@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "report/faults/fault_injection.h"
 
-#include <dlfcn.h>
-
 #include <cstdlib>
 #include <tuple>
 #include <type_traits>
 
 #include "engine/core/error.h"
+#include "engine/core/vulkan.h"
 
 namespace twinray::faults {
 namespace {
@@ -192,9 +191,7 @@ PFN_vkVoidFunction VKAPI_PTR instance_proc_addr(VkInstance instance, const char*
 FaultInjector::FaultInjector() {
     if (active) std::abort();
     active = this;
-    // Kept open for the life of the process, as the library does.
-    if (void* loader = dlopen("libvulkan.so.1", RTLD_NOW | RTLD_LOCAL))
-        real_instance_proc_addr = reinterpret_cast<PFN_vkGetInstanceProcAddr>(dlsym(loader, "vkGetInstanceProcAddr"));
+    real_instance_proc_addr = open_system_loader();
 }
 
 FaultInjector::~FaultInjector() { active = nullptr; }

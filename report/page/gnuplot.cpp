@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "report/page/gnuplot.h"
 
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,6 +9,7 @@
 #include <sstream>
 
 #include "engine/core/error.h"
+#include "engine/core/platform.h"
 #include "report/page/wording.h"
 
 namespace twinray::report {
@@ -180,18 +177,6 @@ void write_data(std::ostream& out, const Figure& figure) {
     out << '\n';
 }
 
-constexpr int no_program = 127;
-
-int status_of_gnuplot(const std::filesystem::path& script) {
-    std::string name = "gnuplot", argument = script.string();
-    char* const arguments[] = {name.data(), argument.data(), nullptr};
-    pid_t child = 0;
-    if (posix_spawnp(&child, name.c_str(), nullptr, nullptr, arguments, environ) != 0) return no_program;
-    int status = 0;
-    if (waitpid(child, &status, 0) != child) return no_program;
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
-}
-
 // From <svg on, without fixed sizes, in the page's colour.
 std::string element_of(std::string svg, const std::string& name) {
     svg.erase(0, svg.find("<svg"));
@@ -256,13 +241,13 @@ std::string draw(const Figure& figure, const std::filesystem::path& folder) {
     std::filesystem::create_directories(folder);
     const std::filesystem::path script = folder / (figure.id + ".gp"), svg = folder / (figure.id + ".svg");
     std::ofstream(script) << gnuplot_script(figure, svg);
-    const int status = status_of_gnuplot(script);
-    if (status == no_program) return "";
+    const auto end = platform::run_program({"gnuplot", {script.string()}});
+    if (!end) return "";
     std::ifstream in(svg);
     std::ostringstream drawn;
     drawn << in.rdbuf();
-    if (status != 0 || drawn.str().find("</svg>") == std::string::npos)
-        fail("gnuplot cannot draw '", script.string(), "' (status ", status, ")");
+    if (end->status != 0 || drawn.str().find("</svg>") == std::string::npos)
+        fail("gnuplot cannot draw '", script.string(), "' (status ", end->status, ")");
     return element_of(drawn.str(), figure.title);
 }
 

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
 // The sample path tracer: a picture of one scene or a sequence of them, by either accelerator or by both against each
 // other; or a picture of films that were rendered apart, or the window of `twinray view`.
-#include <unistd.h>
-
 #include <cmath>
 #include <cstdio>
 #include <sstream>
 
 #include <twinray/context.h>
 #include <twinray/scene.h>
+#include "engine/core/platform.h"
 #include "renderer/camera.h"
 #include "renderer/configuration.h"
 #include "renderer/film_file.h"
@@ -185,7 +184,7 @@ void add(std::vector<std::string>& words, const std::string& option, const std::
 }
 
 std::vector<std::string> command_line(const Options& options) {
-    std::vector<std::string> words = {"twinray", "view", options.scene.string(), "--layer", "path"};
+    std::vector<std::string> words = {"view", options.scene.string(), "--layer", "path"};
     if (options.accel != "auto") words.insert(words.end(), {"--show", options.accel});
     if (!options.device.empty()) words.insert(words.end(), {"--device", options.device});
     if (!options.look_from.empty()) {
@@ -205,15 +204,10 @@ std::vector<std::string> command_line(const Options& options) {
 [[noreturn]] void view(const Options& options) {
     if (options.scene.string().starts_with("builtin:")) fail("--view: '", options.scene.string(), "' is not a file");
     if ((options.width == 0) != (options.height == 0)) fail("--view requires both --width and --height, or neither");
-    std::vector<std::string> words = command_line(options);
-    std::vector<char*> arguments;
-    for (std::string& word : words) arguments.push_back(word.data());
-    arguments.push_back(nullptr);
-    std::error_code none;
-    const std::filesystem::path beside =
-        std::filesystem::read_symlink("/proc/self/exe", none).parent_path() / "twinray";
-    execv(beside.c_str(), arguments.data());
-    execvp("twinray", arguments.data());
+    const std::filesystem::path self = platform::this_program();
+    const std::filesystem::path beside = self.parent_path() / ("twinray" + self.extension().string());
+    for (const std::filesystem::path& command : {beside, std::filesystem::path("twinray")})
+        platform::become_program({command, command_line(options)});
     fail("--view: the command twinray is neither in '", beside.parent_path().string(), "' nor in PATH");
 }
 

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "samples/path_tracer/rendering.h"
 
-#include <netdb.h>
-#include <sys/socket.h>
-#include <sys/time.h>
-#include <unistd.h>
-
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -16,6 +11,7 @@
 #include <memory>
 #include <utility>
 
+#include "engine/core/platform.h"
 #include "renderer/configuration.h"
 #include "renderer/film_file.h"
 #include "renderer/rounds.h"
@@ -94,35 +90,17 @@ class Interrupts {
 };
 
 constexpr char default_port[] = "14158";
+constexpr int patience_seconds = 2;  // a viewer that does not read for so long counts as gone
 constexpr char update_image = 3, create_image = 4;
 constexpr std::array channels = {"R", "G", "B"};
 
-struct Address {
-    std::string host, port;
-};
-
-Address address_of(const std::string& server) {
+// server: HOST:PORT, or only HOST for port 14158. Throws Error if nobody listens there.
+platform::Connection connect_to(const std::string& server) {
     const std::size_t colon = server.rfind(':');
-    if (colon == std::string::npos) return {server, default_port};
-    return {server.substr(0, colon), server.substr(colon + 1)};
-}
-
-// Returns -1 if nobody listens there.
-int connected_socket(const Address& address) {
-    addrinfo hints{}, *found = nullptr;
-    hints.ai_socktype = SOCK_STREAM;
-    if (getaddrinfo(address.host.c_str(), address.port.c_str(), &hints, &found) != 0) return -1;
-    const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> all(found, &freeaddrinfo);
-    for (const addrinfo* one = all.get(); one; one = one->ai_next) {
-        const int result = socket(one->ai_family, one->ai_socktype, one->ai_protocol);
-        if (result < 0) continue;
-        // A viewer that does not read for this long counts as gone.
-        const timeval patience{.tv_sec = 2, .tv_usec = 0};
-        setsockopt(result, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
-        if (connect(result, one->ai_addr, one->ai_addrlen) == 0) return result;
-        close(result);
-    }
-    return -1;
+    const std::string port = colon == std::string::npos ? default_port : server.substr(colon + 1);
+    auto connection = platform::Connection::open(server.substr(0, colon), port, patience_seconds);
+    if (!connection) fail("--display-server ", server, ": nobody listens there; it must be HOST or HOST:PORT");
+    return std::move(*connection);
 }
 
 // Values are little-endian, like the protocol and the machines that this runs on.
@@ -144,10 +122,9 @@ std::string header(char kind, const std::string& name) {
 // for each channel, UpdateImage (github.com/Tom94/tev), as pbrt-v4 sends them.
 class Display {
   public:
-    // server: HOST:PORT, or only HOST for port 14158. Throws Error if nobody listens there.
+    // As connect_to.
     Display(const std::string& server, const std::string& name, uint width, uint height)
-        : name_(name), socket_(connected_socket(address_of(server))) {
-        if (socket_ < 0) fail("--display-server ", server, ": no server listens there; it must be HOST or HOST:PORT");
+        : name_(name), connection_(connect_to(server)) {
         std::string payload = header(create_image, name_);
         put(payload, width);
         put(payload, height);
@@ -155,11 +132,6 @@ class Display {
         for (const char* channel : channels) put_text(payload, channel);
         send_packet(payload);
     }
-    ~Display() {
-        if (socket_ >= 0) close(socket_);
-    }
-    Display(const Display&) = delete;
-    Display& operator=(const Display&) = delete;
 
     // Returns false once the viewer is gone.
     bool show(const HdrImage& picture) {
@@ -178,16 +150,11 @@ class Display {
         std::string packet;
         put(packet, static_cast<uint>(payload.size() + sizeof(uint)));
         packet += payload;
-        for (std::size_t sent = 0; sent < packet.size();) {
-            const ssize_t count = send(socket_, packet.data() + sent, packet.size() - sent, MSG_NOSIGNAL);
-            if (count <= 0) return false;
-            sent += static_cast<std::size_t>(count);
-        }
-        return true;
+        return connection_.send(packet);
     }
 
     std::string name_;
-    int socket_ = -1;
+    platform::Connection connection_;
 };
 
 std::filesystem::path film_file(const std::filesystem::path& output) {

@@ -3,11 +3,13 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
 
 #include <twinray/tlas.h>
+#include "engine/core/platform.h"
 #include "samples/support/text.h"
 
 namespace twinray::samples {
@@ -27,7 +29,9 @@ void add_device_options(CLI::App& app, DeviceOptions& options, const std::string
 
 std::optional<int> parse(CLI::App& app, int argc, char** argv, const std::string& program) {
     try {
-        app.parse(argc, argv);
+        std::vector<std::string> words = platform::arguments_of(argc, argv);
+        std::ranges::reverse(words);  // as CLI11 takes them
+        app.parse(std::move(words));
     } catch (const CLI::Success& help) {
         return app.exit(help);
     } catch (const CLI::ParseError& error) {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "samples/support/progress.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdio>
+
+#include "engine/core/platform.h"
 
 namespace twinray::samples {
 namespace {
@@ -15,7 +15,9 @@ constexpr std::chrono::milliseconds interval{100};
 }  // namespace
 
 Progress::Progress(std::string label, std::uint64_t total, bool quiet)
-    : label_(std::move(label)), total_(std::max<std::uint64_t>(total, 1)), enabled_(!quiet && isatty(STDERR_FILENO)) {}
+    : label_(std::move(label)),
+      total_(std::max<std::uint64_t>(total, 1)),
+      enabled_(!quiet && platform::is_error_terminal()) {}
 
 Progress::~Progress() {
     if (shown_) std::fprintf(stderr, "\r\033[K");

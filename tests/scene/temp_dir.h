@@ -2,9 +2,6 @@
 // A folder that is gone after the test.
 #pragma once
 
-#include <unistd.h>
-
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -13,17 +10,14 @@
 #include <gtest/gtest.h>
 
 #include "engine/core/error.h"
+#include "engine/core/platform.h"
 
 namespace twinray::test {
 
 // A fresh folder that disappears with its test.
 class TempDir {
   public:
-    TempDir() {
-        std::string name = (std::filesystem::temp_directory_path() / "twinray-XXXXXX").string();
-        if (!mkdtemp(name.data())) fail("cannot make a temporary folder like '", name, "'");
-        path_ = name;
-    }
+    TempDir() = default;
     ~TempDir() { std::filesystem::remove_all(path_); }
     TempDir(const TempDir&) = delete;
     TempDir& operator=(const TempDir&) = delete;
@@ -38,7 +32,7 @@ class TempDir {
     }
 
   private:
-    std::filesystem::path path_;
+    std::filesystem::path path_ = platform::make_temporary_folder();
 };
 
 // The text of the Error that `action` throws; a test failure if it throws none.

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "validation/records/recorder.h"
 
-#include <sys/resource.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <chrono>
-#include <ctime>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -15,16 +12,6 @@
 
 namespace twinray {
 namespace {
-
-double seconds_of(const timeval& time) {
-    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-}
-
-double seconds_of(int who) {
-    rusage usage{};
-    getrusage(who, &usage);
-    return seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
-}
 
 using Json = nlohmann::ordered_json;
 using Row = std::vector<std::pair<std::string, std::string>>;  // (column, cell)
@@ -59,31 +46,16 @@ std::vector<std::string> columns_of(const std::vector<Row>& rows) {
 
 }  // namespace
 
-MachineLoad::MachineLoad() : start_(now()) {}
-
-// proc(5): user, nice, system, idle, iowait, irq, softirq, steal, in ticks; what follows is in user already.
-std::optional<MachineLoad::Times> MachineLoad::now() {
-    std::ifstream file("/proc/stat");
-    std::string name;
-    double ticks[8] = {};
-    file >> name;
-    for (double& tick : ticks) file >> tick;
-    if (!file || name != "cpu") return std::nullopt;
-    const double per_second = static_cast<double>(sysconf(_SC_CLK_TCK));
-    Times times{.own = seconds_of(RUSAGE_SELF) + seconds_of(RUSAGE_CHILDREN)};
-    for (const double tick : ticks) times.all += tick / per_second;
-    times.busy = times.all - (ticks[3] + ticks[4]) / per_second;
-    return times;
-}
+MachineLoad::MachineLoad() : start_(platform::processor_seconds()) {}
 
 std::optional<double> MachineLoad::seconds() const {
-    const std::optional<Times> end = now();
+    const auto end = platform::processor_seconds();
     if (!start_ || !end) return std::nullopt;
     return end->all - start_->all;
 }
 
 std::optional<double> MachineLoad::of_others() const {
-    const std::optional<Times> end = now();
+    const auto end = platform::processor_seconds();
     if (!start_ || !end || end->all <= start_->all) return std::nullopt;
     const double others = (end->busy - start_->busy) - (end->own - start_->own);
     return std::clamp(others / (end->all - start_->all), 0.0, 1.0);
@@ -156,11 +128,16 @@ JsonLines read_json_lines(const std::filesystem::path& file) {
 }
 
 std::string utc_now() {
-    const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-    std::tm utc{};
-    if (!gmtime_r(&now, &utc)) fail("the system's clock has no date: ", now);
+    using namespace std::chrono;
+    const auto now = floor<std::chrono::seconds>(system_clock::now());
+    const auto day = floor<days>(now);
+    const year_month_day date(day);
+    const hh_mm_ss time(now - day);
     char text[32];
-    return {text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc)};
+    const int size = std::snprintf(text, sizeof text, "%04d-%02u-%02uT%02d:%02d:%02dZ", int{date.year()},
+                                   unsigned{date.month()}, unsigned{date.day()}, static_cast<int>(time.hours().count()),
+                                   static_cast<int>(time.minutes().count()), static_cast<int>(time.seconds().count()));
+    return {text, static_cast<std::size_t>(size)};
 }
 
 }  // namespace twinray

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/core/platform.h"
 #include "validation/records/record.h"
 
 namespace twinray {
@@ -18,18 +19,13 @@ class MachineLoad {
   public:
     MachineLoad();  // from now on
 
-    // Seconds of all processors together since then; nothing where the system does not tell (/proc/stat).
+    // Seconds of all processors together since then; nothing where the system does not tell.
     std::optional<double> seconds() const;
     // The share of them, 0 to 1, that other programs than this one and its children took.
     std::optional<double> of_others() const;
 
   private:
-    struct Times {
-        double all = 0, busy = 0, own = 0;  // seconds
-    };
-    static std::optional<Times> now();
-
-    std::optional<Times> start_;
+    std::optional<platform::ProcessorSeconds> start_;
 };
 
 // Appends each record to a file of JSON lines at once, so that a run that is cut short leaves what it has measured.

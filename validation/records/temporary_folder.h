@@ -2,23 +2,17 @@
 // A folder for files that nobody keeps.
 #pragma once
 
-#include <cstdlib>
 #include <filesystem>
-#include <string>
 #include <system_error>
 
-#include "engine/core/error.h"
+#include "engine/core/platform.h"
 
 namespace twinray {
 
 // There while this lives. Throws Error where there is no place for one.
 class TemporaryFolder {
   public:
-    TemporaryFolder() {
-        std::string name = (std::filesystem::temp_directory_path() / "twinray-XXXXXX").string();
-        if (!mkdtemp(name.data())) fail(name, ": cannot create temporary files; set TMPDIR to a writable folder");
-        path_ = name;
-    }
+    TemporaryFolder() = default;
     ~TemporaryFolder() {
         std::error_code ignored;
         std::filesystem::remove_all(path_, ignored);
@@ -29,7 +23,7 @@ class TemporaryFolder {
     const std::filesystem::path& path() const { return path_; }
 
   private:
-    std::filesystem::path path_;
+    std::filesystem::path path_ = platform::make_temporary_folder();
 };
 
 }  // namespace twinray

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+// Everything that systems do in different ways. platform/posix.cpp and platform/windows.cpp define it; no other file
+// includes a header of one system or asks which one it is compiled for. All text is UTF-8.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace twinray::platform {
+
+// Libraries. open_library returns null if there is none of that name; symbol_of, if it lacks the symbol.
+void* open_library(const char* name) noexcept;
+void close_library(void* library) noexcept;
+void* symbol_of(void* library, const char* name) noexcept;
+
+struct VulkanLoader {
+    const char* library;
+    const char* hint;  // how to get it
+};
+extern const VulkanLoader vulkan_loader;
+
+// Processes.
+int process_id() noexcept;
+std::filesystem::path this_program();
+
+struct Program {
+    std::filesystem::path file;  // without a folder: the search path has it; empty: this program
+    std::vector<std::string> arguments = {};
+    std::map<std::string, std::string> environment = {};  // changes of this process's
+    bool is_silent = false;                               // what it prints is dropped
+};
+struct ProgramEnd {
+    int status = 0;
+    std::string fault = {};  // the signal or exception by which the system ended it; else empty
+};
+// Waits for its end. Returns nothing if it cannot be started.
+std::optional<ProgramEnd> run_program(const Program& program);
+// This process becomes the program, or ends with its status. Returns only if it cannot be started.
+void become_program(const Program& program);
+
+// The words after the program's name, given what main got. From then on a console shows UTF-8, and lines end by LF in
+// all that the program writes.
+std::vector<std::string> arguments_of(int count, char** words);
+
+// The user's folders for twinray's files; empty if the environment names none. They need not be there.
+std::filesystem::path cache_folder();
+std::filesystem::path state_folder();
+// Makes a new one that other users cannot read. Throws Error naming where there is no place for it.
+std::filesystem::path make_temporary_folder();
+
+// Terminals. The first returns columns; 0: the standard output is none. The second returns whether the error output is
+// one that understands escape sequences.
+std::size_t terminal_width() noexcept;
+bool is_error_terminal() noexcept;
+
+// Returns whether this process has memory there.
+bool is_mapped(std::uint64_t address) noexcept;
+
+// Descriptors of files. copy_descriptor returns -1 if that is none.
+int copy_descriptor(int descriptor) noexcept;
+void close_descriptor(int descriptor) noexcept;
+
+// Seconds since the system started, of all processors together, and those of this process and its ended children.
+struct ProcessorSeconds {
+    double all = 0, busy = 0, own = 0;
+};
+// Returns nothing if the system does not tell.
+std::optional<ProcessorSeconds> processor_seconds();
+
+// A stream of bytes to a server.
+class Connection {
+  public:
+    // Returns nothing if nobody listens there. A server that does not read for `patience_seconds` counts as gone.
+    static std::optional<Connection> open(const std::string& host, const std::string& port, int patience_seconds);
+    Connection(Connection&& other) noexcept : socket_(std::exchange(other.socket_, none)) {}
+    Connection& operator=(Connection&& other) noexcept {
+        std::swap(socket_, other.socket_);
+        return *this;
+    }
+    ~Connection();
+
+    // Returns false once the server is gone.
+    bool send(std::string_view bytes) noexcept;
+
+  private:
+    static constexpr std::intptr_t none = -1;
+    explicit Connection(std::intptr_t socket) : socket_(socket) {}
+
+    std::intptr_t socket_;
+};
+
+}  // namespace twinray::platform
