@@ -8,6 +8,7 @@
 
 #include <twinray/scene.h>
 
+#include "engine/core/platform.h"
 #include "bench/displaced_sphere.h"
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
@@ -103,7 +104,7 @@ BenchScene make_scene(const std::string& name) {
         const Bounds bounds = bounds_of(*scene);
         return {name, std::move(*scene), scaled(bounds, 0.7f)};  // about half of the picture is covered
     }
-    Scene scene = load_scene(name);
+    Scene scene = load_scene(platform::path_of(name));
     const Bounds bounds = bounds_of(scene);
     return {name, std::move(scene), bounds};
 }

@@ -56,8 +56,8 @@ int compile_families(const KernelsOptions& options) {
     int status = 0;
     for (const std::string& family : options.families) try {
             std::vector<std::string> arguments{"kernels", "--family", family, "--filter", options.filter};
-            if (!options.against.empty()) arguments.insert(arguments.end(), {"--against", options.against});
-            if (!options.json.empty()) arguments.insert(arguments.end(), {"--json", options.json});
+            if (!options.against.empty()) arguments.insert(arguments.end(), {"--against", options.against.string()});
+            if (!options.json.empty()) arguments.insert(arguments.end(), {"--json", options.json.string()});
             status = std::max(status, kernels::run_again(kernels::find_family(family), arguments));
         } catch (const Error& error) {
             std::cerr << "twinray: " << error.what() << '\n';

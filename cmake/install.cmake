@@ -25,6 +25,19 @@ if(TARGET twinray_cli)
     endif()
 endif()
 
+# DLLs of the compiler, which our DLLs need beside them.
+if(MINGW AND BUILD_SHARED_LIBS)
+    foreach(name libgcc_s_seh-1.dll libstdc++-6.dll libwinpthread-1.dll)
+        execute_process(
+            COMMAND ${CMAKE_CXX_COMPILER} -print-file-name=${name}
+            OUTPUT_VARIABLE file
+            OUTPUT_STRIP_TRAILING_WHITESPACE
+            COMMAND_ERROR_IS_FATAL ANY
+        )
+        install(FILES ${file} DESTINATION ${CMAKE_INSTALL_BINDIR})
+    endforeach()
+endif()
+
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
 
 # Only the public headers, and the files that their GLSL needs.

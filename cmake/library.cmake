@@ -19,28 +19,39 @@ function(twinray_add_library name)
         target_compile_options(
             ${part}
             PRIVATE
-                "$<$<COMPILE_LANGUAGE:CXX>:-fno-semantic-interposition;-ffunction-sections;-fdata-sections>"
+                "$<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang>:-fno-semantic-interposition;-ffunction-sections;-fdata-sections>"
                 $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-fno-gnu-unique>
         )
         list(APPEND objects $<TARGET_OBJECTS:${part}>)
     endforeach()
 
-    set(merge ${PROJECT_SOURCE_DIR}/cmake/merge_objects.sh)
-    set(library ${PROJECT_BINARY_DIR}/twinray_${name}.o)
-    add_custom_command(
-        OUTPUT ${library}
-        COMMAND ${merge} ${CMAKE_LINKER} ${CMAKE_NM} ${CMAKE_OBJCOPY} ${library} ${objects} ${arg_MERGES}
-        DEPENDS ${merge} ${objects}
-        COMMENT "Merging twinray_${name}.o"
-        COMMAND_EXPAND_LISTS
-        VERBATIM
-    )
-
-    # Merged, what clang's sanitizers count of each part would be counted several times.
-    if(TWINRAY_FUZZ)
-        add_library(twinray_${name} STATIC ${objects})
+    # Merged, what clang's sanitizers count of each part would be counted several times; and Windows' objects, whose inline
+    # functions would become local in groups that a linker drops, could not be linked.
+    if(TWINRAY_FUZZ OR WIN32)
+        add_library(twinray_${name} ${objects})
         target_link_libraries(twinray_${name} PRIVATE ${arg_MERGES})
+        if(WIN32 AND name STREQUAL core)
+            # The variables of our copy of volk have the names of the loader's functions, which a host may link.
+            add_custom_command(
+                TARGET twinray_core
+                PRE_LINK
+                COMMAND
+                    ${CMAKE_OBJCOPY} --wildcard --localize-symbol=vk* --localize-symbol=volk*
+                    $<FILTER:$<TARGET_OBJECTS:twinray_core_part>,INCLUDE,core/vulkan>
+                VERBATIM
+            )
+        endif()
     else()
+        set(merge ${PROJECT_SOURCE_DIR}/cmake/merge_objects.sh)
+        set(library ${PROJECT_BINARY_DIR}/twinray_${name}.o)
+        add_custom_command(
+            OUTPUT ${library}
+            COMMAND ${merge} ${CMAKE_LINKER} ${CMAKE_NM} ${CMAKE_OBJCOPY} ${library} ${objects} ${arg_MERGES}
+            DEPENDS ${merge} ${objects}
+            COMMENT "Merging twinray_${name}.o"
+            COMMAND_EXPAND_LISTS
+            VERBATIM
+        )
         add_library(twinray_${name} ${library})
     endif()
     add_library(twinray::${name} ALIAS twinray_${name})
@@ -62,7 +73,7 @@ function(twinray_add_library name)
     set(TWINRAY_PARTS ${TWINRAY_PARTS} ${arg_PARTS} PARENT_SCOPE)
 endfunction()
 
-twinray_add_library(core PARTS core swtlas hwtlas USES ZLIB::ZLIB ${CMAKE_DL_LIBS})
+twinray_add_library(core PARTS core swtlas hwtlas USES ZLIB::ZLIB ${CMAKE_DL_LIBS} $<$<PLATFORM_ID:Windows>:ws2_32>)
 if(TWINRAY_SCENE)
     set(scene_uses OpenEXR::OpenEXR ZLIB::ZLIB)
     set(scene_merges "")

@@ -1,5 +1,11 @@
-# `cpack` packs the tree that `cmake --install` makes, as an archive and as a Debian package.
+# `cpack` packs the tree that `cmake --install` makes: as an archive, and on Linux as a Debian package.
 set(CPACK_GENERATOR TGZ DEB)
+if(WIN32)
+    set(CPACK_GENERATOR ZIP)
+    if(BUILD_SHARED_LIBS)
+        set(CPACK_PACKAGE_FILE_NAME ${PROJECT_NAME}-${PROJECT_VERSION}-win64-dll)
+    endif()
+endif()
 set(CPACK_PACKAGE_VENDOR twinray)
 # To publish the packages, pass -DCPACK_PACKAGE_CONTACT="NAME <ADDRESS>", the Debian package's maintainer.
 if(NOT CPACK_PACKAGE_CONTACT)

@@ -6,10 +6,21 @@ target_compile_features(twinray_options INTERFACE cxx_std_20)
 target_compile_definitions(twinray_options INTERFACE VK_NO_PROTOTYPES=)
 target_include_directories(twinray_options INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/include)
 target_include_directories(twinray_options SYSTEM INTERFACE ${VOLK_INCLUDE_DIR})
-target_compile_options(
-    twinray_options
-    INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wconversion -Wshadow -ffp-contract=off>
-)
+if(MSVC) # not tested
+    target_compile_options(
+        twinray_options
+        INTERFACE /W4 /permissive- /utf-8 /bigobj /fp:precise
+    )
+else()
+    target_compile_options(
+        twinray_options
+        INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wconversion -Wshadow -ffp-contract=off>
+    )
+endif()
+# Files that are compiled together have more sections than an object of Windows holds by default.
+if(MINGW)
+    target_compile_options(twinray_options INTERFACE -Wa,-mbig-obj)
+endif()
 # Clang's warnings beyond those of GCC.
 target_compile_options(
     twinray_options

@@ -11,6 +11,7 @@
 
 #include <twinray/scene.h>
 
+#include "engine/core/platform.h"
 #include "samples/support/text.h"
 #include "twinray/glsl/cpp.h"
 
@@ -130,9 +131,11 @@ std::filesystem::path frame_file(const std::filesystem::path& pattern, uint fram
     };
     const std::size_t last = name.find_last_of('#');
     if (last == std::string::npos)
-        return pattern.parent_path() / (pattern.stem().string() + "_" + number(4) + pattern.extension().string());
+        return pattern.parent_path() /
+               platform::path_of(pattern.stem().string() + "_" + number(4) + pattern.extension().string());
     const std::size_t before = name.find_last_not_of('#', last), first = before == std::string::npos ? 0 : before + 1;
-    return pattern.parent_path() / (name.substr(0, first) + number(last + 1 - first) + name.substr(last + 1));
+    return pattern.parent_path() /
+           platform::path_of(name.substr(0, first) + number(last + 1 - first) + name.substr(last + 1));
 }
 
 Camera turned_about(const Camera& camera, vec3 center, double angle) {

@@ -50,7 +50,7 @@ SEES = {  # besides itself, include and, unless AS_HOSTS, shaders/shared
     "shaders": ["shaders/engine", "shaders/scene"],
 }
 # Code of one system, which asks for nothing of twinray's: programs that see include alone may have it, too.
-PLATFORM, PLATFORM_READERS = "engine/core/platform.h", ("samples", "samples/support")
+PLATFORM, PLATFORM_READERS = "engine/core/platform.h", ("renderer", "samples", "samples/support")
 # Everything else is compiled for every system. Python's package is for Linux; the other files are left out elsewhere
 # by CMake, or are programs of their own.
 OF_SYSTEMS = ("engine/core/platform/", "bindings/", "tests/core/processes_test.cpp", "tests/fuzz/contract.cpp",

@@ -7,6 +7,7 @@
 #include <sstream>
 #include <string_view>
 
+#include "engine/core/platform.h"
 #include "engine/core/error.h"
 #include "viewer/keys.h"
 
@@ -81,7 +82,7 @@ std::optional<Event> event_of(const std::string& line) {
     else if (what == "keyup")
         event = KeyUp{key_of(in)};
     else if (what == "drop")
-        event = Dropped{rest_of(in)};
+        event = Dropped{platform::path_of(rest_of(in))};
     else if (what == "shot")
         event = Shot{rest_of(in)};
     else if (what == "close")

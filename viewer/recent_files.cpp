@@ -24,7 +24,8 @@ std::vector<std::filesystem::path> recent_files(const std::filesystem::path& lis
     std::vector<std::filesystem::path> files;
     std::error_code none;
     for (std::string line; files.size() < most_files && std::getline(in, line);)
-        if (std::filesystem::is_regular_file(line, none)) files.emplace_back(line);
+        if (const std::filesystem::path file = platform::path_of(line); std::filesystem::is_regular_file(file, none))
+            files.push_back(file);
     return files;
 }
 

@@ -126,7 +126,7 @@ Value optional_list(bool& is_given, std::vector<double>& target, Range<double> r
 
 template Value number(int&, Range<int>);
 template Value number(unsigned int&, Range<unsigned int>);
-template Value number(unsigned long&, Range<unsigned long>);
+template Value number(std::size_t&, Range<std::size_t>);
 template Value number(float&, Range<float>);
 template Value number(double&, Range<double>);
 template Value number(std::optional<unsigned int>&, Range<unsigned int>);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "engine/core/platform.h"
 #include "engine/core/error.h"
 
 namespace twinray::cli {
@@ -70,6 +71,11 @@ std::string joined_by_commas(const std::vector<std::string>& words) {
     return all;
 }
 
+void take_paths(std::vector<std::filesystem::path>& target, Words words) {
+    target.clear();
+    for (const std::string& word : words) target.push_back(platform::path_of(word));
+}
+
 }  // namespace
 
 std::string either_of(const std::vector<std::string>& words) {
@@ -101,25 +107,25 @@ Value words(std::vector<std::string>& target, const std::string& metavar) {
 }
 
 Value file(std::filesystem::path& target, std::vector<std::string> suffixes) {
-    return file_value(std::move(suffixes), [&target](Words words) { target = words.front(); });
+    return file_value(std::move(suffixes), [&target](Words words) { target = platform::path_of(words.front()); });
 }
 
 Value files(std::vector<std::filesystem::path>& target, std::vector<std::string> suffixes) {
     Value value =
-        file_value(std::move(suffixes), [&target](Words words) { target.assign(words.begin(), words.end()); });
+        file_value(std::move(suffixes), [&target](Words words) { take_paths(target, words); });
     value.is_repeatable = true;
     return value;
 }
 
 Value file_list(std::vector<std::filesystem::path>& target) {
-    Value value = file_value({}, [&target](Words words) { target.assign(words.begin(), words.end()); });
+    Value value = file_value({}, [&target](Words words) { take_paths(target, words); });
     value.metavar = "FILE,...";
     value.is_list = true;
     return value;
 }
 
 Value paths(std::vector<std::filesystem::path>& target, std::size_t least, const std::string& metavar) {
-    Value value = file_value({}, [&target](Words words) { target.assign(words.begin(), words.end()); });
+    Value value = file_value({}, [&target](Words words) { take_paths(target, words); });
     value.metavar = metavar;
     value.least = least;
     value.most = 1000;
@@ -128,7 +134,7 @@ Value paths(std::vector<std::filesystem::path>& target, std::size_t least, const
 
 Value folder(std::filesystem::path& target) {
     return text_value(Value::Kind::folder, "FOLDER", target.string(),
-                      [&target](Words words) { target = words.front(); });
+                      [&target](Words words) { target = platform::path_of(words.front()); });
 }
 
 Value choice(std::vector<std::string> names, const std::string& initial, std::function<void(std::size_t)> take) {

@@ -28,7 +28,7 @@ Value flag(std::function<void()> take);
 Value word(std::string& target, const std::string& metavar);
 Value words(std::vector<std::string>& target, const std::string& metavar);  // separated by commas
 
-// T: int, unsigned int, unsigned long, float or double. Whole numbers may be written as 1e6.
+// T: int, unsigned int, std::size_t, float or double. Whole numbers may be written as 1e6.
 template <class T>
 requires std::is_arithmetic_v<T> Value number(T& target, Range<T> range = {});
 template <class T>

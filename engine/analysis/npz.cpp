@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "engine/analysis/npz.h"
 
-#include <zlib.h>
-
 #include <bit>
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
+#include "engine/scene/bytes.h"
 
 namespace twinray {
 namespace {
@@ -41,9 +40,8 @@ void add_common(Record& record, const std::string& name, std::uint64_t sum, std:
     record.u32(sum).u32(bytes).u32(bytes).u16(name.size()).u16(0);
 }
 
-std::uint64_t checksum(std::uint64_t before, std::span<const std::byte> data) {
-    if (data.empty()) return before;  // a null pointer would begin anew
-    return crc32_z(before, reinterpret_cast<const Bytef*>(data.data()), data.size());
+std::uint32_t checksum(std::uint32_t before, std::span<const std::byte> data) {
+    return data.empty() ? before : crc32_of(data, before);  // a null pointer would begin anew
 }
 
 std::string shape_text(const std::vector<std::size_t>& shape) {
@@ -85,7 +83,7 @@ void Npz::write(const std::filesystem::path& file) const {
     std::uint64_t at = 0;
     for (const Member& member : members_) {
         const std::uint64_t bytes = member.header.size() + member.data.size();
-        const std::uint64_t sum = checksum(checksum(crc32(0, nullptr, 0), member.header), member.data);
+        const std::uint32_t sum = checksum(checksum(0, member.header), member.data);
         Record& header = headers.emplace_back();
         header.u32(0x04034b50);
         add_common(header, member.name, sum, bytes);

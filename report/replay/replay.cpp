@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "engine/core/error.h"
+#include "engine/core/platform.h"
 #include "engine/core/json_input.h"
 
 namespace twinray::replay {
@@ -103,7 +104,7 @@ Replay read(const std::filesystem::path& file) {
         const json object = parse_json<json>(in);
         if (object.at("schema") != schema) fail("its schema is ", object.at("schema").dump(), ", not ", schema);
         const json& ray = object.at("ray");
-        return {object.at("scene").get<std::string>(),
+        return {platform::path_of(object.at("scene").get<std::string>()),
                 object.at("scene_hash").get<std::string>(),
                 object.at("backend").get<std::string>(),
                 object.at("level").get<std::string>(),

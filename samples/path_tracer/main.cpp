@@ -33,7 +33,7 @@ int render(const Options& options, Ranks& ranks) {
 }
 
 std::filesystem::path with_suffix(const std::filesystem::path& file, const char* suffix) {
-    return file.parent_path() / (file.stem().string() + suffix + file.extension().string());
+    return file.parent_path() / platform::path_of(file.stem().string() + suffix + file.extension().string());
 }
 
 // Hardware leads, software traces the same rays; then software renders alone.

@@ -5,6 +5,7 @@
 
 #include <string_view>
 
+#include "engine/core/platform.h"
 #include "renderer/film_file.h"
 
 namespace twinray::path_tracer {
@@ -17,8 +18,7 @@ std::string check_output(const std::string& file) {
 }
 
 CLI::Option* add_output(CLI::App& app, std::filesystem::path& output) {
-    return app
-        .add_option("-o,--output,--outfile", output,
+    return samples::add_path(app, "-o,--output,--outfile", output,
                     "output: .png (tone mapped), .exr (linear), or .film (sums of samples, to merge or to resume)")
         ->required()
         ->check(CLI::Validator(check_output, "FILE.png|.exr|.film"));
@@ -29,11 +29,11 @@ void add_finish(CLI::App& app, std::optional<float>& exposure, std::filesystem::
     app.add_option("--exposure", exposure,
                    "exposure of a .png in stops; default: 0 under the default sky, else automatic")
         ->check(CLI::Range(-100.0f, 100.0f));
-    app.add_option("--mse-reference-image", reference, "print the difference from this .exr or .hdr picture");
+    samples::add_path(app, "--mse-reference-image", reference, "print the difference from this .exr or .hdr picture");
 }
 
 void add_files(CLI::App& app, Options& options) {
-    app.add_option("scene", options.scene, "scene file: .gltf, .glb, .obj, .ply or .stl, or builtin:cornell-box")
+    samples::add_path(app, "scene", options.scene, "scene file: .gltf, .glb, .obj, .ply or .stl, or builtin:cornell-box")
         ->required();
     CLI::Option* output = add_output(app, options.output);
     app.add_flag_callback(
@@ -49,10 +49,10 @@ void add_files(CLI::App& app, Options& options) {
                  "also write these layers to the .exr: albedo, normal, depth, instance and primitive of the first hit, "
                  "samples, variance");
     app.add_option("--variant", options.variant, "name of a material variant of the scene (KHR_materials_variants)");
-    app.add_option("--environment", options.environment,
+    samples::add_path(app, "--environment", options.environment,
                    "environment map that lights the scene: latitude-longitude .hdr or .exr");
-    app.add_option("--json", options.json, "append one JSON line with what was rendered, and how fast, to this file");
-    app.add_option("--cross-check", options.cross_check,
+    samples::add_path(app, "--json", options.json, "append one JSON line with what was rendered, and how fast, to this file");
+    samples::add_path(app, "--cross-check", options.cross_check,
                    "trace every ray with both accelerators and write a comparison to this file (.json or text). The "
                    "pictures of both go to OUTPUT_hw and OUTPUT_sw, their differences to OUTPUT_difference. The exit "
                    "status is 1 after an unexplained difference or a fault of twinray");
@@ -147,7 +147,12 @@ void add_machine(CLI::App& app, Options& options) {
 }
 
 void add_merge(CLI::App& app, MergeOptions& options) {
-    app.add_option("films", options.films, "films of --shard, or any films that hold different paths of one picture")
+    app.add_option_function<std::vector<std::string>>(
+           "films",
+           [&options](const std::vector<std::string>& words) {
+               for (const std::string& word : words) options.films.push_back(platform::path_of(word));
+           },
+           "films of --shard, or any films that hold different paths of one picture")
         ->required();
     add_output(app, options.output);
     add_finish(app, options.exposure, options.reference);

@@ -158,7 +158,7 @@ class Display {
 };
 
 std::filesystem::path film_file(const std::filesystem::path& output) {
-    return is_film_file(output) ? output : std::filesystem::path(output.string() + ".film");
+    return is_film_file(output) ? output : platform::path_of(output.string() + ".film");
 }
 
 // A missing checkpoint is no error: an array of jobs may start them all with --resume.
@@ -330,7 +330,7 @@ class FilmRenderer {
 }  // namespace
 
 std::filesystem::path checkpoint_file(const std::filesystem::path& output, const Ranks& ranks) {
-    if (ranks.count() > 1) return text(output.string(), ".rank", ranks.index(), "of", ranks.count(), ".film");
+    if (ranks.count() > 1) return platform::path_of(text(output.string(), ".rank", ranks.index(), "of", ranks.count(), ".film"));
     return film_file(output);
 }
 

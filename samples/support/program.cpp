@@ -27,6 +27,11 @@ void add_device_options(CLI::App& app, DeviceOptions& options, const std::string
     app.add_flag("--quiet", options.quiet, "print only errors");
 }
 
+CLI::Option* add_path(CLI::App& app, const std::string& name, std::filesystem::path& target, const std::string& help) {
+    const auto take = [&target](const std::string& word) { target = platform::path_of(word); };
+    return app.add_option_function<std::string>(name, take, help);
+}
+
 std::optional<int> parse(CLI::App& app, int argc, char** argv, const std::string& program) {
     try {
         std::vector<std::string> words = platform::arguments_of(argc, argv);

@@ -64,12 +64,12 @@ FUNC CertifiedRay certified_ray(RefineInstance instance, Ray ray, bool is_moved)
 FUNC int certain_side(vec3 a, vec3 b, float error)
 {
     const float ROUNDINGS = 2.384185791015625e-07f; // 4 of 2^-24
-    const float UNDERFLOW = 7.888609052210118e-31f; // 2^-100: below, products may have been flushed
+    const float LEAST_PRODUCT = 7.888609052210118e-31f; // 2^-100: below, products may have been flushed
     PRECISE float p = a.x * b.y;
     PRECISE float q = a.y * b.x;
     PRECISE float area = p - q;
     float size = abs(a.x) + abs(a.y) + abs(b.x) + abs(b.y);
-    float bound = error * (size + 2.0f * error) + ROUNDINGS * (abs(p) + abs(q)) + UNDERFLOW;
+    float bound = error * (size + 2.0f * error) + ROUNDINGS * (abs(p) + abs(q)) + LEAST_PRODUCT;
     return area > bound ? 1 : (area < -bound ? -1 : 0);
 }
 

@@ -22,11 +22,11 @@ class TempDir {
     TempDir(const TempDir&) = delete;
     TempDir& operator=(const TempDir&) = delete;
 
-    std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+    std::filesystem::path operator/(const std::string& name) const { return path_ / platform::path_of(name); }
 
     // Writes the file and returns its path.
     std::filesystem::path write(const std::string& name, std::string_view content) const {
-        const std::filesystem::path file = path_ / name;
+        const std::filesystem::path file = *this / name;
         std::ofstream(file, std::ios::binary).write(content.data(), static_cast<std::streamsize>(content.size()));
         return file;
     }

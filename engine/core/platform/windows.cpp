@@ -182,15 +182,14 @@ void become_program(const Program& program) {
     if (const std::optional<ProgramEnd> end = run_program(program)) std::exit(end->status);
 }
 
-std::vector<std::string> arguments_of(int, char**) {
+std::vector<std::string> arguments_of(int count, char**) {
     SetConsoleOutputCP(CP_UTF8);
     _fmode = _O_BINARY;
     for (std::FILE* const output : {stdout, stderr}) _setmode(_fileno(output), _O_BINARY);
-    int count = 0;
-    const std::unique_ptr<LPWSTR, decltype(&LocalFree)> words(CommandLineToArgvW(GetCommandLineW(), &count),
-                                                              &LocalFree);
+    int all = 0;
+    const std::unique_ptr<LPWSTR, decltype(&LocalFree)> words(CommandLineToArgvW(GetCommandLineW(), &all), &LocalFree);
     std::vector<std::string> arguments;
-    for (int i = 1; i < count; ++i) arguments.push_back(narrow(words.get()[i]));
+    for (int i = all - count + 1; i < all; ++i) arguments.push_back(narrow(words.get()[i]));
     return arguments;
 }
 

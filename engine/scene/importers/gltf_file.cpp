@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "engine/scene/importers/gltf_file.h"
 
+#include "engine/core/platform.h"
 #include "engine/scene/importers/gltf_json.h"
 
 namespace twinray {
@@ -103,7 +104,7 @@ std::vector<tinygltf::Image> take_images(json& root) {
 
 Bytes read_uri(const GltfFile& file, const std::string& uri) {
     if (uri.starts_with("data:")) return read_data_uri(uri);
-    return read_file(file.path.parent_path() / decode_percent(uri));
+    return read_file(file.path.parent_path() / platform::path_of(decode_percent(uri)));
 }
 
 std::span<const std::uint8_t> stream_bytes(const GltfFile& file, const json& range,

@@ -7,6 +7,7 @@
 
 #include <twinray/scene.h>
 
+#include "engine/core/platform.h"
 #include "engine/core/error.h"
 #include "engine/scene/bytes.h"
 #include "engine/scene/importers/placeholder.h"
@@ -204,8 +205,8 @@ std::int32_t MtlReader::image_of(std::string_view name) {
 // Looks relative to the .mtl file, then to the .obj file.
 std::filesystem::path MtlReader::find(std::string_view name) const {
     std::error_code ignored;
-    const std::filesystem::path beside = file_.parent_path() / with_slashes(name);
-    return std::filesystem::exists(beside, ignored) ? beside : obj_folder_ / with_slashes(name);
+    const std::filesystem::path named = platform::path_of(with_slashes(name)), beside = file_.parent_path() / named;
+    return std::filesystem::exists(beside, ignored) ? beside : obj_folder_ / named;
 }
 
 }  // namespace twinray

@@ -1,0 +1,29 @@
+# Compiles for Windows on Linux, by MinGW-w64's GCC with POSIX threads (Debian: g++-mingw-w64-x86-64-posix). The
+# environment variable TWINRAY_WINDOWS_PACKAGES names the folder that tools/windows_packages.sh made.
+set(CMAKE_SYSTEM_NAME Windows)
+set(CMAKE_SYSTEM_PROCESSOR AMD64)
+
+set(target x86_64-w64-mingw32)
+set(CMAKE_C_COMPILER ${target}-gcc-posix)
+set(CMAKE_CXX_COMPILER ${target}-g++-posix)
+set(CMAKE_RC_COMPILER ${target}-windres)
+set(CMAKE_AR ${target}-ar CACHE FILEPATH "")
+set(CMAKE_RANLIB ${target}-ranlib CACHE FILEPATH "")
+
+set(CMAKE_FIND_ROOT_PATH /usr/${target} $ENV{TWINRAY_WINDOWS_PACKAGES})
+set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER) # what runs here: the compiler of shaders, Python
+set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
+
+# Programs of the target run here by Wine, where that is installed.
+find_program(TWINRAY_WINE NAMES wine wine64 DOC "runs Windows' programs: package wine")
+if(TWINRAY_WINE)
+    set(CMAKE_CROSSCOMPILING_EMULATOR ${TWINRAY_WINE})
+endif()
+
+# No program needs a DLL of the compiler or of zlib; but exceptions pass from one DLL to another by the compiler's alone.
+if(NOT BUILD_SHARED_LIBS)
+    set(CMAKE_EXE_LINKER_FLAGS_INIT -static)
+endif()
+set(ZLIB_USE_STATIC_LIBS ON)
