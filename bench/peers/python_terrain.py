@@ -73,28 +73,32 @@ def workers(options):
     from distributed import Client, LocalCluster
     from twinray import terrain
 
-    heights = raster(options.side, options.tile).persist(scheduler="threads").compute()
+    heights = raster(options.side, options.tile)
     rays = heights.size * 145
-    relief = float(heights.max() - heights.min())
+    low, high = dask.compute(heights.min(), heights.max(), scheduler="threads")
+    relief = float(high - low)
+    sky = {"relief": relief, "patches": "tregenza145"}
 
     def measured(count, threads, kill_after=None):
         environment = {"LP_NUM_THREADS": str(threads)}
         with (
             dask.config.set({"distributed.nanny.pre-spawn-environ": environment}),
-            LocalCluster(count, threads_per_worker=1, dashboard_address=None, env=environment) as cluster,
+            LocalCluster(n_workers=count, threads_per_worker=1, dashboard_address=None, env=environment) as cluster,
             Client(cluster) as client,
         ):
-            small = terrain.sky_view(heights[:64, :64], CELL, relief=relief, tile=32)
+            small = terrain.sky_view(heights[:64, :64], CELL, tile=32, **sky)
             client.compute([small] * count)[0].result()  # pipelines are there
             pids = client.run(os.getpid)
-            before = sum(client.run(cpu_seconds).values())
+            before = client.run(cpu_seconds)
             start = time.perf_counter()
-            future = client.compute(terrain.sky_view(heights, CELL, relief=relief, tile=options.tile))
+            future = client.compute(terrain.sky_view(heights, CELL, tile=options.tile, **sky))
             if kill_after:
                 threading.Timer(kill_after, lambda: os.kill(next(iter(pids.values())), signal.SIGKILL)).start()
             found = future.result()
             took = time.perf_counter() - start
-            worked = sum(client.run(cpu_seconds).values()) - before
+            worked = [seconds - before.get(worker, 0) for worker, seconds in client.run(cpu_seconds).items()]
+            print("seconds of CPU by worker:", *(f"{seconds:.1f}" for seconds in worked), flush=True)
+            worked = sum(worked)
             return took, worked, digest(found), max(client.run(peak_mib).values())
 
     seconds, work, digests, peaks = {1: [], 2: []}, {1: [], 2: []}, set(), {1: 0, 2: 0}
@@ -243,7 +247,7 @@ def out_of_core(options):
         [np.cos(a) * np.sin(b), -np.cos(a) * np.cos(b), np.sin(a)] for a, b in zip(angles, (-1, -0.5, 0), strict=True)
     ]
     heights = raster(options.side, options.tile)
-    with LocalCluster(1, threads_per_worker=1, dashboard_address=None) as cluster, Client(cluster) as client:
+    with LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None) as cluster, Client(cluster) as client:
         start = time.perf_counter()
         hours = terrain.sun_hours(heights, suns, [2, 3, 4], CELL, relief=options.relief, tile=options.tile)
         hours.to_zarr(str(file), overwrite=True)

@@ -101,7 +101,7 @@ std::vector<ViewFactorRow> RowFile::load() {
     const std::string_view head(reinterpret_cast<const char*>(bytes.data()),
                                 std::min(bytes.size(), state_->configuration.size()));
     if (head != state_->configuration)
-        fail("'", state_->file.string(), "': rows of another scene, of other options or of another part");
+        fail("'", state_->file.string(), "': rows of another scene or of other options; they cannot be used");
     Reader reader(bytes);
     reader.skip(state_->configuration.size());
     std::vector<ViewFactorRow> rows;

@@ -218,6 +218,17 @@ TEST_F(RowFileTest, DamageEndsWhatIsRead) {
     EXPECT_EQ(loaded(), 4u);
 }
 
+TEST_F(RowFileTest, APartBeginsWithItsFirstRow) {
+    const std::vector<ViewFactorRow> rows = some_rows(5);
+    RowFile part(file_, "options", 2);
+    part.create();
+    part.append(std::span(rows).subspan(2));
+    const std::vector<ViewFactorRow> found = RowFile(file_, "options", 2).load();
+    ASSERT_EQ(found.size(), 3u);
+    EXPECT_EQ(found.front().group, 2u);
+    EXPECT_EQ(loaded(), 0u);
+}
+
 TEST_F(RowFileTest, OtherOptionsAreRefused) {
     write(2);
     EXPECT_THROW(RowFile(file_, "other options").load(), Error);

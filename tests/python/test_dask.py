@@ -314,7 +314,7 @@ def test_a_killed_worker_changes_no_bit():
     heights = raster()
     with (
         dask.config.set({"distributed.scheduler.allowed-failures": 10}),
-        LocalCluster(2, threads_per_worker=1, dashboard_address=None) as cluster,
+        LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster,
         Client(cluster) as client,
     ):
         chunked = da.from_array(points, chunks=(100, 3)).map_blocks(slow, dtype=points.dtype)
