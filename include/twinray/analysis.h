@@ -244,7 +244,6 @@ class RowFile {
     // `configuration` describes the rows, which begin with `first_row`: the same in all runs that share the file.
     RowFile(std::filesystem::path file, const std::string& configuration, std::size_t first_row = 0);
     ~RowFile();
-
     // Returns the rows in the file up to the first gap, none if there is no file; append() cuts off what follows them.
     // Throws Error if the file is of another configuration.
     std::vector<ViewFactorRow> load();
