@@ -112,7 +112,8 @@ std::vector<std::string> write_reproducers(const ReportOptions& options, std::sp
         if (record.fault_of == "driver" && !record.replay.empty()) replays.push_back(options.folder / record.replay);
     if (replays.empty() || reproducer::write_reproducers(folder, replays, devices, std::cout) == 0) return {};
     std::vector<std::string> classes;
-    for (const auto& entry : std::filesystem::directory_iterator(folder)) classes.push_back(entry.path().filename().string());
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+        classes.push_back(entry.path().filename().string());
     std::sort(classes.begin(), classes.end());
     return classes;
 }

@@ -111,8 +111,7 @@ Value file(std::filesystem::path& target, std::vector<std::string> suffixes) {
 }
 
 Value files(std::vector<std::filesystem::path>& target, std::vector<std::string> suffixes) {
-    Value value =
-        file_value(std::move(suffixes), [&target](Words words) { take_paths(target, words); });
+    Value value = file_value(std::move(suffixes), [&target](Words words) { take_paths(target, words); });
     value.is_repeatable = true;
     return value;
 }

@@ -45,8 +45,8 @@ std::optional<ProgramEnd> run_program(const Program& program);
 // This process becomes the program, or ends with its status. Returns only if it cannot be started.
 void become_program(const Program& program);
 
-// The words after the program's name, or the last of them, given what main got. From then on a console shows UTF-8, and lines end by LF in
-// all that the program writes.
+// The words after the program's name, or the last of them, given what main got. From then on a console shows UTF-8, and
+// lines end by LF in all that the program writes.
 std::vector<std::string> arguments_of(int count, char** words);
 
 // The file that text in UTF-8 names: Windows takes plain text for letters of one byte.

@@ -330,7 +330,8 @@ class FilmRenderer {
 }  // namespace
 
 std::filesystem::path checkpoint_file(const std::filesystem::path& output, const Ranks& ranks) {
-    if (ranks.count() > 1) return platform::path_of(text(output.string(), ".rank", ranks.index(), "of", ranks.count(), ".film"));
+    if (ranks.count() > 1)
+        return platform::path_of(text(output.string(), ".rank", ranks.index(), "of", ranks.count(), ".film"));
     return film_file(output);
 }
 

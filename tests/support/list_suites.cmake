@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: MIT
 # After a program of GoogleTest is built: writes FILE, by which ctest runs each suite of it in one process. A test of it
 # alone is run by the program, with --gtest_filter.
-#   cmake -D PROGRAM=FILE -D LABEL=NAME -D QUICK=REGEX -D FULL=REGEX -D RESULTS=FOLDER -D FILE=FILE
+#   cmake -D PROGRAM=FILE [-D EMULATOR=COMMAND] -D LABEL=NAME -D QUICK=REGEX -D FULL=REGEX -D RESULTS=FOLDER -D FILE=FILE
 #         -P list_suites.cmake
+#     EMULATOR   runs the program, which is one of another system
 #     QUICK      suites that get the label LABEL.quick instead
 #     FULL       suites that get the label full, too
 #     RESULTS    where each suite leaves an XML file of what its tests did
-execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE listing COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${EMULATOR} ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE listing COMMAND_ERROR_IS_FATAL ANY)
+string(REPLACE "\r" "" listing "${listing}")
+set(command ${EMULATOR} ${PROGRAM})
+list(JOIN command "]=] [=[" command)
 string(REGEX MATCHALL "(^|\n)[^ \n]+\\.[ \n]" suites "${listing}")
 set(tests "")
 foreach(suite ${suites})
@@ -21,7 +25,7 @@ foreach(suite ${suites})
     string(REPLACE / . result "${suite}")
     string(
         APPEND tests
-        "add_test([=[${suite}]=] [=[${PROGRAM}]=] [=[--gtest_filter=${suite}.*]=])\n"
+        "add_test([=[${suite}]=] [=[${command}]=] [=[--gtest_filter=${suite}.*]=])\n"
         "set_tests_properties([=[${suite}]=] PROPERTIES LABELS [=[${label}]=] TIMEOUT 900\n"
         "    ENVIRONMENT [=[GTEST_OUTPUT=xml:${RESULTS}/${result}.xml]=])\n"
     )

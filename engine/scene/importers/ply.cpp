@@ -372,7 +372,8 @@ void add_textures(Scene& scene, const std::vector<std::string>& names, const std
         Material material{.name = name, .metallic = 0};
         material.base_color_texture.image = static_cast<std::int32_t>(scene.images.size());
         try {
-            scene.images.push_back(decode_image(read_file(folder / platform::path_of(name)), text("picture '", name, "'")));
+            scene.images.push_back(
+                decode_image(read_file(folder / platform::path_of(name)), text("picture '", name, "'")));
         } catch (const Error& e) {
             scene.warnings.push_back(text(e.what(), "; picture '", name, "' is shown as a checkerboard"));
             scene.images.push_back(checkerboard_image(name));

@@ -1,0 +1,85 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Builds twinray for Windows on Debian 12 or 13 by MinGW-w64, runs its tests by Wine on Mesa's CPU driver, compares what
+# its programs write with what those for Linux write, and packs the zip. Wine tests the port, not Windows' drivers.
+#   tools/check_windows.sh          everything, from nothing: it needs root or sudo for packages
+#   tools/check_windows.sh quick    the library, the command, the accelerators' common contract, the first comparisons
+#   SKIP_APT=1                      install nothing, whatever is missing
+#   WINDOWS_PRESET_OPTIONS          further options of CMake
+# Folders: build/windows-packages (libraries of others), build/windows, build/release (for Linux), build/wine.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+. tools/lib.sh
+
+mode=${1-full}
+if [[ ! $mode =~ ^(full|quick)$ || $# -gt 1 ]]; then
+    echo "usage: tools/check_windows.sh [quick]" >&2
+    exit 2
+fi
+packages=(
+    g++-mingw-w64-x86-64-posix libz-mingw-w64-dev wine wine64 xvfb xauth make m4 dpkg-dev googletest zip unzip
+)
+jobs=${JOBS:-$(nproc)}
+display=${WINDOWS_DISPLAY-:164}
+
+install_packages() {
+    if [[ ${SKIP_APT-} ]]; then return; fi
+    tools/setup.sh
+    local missing=() package sudo=()
+    for package in "${packages[@]}"; do
+        if [[ $(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null) != installed ]]; then
+            missing+=("$package")
+        fi
+    done
+    if ((${#missing[@]} == 0)); then return; fi
+    if ((EUID != 0)); then sudo=(sudo); fi
+    "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}"
+}
+
+# Wine of Debian 12 has Vulkan only where there is a display, and takes names for UTF-8 only in such a locale.
+start_wine() {
+    export WINEPREFIX=$PWD/build/wine WINEDEBUG=${WINEDEBUG--all} DISPLAY=$display LC_ALL=C.UTF-8
+    Xvfb "$display" -screen 0 1280x1024x24 >build/xvfb.log 2>&1 &
+    xvfb=$!
+    trap 'kill "$xvfb" 2>/dev/null; wineserver -k || true' EXIT
+    wineboot -i >build/wineboot.log 2>&1
+}
+
+build_windows() {
+    local options=() targets=()
+    read -r -a options <<<"${WINDOWS_PRESET_OPTIONS-}"
+    if [[ $mode == quick ]]; then targets=(--target twinray_cli path_tracer vulkan_tests cpu_tests saved_accel); fi
+    cmake --preset windows "${options[@]}" >build/windows-configure.log
+    cmake --build build/windows -j "$jobs" "${targets[@]}"
+}
+
+build_linux() {
+    cmake --preset release >build/linux-configure.log
+    cmake --build build/release -j "$jobs" --target twinray_cli path_tracer saved_accel
+}
+
+# Only TESTs of GoogleTest: their names have no point.
+run_tests() {
+    local which=(--exclude-regex '\.')
+    if [[ $mode == quick ]]; then which+=(--tests-regex '^Every/Accel'); fi
+    TWINRAY_REQUIRE=vulkan tools/run_tests.py build/windows "${which[@]}"
+}
+
+mkdir -p build
+status=0
+section "Packages" && install_packages
+section "Libraries of others" && JOBS=$jobs tools/windows_packages.sh build/windows-packages
+section "Wine $(wine --version)" && start_wine
+section "Build for Windows" && build_windows
+section "Build for Linux" && build_linux
+section "Tests under Wine"
+run_tests || status=$?
+section "The same as on Linux"
+options=()
+if [[ $mode == quick ]]; then options=(--quick); fi
+python3 tests/windows/same_as_linux.py build/release/bin build/windows/bin "${options[@]}" || status=$?
+if [[ $mode == full ]]; then
+    section "Zip"
+    (cd build/windows && cpack >cpack.log && du -h packages/*.zip)
+fi
+exit "$status"
