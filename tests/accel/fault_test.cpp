@@ -28,7 +28,7 @@ class Faults : public ::testing::TestWithParam<Kind> {
   protected:
     ContextDesc desc() const {
         ContextDesc desc;
-        desc.validation = true;
+        desc.validation = test::has_validation();
         desc.use_ray_query = GetParam() == Kind::ray_query;
         desc.use_ray_tracing_pipeline = GetParam() == Kind::pipeline;
         desc.get_instance_proc_addr = faults_.entry();

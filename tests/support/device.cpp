@@ -14,8 +14,10 @@ bool is_required(const char* what) {
     return required && std::string_view(required).find(what) != std::string_view::npos;
 }
 
+bool has_validation() { return !std::getenv("TWINRAY_WITHOUT_VALIDATION"); }
+
 std::unique_ptr<Context> make_context(ContextDesc desc) {
-    desc.validation = true;
+    desc.validation = has_validation();
     try {
         return std::make_unique<Context>(desc);
     } catch (const Error& error) {
