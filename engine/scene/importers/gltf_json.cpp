@@ -25,10 +25,12 @@ struct Container {
     Bytes binary;
 };
 
+constexpr const char* old_version_remedy = "convert it with `gltf-pipeline -i in.gltf -o out.gltf`";
+
 Container split_glb(const GltfFile& file, const Bytes& bytes) {
     if (bytes.size() < 20) file.fail("the GLB header is truncated (", bytes.size(), " of 20 bytes)");
     if (const std::uint32_t version = word_at(bytes, 4); version != 2)
-        file.fail("is GLB version ", version, "; only glTF 2.0 is supported, convert it with gltf-pipeline or Blender");
+        file.fail("is GLB version ", version, "; only glTF 2.0 is supported, ", old_version_remedy);
     const std::size_t length = word_at(bytes, 8);
     if (length > bytes.size()) file.fail("the GLB is truncated: ", bytes.size(), " of ", length, " bytes");
 
@@ -71,8 +73,7 @@ void check_version(const GltfFile& file, const json& root) {
     if (version.starts_with("2.")) return;
     if (version.empty() && !root.contains("techniques"))
         file.fail("has no \"asset\": {\"version\": \"2.0\"}, so it is not glTF 2.0");
-    file.fail("is glTF ", version.empty() ? "1.0" : version,
-              "; only glTF 2.0 is supported, convert it with gltf-pipeline or Blender");
+    file.fail("is glTF ", version.empty() ? "1.0" : version, "; only glTF 2.0 is supported, ", old_version_remedy);
 }
 
 // The two lists that are read before check_types sees the rest.
