@@ -242,7 +242,8 @@ def main():
     found = twinray("view", "ball.glb", "--strict", *CAMERA, "--screenshot", "ball_seen.png")
     if found.returncode != 0:
         sys.exit(found.stderr)
-    print(f"{datetime.date.today()}, {run(TWINRAY + ' --version').splitlines()[0]}\n\n| file | remedy | |\n|---|---|---|")
+    print(f"{datetime.date.today()}, {run(TWINRAY + ' --version').splitlines()[0]}\n")
+    print("| file | remedy | |\n|---|---|---|")
     failed = 0
     for name, remedy, row in ROWS:
         try:
