@@ -107,8 +107,8 @@ class DeviceLock {
     Device& device_;
 };
 
-// For destructors, which Python calls with its own lock held. It waits for the device without that lock, since the thread
-// that uses the device may need it to look for signals.
+// For destructors, which Python calls with its own lock held. It waits for the device without that lock, since the
+// thread that uses the device may need it to look for signals.
 class LastLock {
   public:
     explicit LastLock(Device& device);

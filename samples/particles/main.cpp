@@ -37,8 +37,10 @@ struct ParsedOptions {
 constexpr uint max_side = 8192, max_frames = 100'000, max_count = 1'000'000;
 
 void add_options(CLI::App& app, Options& options) {
-    samples::add_path(app, "-o,--output", options.output, "file for the last frame: .png, or .exr with linear radiance");
-    samples::add_path(app, "--json", options.json, "append one JSON line with what was done, and how fast, to this file");
+    samples::add_path(app, "-o,--output", options.output,
+                      "file for the last frame: .png, or .exr with linear radiance");
+    samples::add_path(app, "--json", options.json,
+                      "append one JSON line with what was done, and how fast, to this file");
     app.add_option("--frames", options.frames, "how many")->check(CLI::Range(1u, max_frames))->capture_default_str();
     app.add_option("--count", options.count, "particles")->check(CLI::Range(1u, max_count))->capture_default_str();
     app.add_option("--width", options.size.width, "pixels")->check(CLI::Range(1u, max_side))->capture_default_str();

@@ -18,8 +18,9 @@ std::string check_output(const std::string& file) {
 }
 
 CLI::Option* add_output(CLI::App& app, std::filesystem::path& output) {
-    return samples::add_path(app, "-o,--output,--outfile", output,
-                    "output: .png (tone mapped), .exr (linear), or .film (sums of samples, to merge or to resume)")
+    return samples::add_path(
+               app, "-o,--output,--outfile", output,
+               "output: .png (tone mapped), .exr (linear), or .film (sums of samples, to merge or to resume)")
         ->required()
         ->check(CLI::Validator(check_output, "FILE.png|.exr|.film"));
 }
@@ -33,7 +34,8 @@ void add_finish(CLI::App& app, std::optional<float>& exposure, std::filesystem::
 }
 
 void add_files(CLI::App& app, Options& options) {
-    samples::add_path(app, "scene", options.scene, "scene file: .gltf, .glb, .obj, .ply or .stl, or builtin:cornell-box")
+    samples::add_path(app, "scene", options.scene,
+                      "scene file: .gltf, .glb, .obj, .ply or .stl, or builtin:cornell-box")
         ->required();
     CLI::Option* output = add_output(app, options.output);
     app.add_flag_callback(
@@ -50,12 +52,14 @@ void add_files(CLI::App& app, Options& options) {
                  "samples, variance");
     app.add_option("--variant", options.variant, "name of a material variant of the scene (KHR_materials_variants)");
     samples::add_path(app, "--environment", options.environment,
-                   "environment map that lights the scene: latitude-longitude .hdr or .exr");
-    samples::add_path(app, "--json", options.json, "append one JSON line with what was rendered, and how fast, to this file");
-    samples::add_path(app, "--cross-check", options.cross_check,
-                   "trace every ray with both accelerators and write a comparison to this file (.json or text). The "
-                   "pictures of both go to OUTPUT_hw and OUTPUT_sw, their differences to OUTPUT_difference. The exit "
-                   "status is 1 after an unexplained difference or a fault of twinray");
+                      "environment map that lights the scene: latitude-longitude .hdr or .exr");
+    samples::add_path(app, "--json", options.json,
+                      "append one JSON line with what was rendered, and how fast, to this file");
+    samples::add_path(
+        app, "--cross-check", options.cross_check,
+        "trace every ray with both accelerators and write a comparison to this file (.json or text). The "
+        "pictures of both go to OUTPUT_hw and OUTPUT_sw, their differences to OUTPUT_difference. The exit "
+        "status is 1 after an unexplained difference or a fault of twinray");
 }
 
 void add_stopping(CLI::App& app, Options& options) {

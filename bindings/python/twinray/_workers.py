@@ -21,7 +21,7 @@ _MOST_SCENES = 4  # that a process keeps: the last ones it was asked for
 
 
 class SceneSpec:
-    """What a scene consists of, for processes that build it.
+    """The content of a scene, for processes that build it.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ class SceneSpec:
     Attributes
     ----------
     key : str
-        Of the content and of the version of twinray: the same for the same scene.
+        A hash of the content and of twinray's version: equal for equal scenes.
     """
 
     def __init__(
@@ -90,7 +90,7 @@ class SceneSpec:
         return scene
 
     def kept(self, name: Any, make: Any) -> Any:
-        """What `make()` gives, made once for as long as this process keeps the scene."""
+        """Return what `make()` returned, called once for as long as this process keeps the scene."""
         extras = _built(self).extras
         with _changing:
             if repr(name) not in extras:
@@ -173,12 +173,12 @@ def forget_scenes() -> None:
 
 
 def computed(spec: SceneSpec, work: Any, what: str) -> Any:
-    """What work(scene) gives. Where the device fails, it is opened again and the scene built again, once."""
+    """Return work(scene). If the device fails, open it again and build the scene again, once."""
     return twice(lambda: work(_built(spec).scene), spec, what)
 
 
 def twice(work: Any, spec: SceneSpec, what: str) -> Any:
-    """What `work` gives; after an Error it is asked once more, from the device on, then the Error says where."""
+    """Return work(). After an Error, open the device again and repeat it once; a second one names chunk and device."""
     try:
         return work()
     except (_core.Error, MemoryError):
@@ -197,7 +197,7 @@ def _device_name(spec):
 
 
 def _device_of_worker():
-    """Of several GPUs one by the worker's number; None where there is nothing to be dealt out."""
+    """Return one of several GPUs, by the worker's number, or None if there is no choice."""
     if "TWINRAY_DEVICE" in os.environ:
         return None
     try:

@@ -254,7 +254,7 @@ def illumination(
     ----------
     scene : SceneSpec, or what it takes
     directions : dask.array or array_like, (D, 3)
-        Of the light's rays; a chunk is a part of them.
+        Directions of the light's rays, in chunks or whole.
 
     Returns
     -------

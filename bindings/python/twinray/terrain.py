@@ -65,7 +65,7 @@ def sky_view(
     relief : float, optional
         The highest less the lowest height; by default the raster is read once for it.
     height : float
-        Of sensors above ground; 0 by default.
+        Height of the sensors above ground; 0 by default.
     curvature : float
         Of the earth: 0 is a plane, 1 a sphere, 0.857 a sphere as light sees it, which the air bends. Heights must be in
         metres. 64 x 64 cells share the vertical of their middle.
@@ -151,7 +151,7 @@ def visible(
 
 
 class _Sum:
-    """What a cell gets of the directions that it sees."""
+    """Sums the weights of the directions that a cell sees."""
 
     dtype, fill, more = np.dtype(np.float32), np.nan, ()
 
@@ -214,7 +214,7 @@ class _Search:
 
 
 class _Grid:
-    """Where cells are: metres (or what the unit is) from column to column and from row to row."""
+    """The distance from column to column and from row to row, in metres or the raster's unit."""
 
     def __init__(self, spacing):
         pair = (spacing, -spacing) if np.ndim(spacing) == 0 else tuple(spacing)
@@ -291,7 +291,7 @@ def _tile_row(array, first, tile, halo, plan, answer):
 
 
 class _Plan:
-    """What all tiles share."""
+    """The settings that all tiles share."""
 
     def __init__(self, spec, grid, directions, answer, lifted, curvature):
         self.spec, self.grid, self.directions, self.answer = spec, grid, directions, answer

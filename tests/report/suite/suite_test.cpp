@@ -25,7 +25,8 @@ namespace {
 class SuiteRun : public ::testing::Test {
   protected:
     void SetUp() override {
-        if (test::make_context()) devices_ = std::make_unique<Devices>(ContextDesc{.validation = test::has_validation()});
+        if (test::make_context())
+            devices_ = std::make_unique<Devices>(ContextDesc{.validation = test::has_validation()});
     }
     bool can_run() const { return devices_ != nullptr; }
     std::vector<Record> run(const std::vector<SuiteCase>& cases, const Settings& settings = {}) {
