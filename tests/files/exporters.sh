@@ -25,8 +25,8 @@ install() { # venv version-of-numpy package...
 
 npm install --silent --no-audit --no-fund --prefix . @gltf-transform/cli@4.5.1 gltfpack@1.3.0 ||
     echo "npm does not install gltf-transform and gltfpack"
-install venv 2.4.6 trimesh==5.2.0 rtree==1.4.1 scipy==1.17.1 pillow==13.0.0 openexr==3.5.3 open3d==0.20.0 meshio==5.3.5 \
-    pyvista==0.49.1 pymeshlab==2025.7.post1 build123d==0.13.0 cascadio==0.1.1 ifcopenshell==0.9.0.post1 \
-    pyradiance==1.3.1 "$here/../.."
+install venv 2.4.6 trimesh==5.2.0 rtree==1.4.1 scipy==1.17.1 pillow==13.0.0 openexr==3.5.3 open3d==0.20.0 \
+    meshio==5.3.5 pyvista==0.49.1 pymeshlab==2025.7.post1 build123d==0.13.0 cascadio==0.1.1 \
+    ifcopenshell==0.9.0.post1 pyradiance==1.3.1 "$here/../.."
 install blender 1.26.4 bpy==5.0.1
 PATH=$PWD/node_modules/.bin:$PATH exec venv/bin/python "$here/exporters.py" "$bin"

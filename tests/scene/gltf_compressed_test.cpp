@@ -58,6 +58,12 @@ struct MeshoptFile {
                     {"mode", mode}}}}}};
     }
 
+    static std::string with_buffer(const std::string& bytes) {
+        GltfBuilder other = one_triangle();
+        other.buffer = bytes;
+        return other.with_data_uri();
+    }
+
     json& stream(std::size_t index) { return root["bufferViews"][index]["extensions"].front(); }
     std::string error() const {
         return error_of([&] { load_text(root.dump(), "test.gltf"); });
@@ -73,13 +79,41 @@ TEST(GltfMeshopt, BothExtensionsAreDecoded) {
     }
 }
 
+TEST(GltfMeshopt, AFilterIsUndone) {
+    const std::vector<vec3> values = {{0, 0, 0}, {1.5f, 0, 0}, {0, -2, 0}, {0.25f, 1, 3}};
+    std::vector<vec3> filtered(values.size());
+    meshopt_encodeFilterExp(filtered.data(), values.size(), sizeof(vec3), 15, &values[0].x);
+    std::string stream(meshopt_encodeVertexBufferBound(values.size(), sizeof(vec3)), '\0');
+    stream.resize(meshopt_encodeVertexBuffer(reinterpret_cast<unsigned char*>(stream.data()), stream.size(),
+                                             filtered.data(), filtered.size(), sizeof(vec3)));
+    MeshoptFile file("EXT_meshopt_compression");
+    file.root["buffers"].push_back(json::parse(MeshoptFile::with_buffer(stream))["buffers"][0]);
+    file.stream(0)["buffer"] = 2;
+    file.stream(0)["byteLength"] = stream.size();
+    file.stream(0)["filter"] = "EXPONENTIAL";
+    EXPECT_EQ(load_text(file.root.dump(), "test.gltf").meshes[0].positions, values);
+}
+
+TEST(GltfMeshopt, IndicesOfAnyOrderAreDecoded) {
+    std::string stream(meshopt_encodeIndexSequenceBound(FACES.size(), CORNERS.size()), '\0');
+    stream.resize(meshopt_encodeIndexSequence(reinterpret_cast<unsigned char*>(stream.data()), stream.size(),
+                                              FACES.data(), FACES.size()));
+    MeshoptFile file("EXT_meshopt_compression");
+    file.root["buffers"].push_back(json::parse(MeshoptFile::with_buffer(stream))["buffers"][0]);
+    file.stream(1)["buffer"] = 2;
+    file.stream(1)["byteOffset"] = 0;
+    file.stream(1)["byteLength"] = stream.size();
+    file.stream(1)["mode"] = "INDICES";
+    EXPECT_EQ(load_text(file.root.dump(), "test.gltf").meshes[0].triangles, (std::vector<uvec3>{{0, 1, 2}, {2, 1, 3}}));
+}
+
 TEST(GltfMeshopt, StreamsThatDoNotFitAreNamed) {
     const auto expect = [](auto bend, const std::string& part) {
         MeshoptFile file("EXT_meshopt_compression");
         bend(file);
         expect_contains(file.error(), part);
     };
-    expect([](MeshoptFile& file) { file.stream(0)["count"] = 1u << 30; }, "bufferView 0 EXT_meshopt_compression");
+    expect([](MeshoptFile& file) { file.stream(0)["count"] = 1u << 30; }, "times the");
     expect([](MeshoptFile& file) { file.stream(0)["byteStride"] = 14; }, "mode ATTRIBUTES with 4 elements of 14 bytes");
     expect([](MeshoptFile& file) { file.stream(0)["mode"] = "POINTS"; }, "unknown mode 'POINTS'");
     expect([](MeshoptFile& file) { file.stream(0)["filter"] = "OCTAHEDRAL"; },
@@ -101,6 +135,20 @@ TEST(GltfMeshopt, AStreamForANewerLibraryIsNamedWithTheRemedy) {
 
 #ifdef TWINRAY_HAS_DRACO
 
+// Of vertex i, each component is i steps.
+template <class T>
+void add_draco_integers(draco::Mesh& mesh, draco::GeometryAttribute::Type type, draco::DataType number,
+                        std::uint8_t components, int step) {
+    draco::GeometryAttribute attribute;
+    attribute.Init(type, nullptr, static_cast<std::int8_t>(components), number, true, sizeof(T) * components, 0);
+    const int id = mesh.AddAttribute(attribute, true, static_cast<std::uint32_t>(CORNERS.size()));
+    for (std::uint32_t i = 0; i < CORNERS.size(); ++i) {
+        const std::vector<T> values(components, static_cast<T>(i * static_cast<std::uint32_t>(step)));
+        mesh.attribute(id)->SetAttributeValue(draco::AttributeValueIndex(i), values.data());
+    }
+}
+
+// With colours and texture coordinates, as integers.
 std::string draco_stream() {
     draco::Mesh mesh;
     mesh.set_num_points(static_cast<std::uint32_t>(CORNERS.size()));
@@ -113,6 +161,8 @@ std::string draco_stream() {
     const int id = mesh.AddAttribute(positions, true, static_cast<std::uint32_t>(CORNERS.size()));
     for (std::uint32_t i = 0; i < CORNERS.size(); ++i)
         mesh.attribute(id)->SetAttributeValue(draco::AttributeValueIndex(i), &CORNERS[i]);
+    add_draco_integers<std::uint8_t>(mesh, draco::GeometryAttribute::COLOR, draco::DT_UINT8, 4, 51);
+    add_draco_integers<std::uint16_t>(mesh, draco::GeometryAttribute::TEX_COORD, draco::DT_UINT16, 2, 13107);
     draco::Encoder encoder;
     encoder.SetEncodingMethod(draco::MESH_SEQUENTIAL_ENCODING);  // keeps the order
     draco::EncoderBuffer buffer;
@@ -124,9 +174,13 @@ GltfBuilder draco_file(const std::string& stream) {
     GltfBuilder gltf = one_triangle();
     const int view = gltf.add_view(stream);
     gltf.root["accessors"] = {{{"componentType", 5126}, {"count", CORNERS.size()}, {"type", "VEC3"}},
-                              {{"componentType", 5123}, {"count", FACES.size()}, {"type", "SCALAR"}}};
+                              {{"componentType", 5123}, {"count", FACES.size()}, {"type", "SCALAR"}},
+                              {{"componentType", 5121}, {"count", 4}, {"type", "VEC4"}, {"normalized", true}},
+                              {{"componentType", 5123}, {"count", 4}, {"type", "VEC2"}, {"normalized", true}}};
+    gltf.primitive()["attributes"]["COLOR_0"] = 2;
+    gltf.primitive()["attributes"]["TEXCOORD_0"] = 3;
     gltf.primitive()["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", view},
-                                                                    {"attributes", {{"POSITION", 0}}}};
+                                                                    {"attributes", {{"POSITION", 0}, {"COLOR_0", 1}, {"TEXCOORD_0", 2}}}};
     gltf.root["extensionsRequired"] = {"KHR_draco_mesh_compression"};
     return gltf;
 }
@@ -135,6 +189,8 @@ TEST(GltfDraco, PrimitivesAreDecoded) {
     const Scene scene = draco_file(draco_stream()).load();
     EXPECT_EQ(scene.meshes[0].positions, CORNERS);
     EXPECT_EQ(scene.meshes[0].triangles, (std::vector<uvec3>{{0, 1, 2}, {2, 1, 3}}));
+    EXPECT_EQ(scene.meshes[0].colors[3], vec4(0.6f));
+    EXPECT_EQ(scene.meshes[0].uvs[2], vec2(0.4f));
     EXPECT_TRUE(scene.warnings.empty());
 }
 

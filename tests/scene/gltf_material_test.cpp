@@ -188,6 +188,14 @@ TEST(GltfMaterial, SpecularGlossinessIsShown) {
     EXPECT_FALSE(has_warning(scene, "pbrSpecularGlossiness"));
 }
 
+TEST(GltfMaterial, SpecularGlossinessWithoutFactorsIsSmoothAndWhite) {
+    const json empty = {{"extensions", {{"KHR_materials_pbrSpecularGlossiness", json::object()}}}};
+    const Material material = textured_triangle(empty).load().materials[0];
+    EXPECT_EQ(material.roughness, 0);
+    EXPECT_EQ(material.base_color, vec4(1));
+    EXPECT_EQ(material.specular_color, vec3(1));
+}
+
 // Roughness is 1 - factor * alpha; the alpha of the picture is 4.
 TEST(GltfMaterial, GlossinessInAlphaBecomesRoughness) {
     const auto load = [](double factor) {
@@ -207,6 +215,21 @@ TEST(GltfMaterial, GlossinessInAlphaBecomesRoughness) {
     ASSERT_EQ(material.metallic_roughness_texture.image, 1);
     for (std::size_t i = 0; i < given.rgba.size(); i += 4)
         EXPECT_EQ(scene.images[1].rgba[i + 1], std::lround(255 - 0.5f * given.rgba[i + 3]));
+}
+
+TEST(GltfMaterial, OnePictureHasARoughnessForEachFactorOfGlossiness) {
+    const auto material = [](double factor) {
+        return json{{"extensions",
+                     {{"KHR_materials_pbrSpecularGlossiness",
+                       {{"glossinessFactor", factor}, {"specularGlossinessTexture", {{"index", 0}}}}}}}};
+    };
+    GltfBuilder gltf = textured_triangle(material(0.5));
+    gltf.root["materials"].push_back(material(1));
+    gltf.root["materials"].push_back(material(0.5));
+    const Scene scene = gltf.load();
+    EXPECT_EQ(scene.materials[0].metallic_roughness_texture.image, 1);
+    EXPECT_EQ(scene.materials[1].metallic_roughness_texture.image, 2);
+    EXPECT_EQ(scene.materials[2].metallic_roughness_texture.image, 1);
 }
 
 TEST(GltfMaterial, FactorsOutsideOfTheirRangeAreClamped) {

@@ -65,14 +65,16 @@ TEST(ImageCodecs, ARequiredWebpTextureIsShown) {
 #endif
 
 #ifdef TWINRAY_HAS_AVIF
-TEST(ImageCodecs, AvifIsDecoded) {
-    avifImage* image = avifImageCreate(2, 2, 8, AVIF_PIXEL_FORMAT_YUV444);
+// "" if this libavif encodes nothing.
+template <class T>
+std::string avif_file(std::uint32_t depth, std::vector<T> texels) {
+    avifImage* image = avifImageCreate(2, 2, static_cast<int>(depth), AVIF_PIXEL_FORMAT_YUV444);
     avifRGBImage rgb;
     avifRGBImageSetDefaults(&rgb, image);
-    std::vector<std::uint8_t> texels = TEXELS;
-    rgb.pixels = texels.data();
-    rgb.rowBytes = 8;
-    ASSERT_EQ(avifImageRGBToYUV(image, &rgb), AVIF_RESULT_OK);
+    rgb.depth = 8 * sizeof(T);
+    rgb.pixels = reinterpret_cast<std::uint8_t*>(texels.data());
+    rgb.rowBytes = 8 * sizeof(T);
+    EXPECT_EQ(avifImageRGBToYUV(image, &rgb), AVIF_RESULT_OK);
     avifEncoder* encoder = avifEncoderCreate();
     encoder->minQuantizer = encoder->maxQuantizer = AVIF_QUANTIZER_LOSSLESS;
     avifRWData output = AVIF_DATA_EMPTY;
@@ -81,12 +83,26 @@ TEST(ImageCodecs, AvifIsDecoded) {
     avifRWDataFree(&output);
     avifEncoderDestroy(encoder);
     avifImageDestroy(image);
-    if (written != AVIF_RESULT_OK) GTEST_SKIP() << "this libavif encodes nothing";
+    return written == AVIF_RESULT_OK ? file : "";
+}
+
+TEST(ImageCodecs, AvifIsDecoded) {
+    const std::string file = avif_file(8, TEXELS);
+    if (file.empty()) GTEST_SKIP() << "this libavif encodes nothing";
     const Image decoded = decode_image(span_of(file), "a");
     ASSERT_EQ(decoded.rgba.size(), TEXELS.size());
     for (std::size_t i = 0; i < TEXELS.size(); ++i) EXPECT_NEAR(decoded.rgba[i], TEXELS[i], 8) << i;
     expect_contains(error_of([&] { decode_image(span_of(file.substr(0, file.size() / 2)), "a"); }),
                     "a is a damaged AVIF");
+}
+
+TEST(ImageCodecs, AnAvifOfTenBitsKeepsThem) {
+    const std::vector<std::uint16_t> texels(16, 0x4040);
+    const std::string file = avif_file(10, texels);
+    if (file.empty()) GTEST_SKIP() << "this libavif encodes nothing";
+    const Image decoded = decode_image(span_of(file), "a");
+    ASSERT_EQ(decoded.rgba16.size(), texels.size());
+    for (std::size_t i = 0; i < texels.size(); ++i) EXPECT_NEAR(decoded.rgba16[i], texels[i], 128) << i;
 }
 #endif
 
