@@ -179,8 +179,8 @@ GltfBuilder draco_file(const std::string& stream) {
                               {{"componentType", 5123}, {"count", 4}, {"type", "VEC2"}, {"normalized", true}}};
     gltf.primitive()["attributes"]["COLOR_0"] = 2;
     gltf.primitive()["attributes"]["TEXCOORD_0"] = 3;
-    gltf.primitive()["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", view},
-                                                                    {"attributes", {{"POSITION", 0}, {"COLOR_0", 1}, {"TEXCOORD_0", 2}}}};
+    gltf.primitive()["extensions"]["KHR_draco_mesh_compression"] = {
+        {"bufferView", view}, {"attributes", {{"POSITION", 0}, {"COLOR_0", 1}, {"TEXCOORD_0", 2}}}};
     gltf.root["extensionsRequired"] = {"KHR_draco_mesh_compression"};
     return gltf;
 }

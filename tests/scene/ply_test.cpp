@@ -283,10 +283,12 @@ TEST(Ply, CornersOfFacesHaveTextureCoordinates) {
 }
 
 TEST(Ply, FacesNameTheirPicture) {
-    const Scene scene = load_ply("ply\nformat ascii 1.0\ncomment TextureFile a.png\ncomment TextureFile b.png\n"
-                                 "element vertex 4\n" + POSITIONS + "element face 2\n" + FACE_LIST +
-                                 "property list uchar float texcoord\nproperty int texnumber\nend_header\n" +
-                                 TRIANGLE_ROWS + "1 1 0\n3 0 1 2 6 0 0 1 0 0 1 1\n3 2 1 3 6 0 1 1 0 1 1 0\n");
+    const Scene scene = load_ply(
+        "ply\nformat ascii 1.0\ncomment TextureFile a.png\ncomment TextureFile b.png\n"
+        "element vertex 4\n" +
+        POSITIONS + "element face 2\n" + FACE_LIST +
+        "property list uchar float texcoord\nproperty int texnumber\nend_header\n" + TRIANGLE_ROWS +
+        "1 1 0\n3 0 1 2 6 0 0 1 0 0 1 1\n3 2 1 3 6 0 1 1 0 1 1 0\n");
     EXPECT_EQ(scene.meshes[0].materials, (std::vector<uint>{1, 0}));
     ASSERT_EQ(scene.materials.size(), 2u);
     EXPECT_EQ(scene.materials[1].name, "b.png");
