@@ -223,9 +223,10 @@ HdrImage load_radiance_image(const std::filesystem::path& file) {
     const std::string object = file.string();
     const int size = checked_size(bytes, object);
     int width = 0, height = 0, channels = 0;
-    if (!stbi_is_hdr_from_memory(bytes.data(), size) ||
-        !stbi_info_from_memory(bytes.data(), size, &width, &height, &channels))
-        fail("'", object, "': not a Radiance .hdr image");
+    if (!stbi_is_hdr_from_memory(bytes.data(), size)) fail("'", object, "': not a Radiance .hdr image");
+    if (!stbi_info_from_memory(bytes.data(), size, &width, &height, &channels))
+        fail("'", object, "': a Radiance .hdr image of another kind than is read: FORMAT=32-bit_rle_rgbe, with a ",
+             "resolution line '-Y HEIGHT +X WIDTH'");
     check_image_size(width, height, object);
     if (!can_hold_radiance(bytes.size(), static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height)))
         fail("'", object, "': damaged Radiance .hdr image (", width, " x ", height, " pixels are more than its ",

@@ -210,6 +210,8 @@ TEST(HdrImage, FaultsAreNamed) {
     expect_contains(error_of([&] { load_hdr_image(dir.write("a.png", "x")); }), "unknown suffix '.png'");
     expect_contains(error_of([&] { load_hdr_image(dir.write("a.exr", "x")); }), "not a readable OpenEXR image");
     expect_contains(error_of([&] { load_hdr_image(dir.write("a.hdr", "x")); }), "not a Radiance .hdr image");
+    const char* upward = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n+Y 1 +X 1\nabcd";
+    expect_contains(error_of([&] { load_hdr_image(dir.write("a.hdr", upward)); }), "'-Y HEIGHT +X WIDTH'");
     expect_contains(error_of([&] { load_hdr_image(write_exr(dir, {"Z"}, 1, 1, {1}, Imf::NO_COMPRESSION)); }),
                     "neither channels R, G and B nor Y");
 }
