@@ -45,8 +45,10 @@ Bytes read_file(const std::filesystem::path& file) {
 void write_whole(const std::filesystem::path& file, const std::function<void(const std::filesystem::path&)>& write) {
     const std::filesystem::path target = linked(file);
     std::error_code error;
-    if (const auto status = std::filesystem::status(target, error);
-        std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    const auto status = std::filesystem::status(target, error);
+    if (std::filesystem::is_directory(status))
+        fail_to_write(file, std::make_error_code(std::errc::is_a_directory).message());
+    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
         write(target);
         return;
     }
