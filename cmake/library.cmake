@@ -64,6 +64,9 @@ function(twinray_add_library name)
             SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
     )
     target_compile_features(twinray_${name} PUBLIC cxx_std_20)
+    if(MINGW) # a host's copies of our inline functions are others than ours: cmake/warnings.cmake
+        target_compile_options(twinray_${name} PUBLIC $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-fno-ipa-ra>)
+    endif()
     target_include_directories(
         twinray_${name}
         PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
