@@ -129,6 +129,7 @@ TEST_F(ContextTest, PassesDoNotNest) {
 
 // The fixture must see what the layer says, or "validation is silent" means nothing.
 TEST(Validation, IsHeard) {
+    if (!test::has_validation()) TWINRAY_LACKS("validation", "TWINRAY_WITHOUT_VALIDATION is set");
     std::vector<std::string> messages;
     ContextDesc desc;
     desc.log = [&](std::string_view message) { messages.emplace_back(message); };

@@ -62,14 +62,17 @@ inline bool Host::create_instance() {
     const char* extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
     VkInstanceCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
-    info.pNext = &features;
     info.pApplicationInfo = &application;
-    info.enabledLayerCount = 1;
-    info.ppEnabledLayerNames = &layer;
-    info.enabledExtensionCount = 2;
-    info.ppEnabledExtensionNames = extensions;
+    if (::twinray::test::has_validation()) {
+        info.pNext = &features;
+        info.enabledLayerCount = 1;
+        info.ppEnabledLayerNames = &layer;
+        info.enabledExtensionCount = 2;
+        info.ppEnabledExtensionNames = extensions;
+    }
     if (vkCreateInstance(&info, nullptr, &instance) != VK_SUCCESS) return false;
     volkLoadInstance(instance);
+    if (!::twinray::test::has_validation()) return true;
     VkDebugUtilsMessengerCreateInfoEXT listen{};
     listen.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
     listen.messageSeverity =

@@ -60,6 +60,7 @@ TEST_F(KernelAddressesOnDevice, ThatAreAbsentCanBeRead) {
 }
 
 TEST(KernelAddressesOfACpu, ThatCannotBeReadAreNamed) {
+    if (!test::has_validation()) TWINRAY_LACKS("validation", "TWINRAY_WITHOUT_VALIDATION is set");
     const std::unique_ptr<Context> context = test::make_context({.log = [](std::string_view) {}});
     if (!context) return;
     if (context->properties().kind != DeviceKind::cpu)
