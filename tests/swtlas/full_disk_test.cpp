@@ -18,6 +18,7 @@ using FullDisk = test::VulkanTest;
 TEST_F(FullDisk, AFailedSaveLeavesTheOldFileAndNoOther) {
     SwTlas accel(context());
     accel.push(make_icosphere(4));
+    context().wait(accel.sync());
     const test::TempDir folder;
     const std::filesystem::path file = folder.write("scene.swtlas", "old");
     rlimit before{};
