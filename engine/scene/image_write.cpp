@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "engine/scene/bytes.h"
 #include "engine/scene/image_exr.h"
@@ -54,11 +55,13 @@ bool is_image_file(const std::filesystem::path& file) {
 
 void write_image(const std::filesystem::path& file, const HdrImage& image, float exposure,
                  std::span<const ImageChannel> channels) {
+    if (lower_suffix(file) != ".exr") return write_exposed(file, image, exposure);
     write_whole(file, [&](const std::filesystem::path& partial) {
-        if (lower_suffix(file) == ".exr")
+        try {
             write_exr_image(partial, image, channels);
-        else
-            write_exposed(partial, image, exposure);
+        } catch (const Error& error) {
+            fail("'", file.string(), "': ", error.what());
+        }
     });
 }
 

@@ -99,7 +99,7 @@ platform::Connection connect_to(const std::string& server) {
     const std::size_t colon = server.rfind(':');
     const std::string port = colon == std::string::npos ? default_port : server.substr(colon + 1);
     auto connection = platform::Connection::open(server.substr(0, colon), port, patience_seconds);
-    if (!connection) fail("--display-server ", server, ": nobody listens there; it must be HOST or HOST:PORT");
+    if (!connection) fail("--display-server ", server, ": no server listens there; it must be HOST or HOST:PORT");
     return std::move(*connection);
 }
 

@@ -111,74 +111,6 @@ FUNC bool may_begin_in_plane_double(dvec3 a, dvec3 b, dvec3 c, double mean)
     return is_around && abs(mean) <= ROUNDINGS * size.z * across * (across + size.z);
 }
 
-// The sum `high` + `low`, and what its terms add up to without their signs.
-struct ExactSum
-{
-    double high;
-    double low;
-    double size;
-};
-
-FUNC void add_product(INOUT(ExactSum) sum, double a, double b, double c)
-{
-    PRECISE double ab = a * b;
-    PRECISE double abc = ab * c;
-    PRECISE double high = sum.high + abc;
-    PRECISE double kept = high - sum.high;
-    PRECISE double lost = sum.high - (high - kept) + (abc - kept);
-    PRECISE double low = sum.low + lost + product_error_double(ab, c, abc) + product_error_double(a, b, ab) * c;
-    sum.high = high;
-    sum.low = low;
-    sum.size = sum.size + abs(abc);
-}
-
-// 1 where the ray meets the plane of the triangle after `end`, -1 before, 0 at it: the sign of n (a - end d) by n d,
-// with the normal n as edges that are subtracted without error where coordinates do not differ by more than 2^29. A sum
-// of doubled float64 tells 0 from what floats can be, unless its terms cancel by more than 2^90.
-FUNC int order_of_plane(GivenMesh mesh, uint primitive_index, Ray ray, double end, bool along)
-{
-    const double NOTHING_LEFT = double(8.0779356694631609e-28f); // 2^-90
-    dvec3 origin = dvec3(double(ray.origin.x), double(ray.origin.y), double(ray.origin.z));
-    dvec3 way = end * dvec3(double(ray.direction.x), double(ray.direction.y), double(ray.direction.z)); // exact
-    dvec3 a = vertex_from(origin, mesh, 3u * primitive_index);
-    dvec3 e = vertex_from(origin, mesh, 3u * primitive_index + 1u) - a;
-    dvec3 f = vertex_from(origin, mesh, 3u * primitive_index + 2u) - a;
-    ExactSum sum;
-    sum.high = double(0.0f);
-    sum.low = double(0.0f);
-    sum.size = double(0.0f);
-    // The loop turns the axes, and exchanges e and f for the odd products.
-    DONT_UNROLL for (uint i = 0u; i < 6u; i = i + 1u)
-    {
-        double first = i < 3u ? e.y : -e.y;
-        add_product(sum, first, f.z, a.x);
-        add_product(sum, -first, f.z, way.x);
-        a = dvec3(a.y, a.z, a.x);
-        way = dvec3(way.y, way.z, way.x);
-        dvec3 next_e = dvec3(e.y, e.z, e.x);
-        dvec3 next_f = dvec3(f.y, f.z, f.x);
-        e = i == 2u ? next_f : next_e;
-        f = i == 2u ? next_e : next_f;
-    }
-    PRECISE double total = sum.high + sum.low;
-    if (abs(total) <= NOTHING_LEFT * sum.size) return 0;
-    return (total > double(0.0f)) == along ? 1 : -1;
-}
-
-// Returns whether t lies between the ray's ends, neither of them included: exactly, also where float64 rounds t.
-FUNC bool is_within_ends(double t, GivenMesh mesh, uint primitive_index, Ray ray, bool along)
-{
-    const double ROUNDINGS = double(9.094947017729282e-13f); // 2^-40
-    double t_min = max(double(ray.t_min), double(0.0f));
-    double t_max = double(ray.t_max);
-    bool is_within = t > t_min && t < t_max;
-    bool is_at_end = abs(t - t_max) <= ROUNDINGS * t_max && t_max <= double(3.402823466e+38f);
-    double end = is_at_end ? t_max : t_min;
-    if (is_at_end || (abs(t - t_min) <= ROUNDINGS * t_min && t_min > double(0.0f)))
-        is_within = order_of_plane(mesh, primitive_index, ray, end, along) == (is_at_end ? -1 : 1);
-    return is_within;
-}
-
 // Returns whether the given ray meets the triangle in world space within its interval, and where: t of the traced ray,
 // which begins `advance` behind the given one, as t + t_low. Returns false with sign_of_t asked if float64 is not
 // certain of it: told_sign() then tells it in object space.
@@ -186,6 +118,7 @@ FUNC bool intersect_in_world(uint primitive_index, uint instance_index, TraceOpt
                              INOUT(TriangleHit) hit)
 {
     const double LEAST_NORMAL = double(uintBitsToFloat(0x00800000u));
+    const double ROUNDINGS = double(1.4210854715202004e-14f); // 2^-46
     GivenMesh mesh = load_given_mesh(options.instances, instance_index);
     vec3 o = options.given.origin;
     vec3 w = options.given.direction;
@@ -213,7 +146,14 @@ FUNC bool intersect_in_world(uint primitive_index, uint instance_index, TraceOpt
         return false;
     }
     if (sign_of_t == SIGN_POSITIVE) given_t = max(given_t, LEAST_NORMAL);
-    if (!is_within_ends(given_t, mesh, primitive_index, options.given, along_in_world)) return false;
+    // t is rounded by less than 2^-46 of the depths that it is a mean of: so near to an end it is at the end, which does
+    // not count.
+    PRECISE double rounding = ROUNDINGS * ((abs(a.z) + abs(b.z) + abs(c.z)) / abs(d.z));
+    double t_min = max(double(options.given.t_min), double(0.0f));
+    PRECISE double after_begin = t_min + rounding;
+    double from = t_min > double(0.0f) ? after_begin : t_min;
+    PRECISE double to = double(options.given.t_max) - rounding;
+    if (given_t <= from || given_t >= to) return false;
     PRECISE double t = given_t - options.advance;
     double high = rounded_to_24_bits(t);
     PRECISE double low = t - high;

@@ -112,7 +112,7 @@ TEST_F(WriteTest, TheFirstOfEachClassIsWrittenAndTheRestPassedOver) {
     std::ostringstream said;
     EXPECT_EQ(write_reproducers(folder() / "out", files, devices(), said), 1u);
     test::expect_contains(said.str(), "missing.json' cannot be opened");
-    test::expect_contains(said.str(), "right.json': the driver's own answer is AGREE, no fault");
+    test::expect_contains(said.str(), "right.json': the driver's own answer is AGREE, which is no fault");
     test::expect_contains(said.str(), "HW_LEAK in ");
     for (const char* name : {"reproducer.c", "report.md", "replay.json", "scene.glb", "query.spv"})
         EXPECT_TRUE(fs::exists(folder() / "out" / "HW_LEAK" / name)) << name;
