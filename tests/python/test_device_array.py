@@ -64,7 +64,7 @@ def test_bad_arrays_are_named():
     rows = np.dtype([("ray", np.float32, 8), ("more", np.float32, 8)])
     with pytest.raises(ValueError, match="rays: "):
         scene.trace(scene.device_array(4, rows)["ray"])
-    with pytest.raises(ValueError, match="would be a copy"):
+    with pytest.raises(ValueError, match="would require a copy"):
         scene.device_array(4).__array__(np.float64, copy=False)
     with pytest.raises(ValueError, match="hits: "):
         scene.trace(scene.device_array((4, 8)), scene.device_array(5, twinray.HIT))
