@@ -72,7 +72,7 @@ def test_bad_arrays_are_named():
         scene.device_array((-1, 8))
     with pytest.raises(ValueError, match="shape: "):
         scene.device_array(0)
-    with pytest.raises(KeyError, match="no field"):
+    with pytest.raises(KeyError, match="not a field"):
         scene.device_array(4, twinray.HIT)["t"]
     with pytest.raises(AttributeError, match="host's memory"):
         scene.device_array(4).__cuda_array_interface__  # noqa: B018

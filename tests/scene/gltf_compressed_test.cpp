@@ -194,6 +194,15 @@ TEST(GltfDraco, PrimitivesAreDecoded) {
     EXPECT_TRUE(scene.warnings.empty());
 }
 
+TEST(GltfDraco, PlainDataBesideAStreamAreTaken) {
+    GltfBuilder gltf = one_triangle();
+    gltf.primitive()["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", gltf.add_view("nothing")},
+                                                                    {"attributes", {{"POSITION", 0}}}};
+    gltf.root["extensionsUsed"] = {"KHR_draco_mesh_compression"};
+    const Scene scene = gltf.load();
+    EXPECT_EQ(scene.meshes[0].triangles.size(), 1u);
+}
+
 TEST(GltfDraco, StreamsThatDoNotFitAreNamed) {
     const std::string good = draco_stream();
     expect_contains(draco_file(good.substr(0, 8)).error(), "has no header");

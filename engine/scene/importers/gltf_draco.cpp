@@ -158,6 +158,12 @@ std::span<const std::uint8_t> draco_stream(const GltfFile& file, const json& roo
     return stream_bytes(file, root["bufferViews"][view], buffers, object);
 }
 
+// Files that do not require the extension bring the data uncompressed, too. It is then taken.
+bool has_plain_data(const json& root, std::uint64_t accessor) {
+    const auto accessors = root.find("accessors");
+    return accessors != root.end() && accessor < accessors->size() && (*accessors)[accessor].contains("bufferView");
+}
+
 // Strips come out as triangles.
 void decode_draco_primitive(const GltfFile& file, json& root, std::vector<tinygltf::Buffer>& buffers, json& primitive,
                             const std::string& object) {
@@ -190,7 +196,7 @@ void decode_draco_primitives([[maybe_unused]] const GltfFile& file, [[maybe_unus
             json& primitive = mesh["primitives"][p];
             if (!has_extension(primitive, draco_extension) || !primitive.contains("attributes")) continue;
             const auto position = json_count(primitive["attributes"], "POSITION");
-            if (!position || !decoded.insert(*position).second) continue;
+            if (!position || has_plain_data(root, *position) || !decoded.insert(*position).second) continue;
             decode_draco_primitive(
                 file, root, buffers, primitive,
                 text(gltf_name("mesh", m, json_string(mesh, "name")), " primitive ", p, " ", draco_extension));
