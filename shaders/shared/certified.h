@@ -146,8 +146,8 @@ FUNC bool intersect_in_world(uint primitive_index, uint instance_index, TraceOpt
         return false;
     }
     if (sign_of_t == SIGN_POSITIVE) given_t = max(given_t, LEAST_NORMAL);
-    // t is rounded by less than 2^-46 of the depths that it is a mean of. A surface so near to an end is at the end, which
-    // does not count.
+    // t is rounded by less than 2^-46 of the depths that it is a mean of. A surface so near to an end is at the end,
+    // which does not count.
     PRECISE double rounding = ROUNDINGS * ((abs(a.z) + abs(b.z) + abs(c.z)) / abs(d.z));
     double t_min = max(double(options.given.t_min), double(0.0f));
     PRECISE double after_begin = t_min + rounding;
