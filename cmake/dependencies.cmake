@@ -11,8 +11,8 @@ if(TWINRAY_SCENE)
     find_path(TINYGLTF_INCLUDE_DIR tiny_gltf.h REQUIRED)
     find_path(STB_INCLUDE_DIR stb_image.h PATH_SUFFIXES stb REQUIRED)
 endif()
-# Libraries for formats of scene files: each is used if it is found and its option is not OFF. <target> is then the library,
-# and TWINRAY_HAS_<name> is defined for its users.
+# Libraries for formats of scene files: each is used if it is found and its option is not OFF. <target> is then the
+# library, and TWINRAY_HAS_<name> is defined for its users.
 set(TWINRAY_FORMATS "")
 function(twinray_format name text library)
     if(NOT ${library})

@@ -17,9 +17,9 @@ else()
         INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wconversion -Wshadow -ffp-contract=off>
     )
 endif()
-# Files that are compiled together have more sections than an object of Windows holds by default. And GCC takes an inline
-# function that it compiles for Windows for the one that will be linked, with the registers that it leaves alone; but a
-# linker may take another file's, compiled with other options.
+# Files that are compiled together have more sections than an object of Windows holds by default. For Windows, GCC also
+# trusts the registers that an inline function leaves alone, but a linker may take another file's copy of it, compiled
+# with other options.
 if(MINGW)
     target_compile_options(twinray_options INTERFACE -Wa,-mbig-obj $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-fno-ipa-ra>)
 endif()

@@ -33,12 +33,15 @@ copy_headers() {
 }
 
 fetch_sources() {
-    local apt=$folder/apt release
+    local apt=$folder/apt release mirror
     release=$(. /etc/os-release && echo "$VERSION_CODENAME")
+    # The mirror that this system takes its packages from; apt-get expands what stands in quotes.
+    # shellcheck disable=SC2016
+    mirror=$(apt-get indextargets --format '$(CODENAME) $(REPO_URI)' | sed -n "s/^$release //p" | sort -u | head -n 1)
     mkdir -p "$apt/lists/partial" "$apt/lists.d"
     cat >"$apt/lists.d/debian.sources" <<END
 Types: deb-src
-URIs: ${TWINRAY_DEBIAN_MIRROR:-http://deb.debian.org/debian}
+URIs: $mirror
 Suites: $release
 Components: main
 Signed-By: /usr/share/keyrings/debian-archive-keyring.gpg

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // twinray._core: scene.h and analysis.h for Python, and memory that Python's array packages share. Arguments are
-// checked and cast in Python, which has the public names.
+// checked and cast in Python, which has the public names. One file of more than 400 lines, since all bindings share the
+// helpers that convert arrays and give back Python's lock.
 #include <array>
 #include <cstddef>
 #include <memory>

@@ -22,7 +22,8 @@ if(TWINRAY_WINE)
     set(CMAKE_CROSSCOMPILING_EMULATOR ${TWINRAY_WINE})
 endif()
 
-# No program needs a DLL of the compiler or of zlib; but exceptions pass from one DLL to another by the compiler's alone.
+# No program needs a DLL of the compiler or of zlib. Only the compiler's own DLL carries exceptions from one DLL to
+# another.
 if(NOT BUILD_SHARED_LIBS)
     set(CMAKE_EXE_LINKER_FLAGS_INIT -static)
 endif()

@@ -29,7 +29,7 @@ class SceneSpec:
         Each a file's name, a mesh of trimesh, Open3D or PyVista, or a tuple (vertices, triangles) or (vertices,
         triangles, transform). A file must be readable by each worker and stay as it is.
     accel, device, level, origin
-        As of `Scene`. Where `device` is None and a machine has several GPUs, its workers take turns on them.
+        The options of `Scene`. If `device` is None and a machine has several GPUs, its workers share them out.
 
     Attributes
     ----------

@@ -4,6 +4,8 @@
 A `SceneSpec` describes a scene once; each worker builds it when the first chunk comes. Results are lazy, and their bits
 depend on the scene, the seed and the version of twinray alone: not on chunks, workers, their order or restarts.
 
+One file of more than 400 lines, since half of it is docstrings, and all functions cut arrays alike.
+
 >>> import dask.array as da
 >>> import twinray.dask
 >>> spec = twinray.dask.SceneSpec(([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]))
@@ -53,7 +55,7 @@ def cast_rays(scene: SceneSpec | Any, rays: Any, *, tnear: float = 0.0, tfar: fl
     Returns
     -------
     dict of dask.array, or xarray.Dataset for a DataArray
-        As of `Scene.cast_rays`; ``t_hit`` is float64 where rays are.
+        The fields of `Scene.cast_rays`. ``t_hit`` is float64 if the rays are.
     """
     array, labels = _rows(rays, "rays", 6)
     t = np.dtype(np.float32 if array.dtype in (np.float16, np.float32) else np.float64)
@@ -155,7 +157,7 @@ def sky_view(
     scene : SceneSpec, or what it takes
     points : dask.array, xarray.DataArray or array_like, (..., 3)
     normals : the same as points, optional
-        Where the surfaces of points look; by default up, z, from the points themselves.
+        Normals of the surfaces that the points lie on. By default rays begin at the points, and up is z.
     patches : {"tregenza145", "reinhart577", "reinhart2305"}
         Patches of the sky, one ray each (`sky_patches`). `visible` gives the answers by patch.
     weights : array_like, (patches,), optional
@@ -259,7 +261,7 @@ def illumination(
     Returns
     -------
     dict of dask.array, (D, n) float64
-        By direction, then by face or group.
+        The first axis is the direction, the second the face or group.
     """
     array, labels = _rows(directions, "directions", 3)
     if array.ndim != 2:

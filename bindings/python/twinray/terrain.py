@@ -4,6 +4,8 @@
 A raster is a surface of triangles between the middles of cells; cells without a height (NaN) are holes in it. Each tile
 is a scene of its own, with a halo as wide as anything could stand that hides the lowest ray. Results are lazy arrays of
 Dask, a chunk a tile.
+
+One file of more than 400 lines, since all its questions share how tiles and halos are cut.
 """
 
 from __future__ import annotations
@@ -54,12 +56,12 @@ def sky_view(
         From column to column, eastward, and from row to row, northward, negative where rows go south; one number: of
         square cells whose rows go south. By default the coordinates of the DataArray tell.
     patches : {"tregenza145", "reinhart577", "reinhart2305"}, optional
-        Of the sky, a ray each. By default the sky is what lies above the `horizon`, which is more exact after as many
-        rays.
+        Patches of the sky, one ray each. By default the sky above the `horizon` counts, which is more exact for the
+        same number of rays.
     weights : array_like, (patches,), optional
         The brightness of each patch; by default a uniform sky's.
     azimuths, steps, lowest
-        As of `horizon`, without patches.
+        The options of `horizon`; not with `patches`.
     measure : {"light", "solid_angle"}
         The part of the light on a horizontal plane, or of the hemisphere itself.
     relief : float, optional
@@ -67,12 +69,12 @@ def sky_view(
     height : float
         Height of the sensors above ground; 0 by default.
     curvature : float
-        Of the earth: 0 is a plane, 1 a sphere, 0.857 a sphere as light sees it, which the air bends. Heights must be in
+        Curvature of the earth: 0 is a plane, 1 a sphere, 0.857 a sphere with the refraction of air. Heights must be in
         metres. 64 x 64 cells share the vertical of their middle.
     tile : int
         Cells along a side of a tile; 1024 by default.
     accel, device : optional
-        As of `twinray.Scene`.
+        The options of `twinray.Scene`.
     """
     if measure not in ("light", "solid_angle"):
         raise ValueError(f"measure: {measure!r} is not one of light, solid_angle")
@@ -127,7 +129,7 @@ def sun_hours(
     Parameters
     ----------
     heights, spacing, relief, height, curvature, tile, accel, device
-        As of `sky_view`. The lowest sun says how wide halos are.
+        The parameters of `sky_view`. The lowest sun decides how wide halos are.
     suns : array_like, (S, 3)
         Towards the sun: x east, y north, z up; those that are not above the horizon bring nothing.
     hours : array_like, (S,), or float

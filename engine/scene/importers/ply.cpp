@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// .ply files, text and binary, with faces or strips of triangles.
+// .ply files, text and binary, with faces or strips of triangles. One file of more than 400 lines, since it is one
+// reader whose steps share what the header says.
 #include <algorithm>
 #include <array>
 #include <cmath>
