@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Makes new records for an old topology. Each invocation has a run of slots, whose leaves it refits one after the
-// other; of the children of a node the last one continues with it. One loop handles leaves and nodes: while one goes
-// up, its neighbours in a vector process leaves.
+// other; the last child of a node to be refitted continues with the node.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"
@@ -22,8 +21,9 @@ LeafBox refit_leaf(BuildTree tree, uint slot, CompressedRecord record)
     return boxed.box;
 }
 
-LeafBox refit_node(BuildTree tree, uint slot, CompressedRecord node, SharedBoxes boxes)
+LeafBox refit_node(BuildTree tree, uint slot, SharedBoxes boxes)
 {
+    CompressedRecord node = load_record(tree.records, slot);
     CompressedRecord second_half = second_half_of(tree.records, slot, node);
     ChildSlots slots = child_slots(node, second_half);
     NodeChildren children;
@@ -66,18 +66,11 @@ void main()
     uint run = (last - slots_begin(tree, chunk) + gl_WorkGroupSize.x - 1u) / gl_WorkGroupSize.x;
     uint next = min(slots_begin(tree, chunk) + gl_LocalInvocationID.x * run, last);
     uint end = min(next + run, last);
-    uint ready = NOTHING;
-    while (ready != NOTHING || next < end)
+    for (uint slot = next; slot < end; ++slot)
     {
-        bool is_ready = ready != NOTHING;
-        uint slot = is_ready ? ready : next;
-        next += is_ready ? 0u : 1u;
         CompressedRecord record = load_record(tree.records, slot);
-        bool is_refitted = is_leaf(record) || is_ready;
-        LeafBox box = empty_box();
-        if (is_leaf(record)) box = refit_leaf(tree, slot, record);
-        else if (is_ready) box = refit_node(tree, slot, record, boxes);
-        ready = NOTHING;
-        if (is_refitted) ready = leave(tree, slot, box);
+        if (!is_leaf(record)) continue;
+        uint node = leave(tree, slot, refit_leaf(tree, slot, record));
+        while (node != NOTHING) node = leave(tree, node, refit_node(tree, node, boxes));
     }
 }
