@@ -2,6 +2,7 @@
 // t, u and v of hits in float64, of rays in float64.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#define TWINRAY_REFINED
 #include "twinray/glsl/common.glsl"
 #include "shaders/shared/exact_hit.h"
 layout(local_size_x = 64) in;

@@ -146,14 +146,9 @@ FUNC bool intersect_in_world(uint primitive_index, uint instance_index, TraceOpt
         return false;
     }
     if (sign_of_t == SIGN_POSITIVE) given_t = max(given_t, LEAST_NORMAL);
-    // t is rounded by less than 2^-46 of the depths that it is a mean of. A surface so near to an end is at the end,
-    // which does not count.
+    // t is rounded by less than 2^-46 of the depths that it is a mean of.
     PRECISE double rounding = ROUNDINGS * ((abs(a.z) + abs(b.z) + abs(c.z)) / abs(d.z));
-    double t_min = max(double(options.given.t_min), double(0.0f));
-    PRECISE double after_begin = t_min + rounding;
-    double from = t_min > double(0.0f) ? after_begin : t_min;
-    PRECISE double to = double(options.given.t_max) - rounding;
-    if (given_t <= from || given_t >= to) return false;
+    if (!(given_t > double(0.0f)) || !is_between_ends(given_t, rounding, options.given)) return false;
     PRECISE double t = given_t - options.advance;
     double high = rounded_to_24_bits(t);
     PRECISE double low = t - high;

@@ -3,6 +3,7 @@
 //  - A ray from far away is traced from near the scene: its origin moves along it, computed in float64. Rounding is
 //    then relative to the scene's size, not to the distance.
 //  - The hit that counts is computed again in float64 from what the user gave: the ray, the vertices, the transform.
+//    One at an end of the ray does not count, and the ray is traced again without it.
 #ifndef TWINRAY_SHARED_REFINE_H
 #define TWINRAY_SHARED_REFINE_H
 #include "shaders/shared/exact_double.h"
@@ -21,7 +22,7 @@ FUNC double slab_entry(float o, float d, float lo, float hi)
 // The same ray from nearer to the box, if it comes from more than five times as far as the box's largest coordinate: t
 // of the result plus `advance` is t of `ray`. It stops about that coordinate short of the box, so nothing is jumped
 // over. Nearer rays pay for one comparison.
-FUNC Ray advanced(Ray ray, vec3 lo, vec3 hi, uint level, INOUT(double) advance)
+FUNC Ray advanced(Ray ray, vec3 lo, vec3 hi, INOUT(double) advance)
 {
     const float FAR_IN_SIZES = 4.0f;
     advance = double(0.0f);
@@ -47,11 +48,22 @@ FUNC Ray advanced(Ray ray, vec3 lo, vec3 hi, uint level, INOUT(double) advance)
     PRECISE double t_max = double(min(ray.t_max, 3.402823466e+38f)) - way;
     near.t_min = max(float(t_min), 0.0f);
     near.t_max = float(t_max);
-    // Certified tests the given interval itself: the moved ray's rounding must not exclude hits.
-    if (level == LEVEL_CERTIFIED && near.t_min > 0.0f) near.t_min = uintBitsToFloat(floatBitsToUint(near.t_min) - 1u);
-    if (level == LEVEL_CERTIFIED && near.t_max > 0.0f) near.t_max = uintBitsToFloat(floatBitsToUint(near.t_max) + 1u);
     advance = way;
     return near;
+}
+
+// The ray to trace for options.given: advanced(), with a margin at both ends, since float64 tells what lies between
+// them. Filters see hits before float64 does, so that their rays have none below certified.
+FUNC Ray searched_ray(vec3 lo, vec3 hi, INOUT(TraceOptions) options)
+{
+    const float MARGIN = 3.814697265625e-06f; // 2^-18
+    Ray ray = advanced(options.given, lo, hi, options.advance);
+    if (options.level != LEVEL_CERTIFIED && (options.features & FEATURE_FILTERS) != 0u) return ray;
+    PRECISE float t_min = ray.t_min - MARGIN * ray.t_min;
+    PRECISE float t_max = ray.t_max + MARGIN * ray.t_max;
+    if (ray.t_min > 0.0f) ray.t_min = t_min;
+    if (ray.t_max > 0.0f) ray.t_max = max(ray.t_max, min(t_max, 3.402823466e+38f));
+    return ray;
 }
 
 // A vertex in world space, seen from the origin.
@@ -79,6 +91,16 @@ FUNC float rounded_within(double t, Ray ray)
     return rounded;
 }
 
+// Whether a hit at t, which is off by up to `rounding`, lies between the ends of a ray. A surface so near to an end
+// is at the end, which does not count. Signs of t have been decided, so the origin is no end.
+FUNC bool is_between_ends(double t, double rounding, Ray ray)
+{
+    PRECISE double after_begin = double(ray.t_min) + rounding;
+    PRECISE double before_end = double(ray.t_max) - rounding;
+    bool is_behind = ray.t_min > 0.0f && t <= after_begin;
+    return !is_behind && !(t >= before_end);
+}
+
 // The point nearest to 0. Of a triangle's vertices, it is the one from which the distance of its plane cancels least:
 // in a mesh with coordinates of 1e-6 and 1e6, another one cost 20 units in the last place of t.
 FUNC dvec3 nearest_of(dvec3 a, dvec3 b, dvec3 c)
@@ -94,12 +116,16 @@ struct PlaneHit
 {
     double det; // 0: the plane contains the line, and the others are no numbers
     double t;
+    double rounding; // of t
     double u;
     double v;
 };
 
+FUNC double sum_of_sizes(dvec3 v) { return abs(v.x) + abs(v.y) + abs(v.z); }
+
 FUNC PlaneHit meet_plane(dvec3 origin, dvec3 direction, GivenMesh mesh, uint primitive)
 {
+    const double ROUNDINGS = double(1.4210854715202004e-14f); // 2^-46
     PlaneHit met;
     dvec3 a = vertex_from(origin, mesh, 3u * primitive);
     dvec3 b = vertex_from(origin, mesh, 3u * primitive + 1u);
@@ -117,25 +143,55 @@ FUNC PlaneHit meet_plane(dvec3 origin, dvec3 direction, GivenMesh mesh, uint pri
     double square = product_sum(normal, normal);
     PRECISE double weight_u = product_sum(cross_product(w, e2), normal) / square;
     PRECISE double weight_v = product_sum(cross_product(e1, w), normal) / square;
+    PRECISE double depth = sum_of_sizes(a) + abs(way) * sum_of_sizes(direction);
+    PRECISE double rounding = ROUNDINGS * sum_of_sizes(e1) * sum_of_sizes(e2) * depth / abs(met.det);
     met.t = way;
+    met.rounding = rounding;
     met.u = weight_u;
     met.v = weight_v;
     return met;
 }
 
-// A hit of advanced(ray) as one of `ray`: t, u and v are what float64 gives, rounded once.
-FUNC Hit refined(Hit hit, Ray ray, double advance, GivenMesh mesh)
+const float REFINING_STEP = 2.384185791015625e-07f; // 2^-22
+
+// Shortens the ray, so that a triangle at one of its ends is not found again: by a share of t, at first
+// REFINING_STEP.
+FUNC void leave_out(float t, INOUT(Ray) ray, INOUT(float) step)
 {
-    PRECISE double moved = double(hit.t) + advance;
-    hit.t = rounded_within(moved, ray);
-    if (is_absent(mesh.indices)) return hit;
+    PRECISE float gap = step * abs(t);
+    if (abs(ray.t_max - t) <= abs(t - ray.t_min)) ray.t_max = min(ray.t_max, t) - gap;
+    else ray.t_min = max(ray.t_min, t) + gap;
+    step *= 4.0f;
+}
+
+// Makes a hit of the traced ray, `near`, one of the given ray: t, u and v are what float64 gives, rounded once.
+// Returns false if it is at an end of that; `near` is then shorter, and to be traced again.
+FUNC bool refine(INOUT(Hit) hit, INOUT(Ray) near, INOUT(float) step, TraceOptions options)
+{
+    Ray ray = options.given;
+    PRECISE double moved = double(hit.t) + options.advance;
+    // Where the plane contains the ray, and in boxes, float32 has the last word.
+    PlaneHit traced;
+    traced.det = double(0.0f);
+    traced.t = moved;
+    traced.rounding = double(0.0f);
+    traced.u = double(hit.u);
+    traced.v = double(hit.v);
+    PlaneHit met = traced;
+    GivenMesh mesh = load_given_mesh(options.instances, hit.instance_index);
     dvec3 origin = dvec3(double(ray.origin.x), double(ray.origin.y), double(ray.origin.z));
     dvec3 direction = dvec3(double(ray.direction.x), double(ray.direction.y), double(ray.direction.z));
-    PlaneHit met = meet_plane(origin, direction, mesh, hit.primitive_index);
-    if (met.det == double(0.0f)) return hit; // float32 has the last word
+    if (!is_absent(mesh.indices)) met = meet_plane(origin, direction, mesh, hit.primitive_index);
+    if (met.det == double(0.0f)) met = traced;
+    if (options.level != LEVEL_CERTIFIED && !is_between_ends(met.t, met.rounding, ray))
+    {
+        PRECISE double t = met.t - options.advance;
+        leave_out(float(t), near, step);
+        return false;
+    }
     hit.t = rounded_within(met.t, ray);
     hit.u = float(met.u);
     hit.v = float(met.v);
-    return hit;
+    return true;
 }
 #endif

@@ -156,6 +156,43 @@ TEST_P(Refined, TheIntervalHoldsInUnitsOfTheRay) {
     EXPECT_EQ(t(), -1.0f) << "the ray ends long before the scene";
 }
 
+// A plane that no axis is along; each ray ends on it exactly, and its t is rounded.
+TEST_P(Refined, ASurfaceAtTheEndOfARayIsLeftOutAndHidesNothing) {
+    const vec3 u(3, 1, 2), v(-1, 4, 1);
+    const auto sheet = [&](const vec3& at) {
+        Mesh mesh;
+        mesh.positions = {at - 4.0f * (u + v), at + 4.0f * (u - v), at + 4.0f * v};
+        mesh.triangles = {{0, 1, 2}};
+        return mesh;
+    };
+    accel().push(sheet(vec3(0)));
+    std::mt19937 random(3);
+    const auto whole = [&](int most) {  // from -most to most
+        return static_cast<float>(std::uniform_int_distribution<int>(-most, most)(random));
+    };
+    std::vector<Ray> ending, beyond, hidden;
+    for (int i = 0; i < 1000; ++i) {
+        const vec3 target = u * (whole(4) / 16) + v * (whole(4) / 16);
+        const vec3 step(whole(64) / 64, whole(64) / 64, 3 + whole(64) / 64);
+        ending.push_back({target - step, 0, step, 1});
+        beyond.push_back({target - step, 0, step, std::nextafter(1.0f, 2.0f)});
+        hidden.push_back({target - step, 0.0625f, step, 1});
+    }
+    const auto count = [&](std::span<const Ray> rays) {
+        const TraceDesc refined{.level = Level::refined};
+        const auto closest = accel().closest_hits(rays, refined);
+        const auto any = accel().any_hits(rays, refined);
+        for (std::size_t i = 0; i < rays.size(); ++i) EXPECT_EQ(closest[i].hit, any[i].hit) << i;
+        return std::ranges::count_if(closest, [](const Hit& hit) { return hit.hit == 1; });
+    };
+    EXPECT_EQ(count(ending), 0);
+    EXPECT_EQ(count(beyond), 1000);
+    for (Ray& ray : beyond) ray.t_min = 1;
+    EXPECT_EQ(count(beyond), 0) << "the surface is at the other end";
+    accel().push(sheet(vec3(0, 0, -1)));
+    EXPECT_EQ(count(hidden), 1000) << "a sheet before the end";
+}
+
 TEST_P(Refined, FollowsMovesAndNewMeshes) {
     const AccelHandle handle = accel().push(square(0), std::vector<Transform>(2));
     Ray ray{vec3(0.25f, 0.5f, 1e5f), 0, vec3(0, 0, -1), INFINITY};

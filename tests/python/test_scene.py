@@ -558,7 +558,8 @@ def test_a_transform_that_flattens_leaves_what_is_left():
     assert len(scene) == 3
 
 
-def test_certified_decides_the_ends_of_rays_exactly():
+@pytest.mark.parametrize(("accel", "level"), [("sw", "certified"), ("sw", "refined"), ("hw", "refined")])
+def test_ends_of_rays_are_decided_by_float64(accel, level):
     random = np.random.default_rng(7)
     count = 500
     corners = random.integers(-512, 512, (count, 3, 3)) / 64
@@ -567,7 +568,7 @@ def test_certified_decides_the_ends_of_rays_exactly():
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     step = (normal / np.linalg.norm(normal, axis=1, keepdims=True) * 256).round() / 256
     rays = np.hstack([on_plane - step, step]).astype(np.float32)
-    scene = twinray.Scene("sw", level="certified", origin=[0, 0, 0])
+    scene = twinray.Scene(accel, level=level, origin=[0, 0, 0])
     scene.add_triangles(corners.reshape(-1, 3), np.arange(3 * count).reshape(-1, 3))
     own = np.arange(count)
     last_before, next_after = np.nextafter(np.float32(1), np.float32([0, 2]))

@@ -87,21 +87,27 @@ void Scene::build_refinement(std::span<const InstanceRecord> records) {
     }
 }
 
+TraceOptions Scene::trace_options(const Ray& ray, uint query, uint mask, uint level) const {
+    const uint features = features_of({.layout = layout_}, {.instances = instances_.size(), .has_transforms = true},
+                                      TraceTraits::of_every_kind());
+    return {mask, 0, query, level, features, 0, ray, 0, Ref<RefineInstance>::to(refined_.data())};
+}
+
 Ray Scene::searched_ray(const Ray& ray, uint level, double& advance) const {
-    advance = 0;
-    return level < LEVEL_REFINED ? ray : advanced(ray, bound_.lo, bound_.hi, level, advance);
+    TraceOptions options = trace_options(ray, QUERY_CLOSEST, 0xff, level);
+    const Ray searched = level < LEVEL_REFINED ? ray : twinray::searched_ray(bound_.lo, bound_.hi, options);
+    advance = options.advance;
+    return searched;
 }
 
 Hit Scene::trace(const Ray& ray, uint query, uint mask, uint level) const {
-    double advance = 0;
-    const Ray searched = searched_ray(ray, level, advance);
-    const uint features = features_of({.layout = layout_}, {.instances = instances_.size(), .has_transforms = true},
-                                      TraceTraits::of_every_kind());
-    const TraceOptions options{
-        mask, 0, query, level, features, 0, ray, advance, Ref<RefineInstance>::to(refined_.data())};
-    const Hit hit = traverse(header_, searched, options);
-    if (level < LEVEL_REFINED || !hit.hit) return hit;
-    return refined(hit, ray, advance, refined_[hit.instance_index].mesh);
+    TraceOptions options = trace_options(ray, query, mask, level);
+    Ray searched = searched_ray(ray, level, options.advance);
+    float step = REFINING_STEP;
+    for (;;) {
+        Hit hit = traverse(header_, searched, options);
+        if (level < LEVEL_REFINED || !hit.hit || refine(hit, searched, step, options)) return hit;
+    }
 }
 
 TraversalSteps Scene::take_steps() { return std::exchange(traversal_steps(), {}); }

@@ -53,6 +53,8 @@ class Scene {
     std::span<const LeafBox> instance_boxes() const { return instance_boxes_; }  // in world space
 
   private:
+    TraceOptions trace_options(const Ray& ray, uint query, uint mask, uint level) const;
+
     // The target of InstanceRecord::geometry.
     struct Block {
         SwGeometry geometry{};

@@ -42,14 +42,15 @@ Hit trace(Address accel, Ray ray, TraceOptions options)
     if (options.level < LEVEL_REFINED) return trace_float32(accel, ray, options);
     RefineScene scene = AT(REF(RefineScene)(AT(REF(AccelHeader)(accel), 0).refinement), 0);
     WorldBound bound = AT(scene.bound, 0);
-    double advance = 0.0;
-    Ray near = advanced(ray, bound.lo, bound.hi, options.level, advance);
     options.given = ray;
-    options.advance = advance;
     options.instances = scene.instances;
-    Hit hit = trace_float32(accel, near, options);
-    if (hit.hit == 0u) return hit;
-    return refined(hit, ray, advance, load_given_mesh(scene.instances, hit.instance_index));
+    Ray near = searched_ray(bound.lo, bound.hi, options);
+    Hit hit;
+    float step = REFINING_STEP;
+    do
+        hit = trace_float32(accel, near, options);
+    while (hit.hit != 0u && !refine(hit, near, step, options));
+    return hit;
 }
 #else
 // Returns the hit for `options`, by their level; t is in units of the direction. A miss has hit = 0.
