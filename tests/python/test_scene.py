@@ -504,6 +504,11 @@ def test_a_cpu_driver_is_told_once():
     assert ended.returncode == 0 and ended.stderr.count("runs on a CPU") == (ended.stdout == "CPU\n"), ended
 
 
+def test_a_python_without_its_lock_is_refused():
+    ended = in_another_process("import sys; sys._is_gil_enabled = lambda: False; import twinray")
+    assert ended.returncode == 1 and "ImportError: twinray needs the GIL" in ended.stderr, ended
+
+
 def test_the_backend_is_told():
     backend = twinray.Scene("sw").backend
     assert set(backend) == {"device", "driver", "kind", "accel", "why", "path", "level", "lists", "note"}

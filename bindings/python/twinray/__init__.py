@@ -12,6 +12,7 @@ Array([2.], dtype=float32)
 from __future__ import annotations
 
 import atexit as _atexit
+import sys as _sys
 from typing import Any as _Any
 
 from . import _core
@@ -33,6 +34,10 @@ from .picture import Picture
 from .pinhole import create_rays_pinhole
 from .scene import INVALID_ID, Scene
 from .sky import read_sensors, sky_patches
+
+# Importing the core switches the GIL of a free-threaded Python on, unless its user keeps it off.
+if not getattr(_sys, "_is_gil_enabled", lambda: True)():
+    raise ImportError("twinray needs the GIL, which PYTHON_GIL=0 or -X gil=0 keeps off; run Python without them")
 
 __all__ = [
     "Array",
