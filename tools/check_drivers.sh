@@ -5,8 +5,8 @@
 # could not be made, for the printed reason.
 #   tools/check_drivers.sh [--quick] [--build FOLDER] [--rooms FOLDER] [NAME...]
 #     NAME       mesa-25.0 (backports of Debian 12), mesa-26.1 (of Debian 13), mesa-26.2 (sid), swiftshader
-#                (chromium-common of Debian 12), default: all; newest: the one that sid has. The table names its
-#                version.
+#                (chromium-common of Debian 12), default: all; newest, testing: those that sid and Debian
+#                testing have. The table names their versions.
 #     --quick    the contract, verify, leaks and the conformance suite: minutes
 #     --build    default: build/release
 #     --rooms    default: build/rooms; rooms stay there. A missing room is made in two minutes.
@@ -14,7 +14,7 @@
 set -euo pipefail
 
 declare -A suites=([mesa-25.0]=bookworm-backports [mesa-26.1]=trixie-backports [mesa-26.2]=sid [newest]=sid
-    [swiftshader]=bookworm)
+    [testing]=testing [swiftshader]=bookworm)
 quick=0 build='' rooms=''
 while [[ ${1-} == --* ]]; do
     case $1 in

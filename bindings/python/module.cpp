@@ -482,6 +482,8 @@ LastLock::LastLock(Device& device) : device_(device) {
 }
 
 NB_MODULE(_core, m) {
+    // A process may end while others hold a scene: workers of PyTorch's DataLoader do.
+    nb::set_leak_warnings(false);
     nb::exception<Error>(m, "Error", PyExc_RuntimeError);
     m.attr("__version__") = TWINRAY_VERSION;
     bind_scene(m);

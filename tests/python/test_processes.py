@@ -109,6 +109,15 @@ def test_a_child_ends_as_any_program_does():
     assert ended.returncode == 0 and ended.stdout == f"right\n{3 << 8}\n", ended
 
 
+def test_a_scene_that_others_hold_at_the_end_says_nothing():
+    code = (
+        "import ctypes, twinray; scene = twinray.Scene(); "
+        "ctypes.pythonapi.Py_IncRef(ctypes.py_object(scene)); ctypes.pythonapi.Py_IncRef(ctypes.py_object(scene._core))"
+    )
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=100)
+    assert ended.returncode == 0 and "leak" not in ended.stderr, ended
+
+
 def test_a_fork_while_another_thread_works_never_hangs():
     scene = scene_of_cube()
     rays = np.repeat(DOWN, 1_000_000, 0)
