@@ -214,7 +214,8 @@ LONG = {
 @pytest.mark.parametrize("call", LONG)
 def test_ctrl_c_ends_a_call(call):
     code = f"""
-import logging, os, sys, threading, time
+import logging, os, signal, sys, threading, time
+signal.signal(signal.SIGINT, signal.default_int_handler)  # which a shell's background jobs ignore
 sys.path.insert(0, {os.path.dirname(__file__)!r})
 import numpy as np, twinray
 from conftest import grid
