@@ -281,7 +281,8 @@ Command illumination_command() {
     for (Option& option : sky_options(options->sky)) light.options.push_back(std::move(option));
     light.options.push_back({.name = "--sides",
                              .value = choice(options->sides, sides_by_name),
-                             .help = "sides of faces that receive light"});
+                             .help = "sides of faces that receive light: the front, from which vertices run "
+                                     "counter-clockwise, or both"});
     Section output = analysis_output(options->analysis,
                                      "write a CSV file with one line per face: face, hits, area, ci_low, ci_high; with "
                                      "--sky or --sun: face, free_rays, sky or hours, ci_low, ci_high");

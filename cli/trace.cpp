@@ -255,8 +255,8 @@ Command trace_command() {
             .summary = "trace a file of rays",
             .description =
                 "Reads a scene and a file of rays, traces the rays and writes a file of hits. t is in units of the "
-                "ray's direction, which need not be normalised. Indices begin at 0 and number the triangles in the "
-                "order of the scene's file.",
+                "ray's direction, which need not be normalised. Instances are numbered from 0 in the order of the "
+                "scene's file, and primitives, the triangles of each mesh, likewise.",
             .positionals = {scene_argument(options->scene)},
             .sections = {rays, tracing, pictures, shard_options(options->shards, {"--picture"}, "--hits"),
                          common_options(options->common)},

@@ -270,14 +270,17 @@ Command view_command() {
          {.name = "--record", .value = file(options->record), .help = "write the events of the window to this file"}}};
     return {.name = "view",
             .group = "Tracing",
-            .summary = "show a scene in a window: its picture, its trees, where accelerators disagree, analyses",
+            .summary = "show a scene in a window, or write a picture of it",
             .description =
-                "Shows a scene in a window. Drag with the left button to orbit, with the middle button, or with shift "
+                "Shows a scene in a window: its picture, its trees, where accelerators disagree, analyses. With "
+                "--screenshot it writes a picture and opens none; path_tracer renders pictures of a given error. Drag with the left button to orbit, with the middle button, or with shift "
                 "and the left button, to pan. The wheel zooms, a double-click sets the orbit centre, and a click "
                 "explains the ray of a pixel. H shows all keys.",
             .positionals = {scene_argument(options->scene)},
             .sections = {picture, camera, without, input, common_options(options->common)},
             .examples = {{"twinray view scene.glb", "open a window"},
+                         {"twinray view scene.glb --layer path --spp 64 --screenshot picture.png",
+                          "write a path-traced picture"},
                          {"twinray view scene.glb --layer steps --tree-depth 4 --screenshot steps.png",
                           "show the work of each ray, and boxes of the tree"},
                          {"twinray view scene.glb --show difference --screenshot difference.png",

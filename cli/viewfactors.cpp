@@ -137,6 +137,9 @@ void print(const Summary& run, const Options& options) {
               << " contour, " << totals.entries_by.at("area") << " area, " << totals.entries_by.at("hits") << " hits; "
               << run.rays_between_faces << " rays between points of faces, " << run.seconds_of_pairs
               << " s\nwidest 95 % interval: +- " << totals.widest << '\n';
+    if (totals.hits == 0 && totals.rays > 0 && options.factors.sides == Sides::front)
+        std::cout << "no ray met the front of a face: either no faces see each other, or their fronts point away; "
+                     "--sides both radiates from both sides\n";
     print_residuals("as counted", run.counted);
     if (run.projected) print_residuals("projected", *run.projected);
 }
@@ -301,7 +304,9 @@ Command viewfactors_command() {
          {.name = "--target-error",
           .value = number(factors.target_error, {.least = 0, .is_above = true}),
           .help = "stop a row when the 95 % confidence interval of each of its entries is within +- this"},
-         {.name = "--sides", .value = choice(factors.sides, sides), .help = "sides of faces that radiate"},
+         {.name = "--sides",
+          .value = choice(factors.sides, sides),
+          .help = "sides of faces that radiate: the front, from which vertices run counter-clockwise, or both"},
          {.name = "--sequence", .value = choice(factors.sequence, sequences), .help = "sequence of the samples"},
          {.name = "--estimator",
           .value = choice(options->estimator, names_of(all_pair_estimators)),

@@ -31,7 +31,7 @@ std::vector<T> read_all(const std::filesystem::path& file) {
     const auto bytes = static_cast<std::uint64_t>(in.tellg());
     if (bytes % sizeof(T) != 0)
         fail("rays file '", file.string(), "': ", bytes, " bytes is not a multiple of ", sizeof(T),
-             ", the size of a ray");
+             ", the size of a ray; rays as text belong in a .csv or .txt file");
     std::vector<T> values(bytes / sizeof(T));
     in.seekg(0);
     if (!in.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(bytes)))

@@ -79,6 +79,16 @@ with tempfile.TemporaryDirectory() as folder:
         record = json.loads(lines.readline())
     expect(record["hits"] == record["rays"] == 432 * 1024 and record["projected"]["reciprocity"] < 1e-6, record)
 
+    expect("--sides both" not in text, text)
+
+    # Fronts that point away see nothing, and the command says what may be meant.
+    outwards = os.path.join(folder, "outwards.obj")
+    with open(box, encoding="utf-8") as lines, open(outwards, "w", encoding="utf-8") as out:
+        for line in lines:
+            out.write(" ".join(["f", *line.split()[:0:-1]]) + "\n" if line.startswith("f ") else line)
+    text = run(outwards, "--rays-per-row", "64", "--estimator", "hits")
+    expect("0 entries" in text and "fronts point away; --sides both" in text, text)
+
     run(box, "-o", npz_file, "--rays-per-row", "1024", "--estimator", "hits", "--project", "--quiet")
     with zipfile.ZipFile(npz_file) as archive:
         expect(archive.testzip() is None, "checksums")
