@@ -273,9 +273,10 @@ Command view_command() {
             .summary = "show a scene in a window, or write a picture of it",
             .description =
                 "Shows a scene in a window: its picture, its trees, where accelerators disagree, analyses. With "
-                "--screenshot it writes a picture and opens none; path_tracer renders pictures of a given error. Drag with the left button to orbit, with the middle button, or with shift "
-                "and the left button, to pan. The wheel zooms, a double-click sets the orbit centre, and a click "
-                "explains the ray of a pixel. H shows all keys.",
+                "--screenshot it writes a picture and opens none; path_tracer renders pictures of a given error. Drag "
+                "with the left button to orbit, with the middle button, or with shift and the left button, to pan. The "
+                "wheel zooms, a double-click sets the orbit centre, and a click explains the ray of a pixel. H shows "
+                "all keys.",
             .positionals = {scene_argument(options->scene)},
             .sections = {picture, camera, without, input, common_options(options->common)},
             .examples = {{"twinray view scene.glb", "open a window"},

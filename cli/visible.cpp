@@ -136,8 +136,8 @@ void run(VisibleOptions options) {
     for (const double share : shares) mean += share / static_cast<double>(shares.size());
     if (!options.analysis.common.quiet)
         std::cout << analysed.head("visible", options.analysis) << "  " << speed_text(rays, seconds) << "\n  "
-                  << sensors.points.size() << " sensors receive " << mean << " of the light of a uniform sky on average, by "
-                  << options.patches << '\n';
+                  << sensors.points.size() << " sensors receive " << mean << " of the light of a uniform sky (mean, "
+                  << options.patches << ")\n";
     nlohmann::json record = {{"sensors", sensors.points.size()},
                              {"sky", options.patches},
                              {"n", rays},
