@@ -86,7 +86,7 @@ SwBackend::SwBackend(Context& context, const AccelOptions& options)
     : AccelBackend(context, "SwTlas", options), builder_(context, options) {}
 
 void SwBackend::prepare(Geometry& geometry) const {
-    if (has_records(options().layout)) choose_leaves(geometry, keeps_meshes());
+    if (has_records(options().layout)) choose_leaves(geometry, keeps_meshes_on_device());
 }
 
 // Returns null if the mesh is only in host memory.
@@ -297,9 +297,9 @@ BuildBytes SwBackend::bytes_of(std::span<const Geometry* const> geometries) cons
     Needs needs{options().layout, context().state().tuning()};
     for (const Geometry* geometry : geometries)
         needs.add(SwBuiltGeometry::leaf_count_of(*geometry),
-                  SwBuiltGeometry::vertex_count_of(*geometry, keeps_meshes()),
-                  keeps_meshes() ? std::span(geometry->leaves).size_bytes()
-                                 : source_bytes({geometry, nullptr, {}, {}, nullptr, {}}));
+                  SwBuiltGeometry::vertex_count_of(*geometry, keeps_meshes_on_device()),
+                  keeps_meshes_on_device() ? std::span(geometry->leaves).size_bytes()
+                                           : source_bytes({geometry, nullptr, {}, {}, nullptr, {}}));
     return {needs.structures, cut_into_batches(needs.shares, scratch_budget()).scratch_bytes};
 }
 

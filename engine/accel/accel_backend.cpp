@@ -89,8 +89,8 @@ Geometry AccelBackend::geometry_of(const MeshView& mesh) const {
 Geometry AccelBackend::geometry_of(const DeviceMesh& mesh, const char* action) const {
     if (!works_on_device()) fail(name_, ": ", action, ": meshes in device memory are unsupported");
     const vec3 corners[] = {mesh.bounds ? mesh.bounds->lo : vec3(1), mesh.bounds ? mesh.bounds->hi : vec3(1)};
-    const float unit = mesh.in_place && keeps_meshes() ? 1 : unit_of(corners);
-    if (mesh.in_place && keeps_meshes() && !is_packed(mesh))
+    const float unit = mesh.in_place && keeps_meshes_on_device() ? 1 : unit_of(corners);
+    if (mesh.in_place && keeps_meshes_on_device() && !is_packed(mesh))
         fail(name_, ": ", action, ": mesh '", mesh.name,
              "' in place: surfaces and refining read float32 positions of stride 12 and 32-bit indices; pack it, or "
              "have it copied");

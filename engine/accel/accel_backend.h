@@ -221,7 +221,7 @@ class AccelBackend {
     // Returns false if the host traces, and neither reads vertices in device memory nor measures costs.
     virtual bool works_on_device() const { return true; }
     // Returns whether they are on the device even if their vertices do not move.
-    bool keeps_meshes() const { return refinement_ || options_.keeps_surfaces; }
+    bool keeps_meshes_on_device() const { return refinement_ || options_.keeps_surfaces; }
     // Traces for closest_hits() and any_hits().
     virtual std::vector<Hit> trace_host(std::span<const Ray> rays, TraceDesc desc);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The device data of Level::refined: all meshes and transforms as they were given.
+// The device data of Level::refined: all transforms as they were given, with the addresses of meshes.
 #pragma once
 
 #include <optional>

@@ -103,7 +103,7 @@ void AccelBackend::stage_vertices(Commands& commands, Staged& staged) {
 
 // Returns whether refining or surfaces lack its mesh on the device, which no edit brings there.
 bool AccelBackend::lacks_mesh(const HeldGeometry& held) const {
-    return keeps_meshes() && !held.vertices.edited && !held.vertices.on_device() &&
+    return keeps_meshes_on_device() && !held.vertices.edited && !held.vertices.on_device() &&
            held.geometry.kind == GEOMETRY_TRIANGLES && !held.geometry.is_in_place();
 }
 
@@ -113,7 +113,7 @@ void AccelBackend::stage_sources(Commands& commands, Staged& staged) {
     if (staged.sources.empty()) return;
     const auto pass = commands.pass("geometry sources");
     for (const HeldGeometry* held : staged.sources) {
-        PackedMesh mesh = keeps_meshes() ? kept_mesh(*held, staged) : PackedMesh{};
+        PackedMesh mesh = keeps_meshes_on_device() ? kept_mesh(*held, staged) : PackedMesh{};
         context_.fill_absent(mesh.positions, mesh.indices);
         commands.write(held->block, GeometrySource{mesh.positions, mesh.indices, held->geometry.scale, 0},
                        GEOMETRY_SOURCE_OFFSET);

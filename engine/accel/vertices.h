@@ -16,9 +16,9 @@ namespace twinray {
 #include "shaders/shared/copies.h"
 #include "twinray/glsl/cpp_end.h"
 
-// The parts of one geometry's mesh that the device has and lacks. It is empty until a vertex is first moved, so that
-// meshes that keep their shape cost nothing; from then on everything is built from the device's copy. For a DeviceMesh
-// in place it only holds costs: each sync that builds or refits it makes its copy anew.
+// The parts of one geometry's mesh that the device has and lacks. It is empty until a vertex is first moved, unless
+// level refined or AccelOptions::keeps_surfaces needs the mesh; from then on everything is built from the device's
+// copy. For a DeviceMesh in place it only holds costs: each sync that builds or refits it makes its copy anew.
 struct VertexSlice {
     Buffer positions, indices;
     CostLog costs;              // of the geometry's tree

@@ -32,7 +32,7 @@ Estimate scattered(const Replicates& values) {
     return {mean, {mean - half, mean + half}};
 }
 
-const Interval& Estimator::rate(std::uint64_t events, std::uint64_t rays) {
+const Interval& FractionEstimator::rate(std::uint64_t events, std::uint64_t rays) {
     constexpr std::size_t most_kept = 1 << 14;
     if (rates_.size() >= most_kept) rates_.clear();
     const auto [found, is_new] = rates_.try_emplace({events, rays});
@@ -41,13 +41,13 @@ const Interval& Estimator::rate(std::uint64_t events, std::uint64_t rays) {
 }
 
 // `value` is `events` of so many rays as make it that fraction: not of `rays` if faces of a group weigh differently.
-const Interval& Estimator::counted(double value, std::uint64_t events, std::uint64_t rays) {
+const Interval& FractionEstimator::counted(double value, std::uint64_t events, std::uint64_t rays) {
     if (events == 0 || events == rays) return rate(events, rays);
     const auto trials = static_cast<std::uint64_t>(std::llround(static_cast<double>(events) / value));
     return rate(events, std::max(trials, events));
 }
 
-Estimate Estimator::operator()(const Replicates& fractions, std::uint64_t events, std::uint64_t rays) {
+Estimate FractionEstimator::operator()(const Replicates& fractions, std::uint64_t events, std::uint64_t rays) {
     constexpr Interval fraction = {0, 1};
     const auto [mean, scatter] = scattered(fractions);
     if (events < fewest_events || rays - events < fewest_events)

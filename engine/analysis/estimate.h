@@ -29,8 +29,7 @@ Estimate scattered(const Replicates& values);
 // too few to scatter as they should, and it is that of Clopper and Pearson (1934), never too short for independent or
 // stratified rays. No interval is shorter than some 3.7 / rays either way, which no ray may have seen: replicates of
 // stratified rays can all agree. Intervals of counts take long to compute and recur: they are kept.
-// and again: they are kept.
-class Estimator {
+class FractionEstimator {
   public:
     Estimate operator()(const Replicates& fractions, std::uint64_t events, std::uint64_t rays);
 

@@ -33,7 +33,7 @@ void RowSums::settle() {
     added_.clear();
 }
 
-Estimate RowSums::estimate(const Entry& entry, double total_weight, Estimator& estimator) const {
+Estimate RowSums::estimate(const Entry& entry, double total_weight, FractionEstimator& estimator) const {
     Replicates fractions;
     for (std::size_t i = 0; i < replicate_count; ++i) fractions[i] = entry.sums[i] / total_weight;
     return estimator(fractions, entry.hits, rays_);

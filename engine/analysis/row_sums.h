@@ -27,7 +27,7 @@ class RowSums {
     std::uint64_t rays() const { return rays_; }
     const std::vector<Entry>& entries() const { return entries_; }  // ascending by target
     // `total_weight`: of all rays of a replicate.
-    Estimate estimate(const Entry& entry, double total_weight, Estimator& estimator) const;
+    Estimate estimate(const Entry& entry, double total_weight, FractionEstimator& estimator) const;
 
   private:
     struct Added {

@@ -66,7 +66,7 @@ struct Row {
         for (const Member& member : members) sum += member.weight * member.chunks;
         return sum * SAMPLES_OF_CHUNK * static_cast<double>(rounds);
     }
-    bool is_within(double error, const std::vector<ViewFactor>& known, Estimator& estimator) const {
+    bool is_within(double error, const std::vector<ViewFactor>& known, FractionEstimator& estimator) const {
         const double total = total_weight();
         return std::all_of(sums.entries().begin(), sums.entries().end(), [&](const RowSums::Entry& entry) {
             return has(known, entry.target) || sums.estimate(entry, total, estimator).half_width() <= error;
@@ -119,7 +119,7 @@ struct ViewFactors::State {
     std::vector<std::vector<uint>> members;  // faces with an area, by group
     std::vector<double> areas;
     std::vector<std::vector<ViewFactor>> known;  // of each row, ascending by target
-    Estimator estimator;
+    FractionEstimator estimator;
     Buffer groups, chunks, rays, hits, targets;
     Pace pace;
 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// All of twinray but vma_adapter.h, which needs the application's Vulkan Memory Allocator.
+// The headers of accelerators, rays and verification. Scenes (scene.h), analyses (analysis.h), queries (queries.h),
+// sets (sets.h) and vma_adapter.h are included by themselves.
 #pragma once
 
 #include <twinray/abstract_accel.h>

@@ -30,21 +30,21 @@ TEST(Within, NothingLeavesWhatIsPossibleAndIntervalsHoldTheirValues) {
 }
 
 // Weights of rays are rounded, so that their sum may be, too.
-TEST(Estimator, OfAllRaysIsNoMoreThanAll) {
+TEST(FractionEstimator, OfAllRaysIsNoMoreThanAll) {
     Replicates fractions;
     fractions.fill(1 + 0x1p-50);
     for (const std::uint64_t events : {16000u, 15000u}) {
-        const Estimate estimate = Estimator()(fractions, events, 16000);
+        const Estimate estimate = FractionEstimator()(fractions, events, 16000);
         EXPECT_EQ(estimate.value, 1) << events;
         EXPECT_EQ(estimate.interval_95.high, 1) << events;
         EXPECT_LT(estimate.interval_95.low, 1) << events;
     }
 }
 
-TEST(Estimator, OfManyEventsIsStudentsInterval) {
+TEST(FractionEstimator, OfManyEventsIsStudentsInterval) {
     Replicates fractions;
     for (std::size_t i = 0; i < replicate_count; ++i) fractions[i] = i % 2 ? 0.3 : 0.2;
-    const Estimate estimate = Estimator()(fractions, 4000, 16000);
+    const Estimate estimate = FractionEstimator()(fractions, 4000, 16000);
     EXPECT_DOUBLE_EQ(estimate.value, 0.25);
     // Standard error 0.05 sqrt(16 / 15) / 4; Student's quantile for 15 degrees of freedom is 2.13145.
     EXPECT_NEAR(estimate.half_width(), 2.13145 * 0.05 * std::sqrt(16.0 / 15) / 4, 1e-6);
@@ -52,16 +52,16 @@ TEST(Estimator, OfManyEventsIsStudentsInterval) {
 }
 
 // Stratified rays from a panel beside a wide floor, of which every replicate sees exactly half.
-TEST(Estimator, OfReplicatesThatAgreeLeavesRoomForWhatNoRaySaw) {
+TEST(FractionEstimator, OfReplicatesThatAgreeLeavesRoomForWhatNoRaySaw) {
     Replicates fractions;
     fractions.fill(0.5);
-    const Estimate estimate = Estimator()(fractions, 512, 1024);
+    const Estimate estimate = FractionEstimator()(fractions, 512, 1024);
     EXPECT_EQ(estimate.value, 0.5);
     EXPECT_NEAR(estimate.half_width(), 3.7 / 1024, 0.1 / 1024);
 }
 
-TEST(Estimator, OfFewEventsIsThatOfCounts) {
-    Estimator estimate;
+TEST(FractionEstimator, OfFewEventsIsThatOfCounts) {
+    FractionEstimator estimate;
     Replicates all;
     all.fill(1);
     const Estimate never = estimate({}, 0, 16000), always = estimate(all, 16000, 16000);
@@ -94,7 +94,7 @@ TEST(RowSums, CountsByTargetAndReplicate) {
     EXPECT_EQ(seven.hits, 62u);
     EXPECT_EQ(seven.sums[0], 3);
     EXPECT_EQ(seven.sums[15], 4);
-    Estimator estimator;
+    FractionEstimator estimator;
     EXPECT_NEAR(sums.estimate(three, 6, estimator).value, (2 * 3.0 + 14 * 2.0) / 16 / 6, 1e-15);
 }
 

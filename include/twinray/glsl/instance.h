@@ -25,7 +25,7 @@ BUFFER_OF(GeometryBox, 8);
 // of `scale`, a power of two near their size, so that neither tiny nor huge ones leave the range of float32; the map to
 // world space includes the unit.
 struct GeometrySource {
-    Floats positions;  // the mesh's, in units of scale; absent unless level refined needs them
+    Floats positions;  // the mesh's, in units of scale; absent unless AccelOptions keep level refined or surfaces
     Uints indices;
     float scale;
     uint reserved;

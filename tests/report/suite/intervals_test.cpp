@@ -95,7 +95,7 @@ TEST_F(Intervals, OfLostRaysHoldTheRateOfABrokenDriver) {
 }
 
 // An estimate, whose truth is known, as one seed gives it.
-struct Estimator {
+struct FractionEstimator {
     std::string name;
     double truth;
     std::function<Interval(std::uint64_t seed)> interval;
@@ -126,7 +126,7 @@ class EstimateIntervals : public test::VulkanTest, public testing::WithParamInte
         accel_->sync();
         faces_.emplace(*accel_);
     }
-    void expect_to_hold(const Estimator& estimator) {
+    void expect_to_hold(const FractionEstimator& estimator) {
         constexpr uint seeds = 300;
         uint held = 0;
         for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
