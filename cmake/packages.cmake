@@ -20,8 +20,8 @@ set(CPACK_INSTALL_CMAKE_PROJECTS "${PROJECT_BINARY_DIR};${PROJECT_NAME};Unspecif
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 # dpkg-shlibdeps (Debian: dpkg-dev) finds what the command links. Without the window it loads Vulkan only when it runs.
-# Programs that link the static libraries need the suggested packages.
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libvulkan1, mesa-vulkan-drivers")
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "libvulkan-dev, libopenexr-dev, zlib1g-dev, glslang-tools, spirv-tools")
+# Recommended: a driver, and what programs that link the static libraries need to build.
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libvulkan1, mesa-vulkan-drivers, libvulkan-dev, libopenexr-dev, zlib1g-dev")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "glslang-tools, spirv-tools")
 include(CPack)
