@@ -19,7 +19,8 @@ set(CPACK_INSTALL_CMAKE_PROJECTS "${PROJECT_BINARY_DIR};${PROJECT_NAME};Unspecif
 
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
-# dpkg-shlibdeps (Debian: dpkg-dev and file) finds what the command links. Without the window it loads Vulkan only when it runs.
+# dpkg-shlibdeps (Debian: dpkg-dev and file) finds what the command links. Without the window it loads Vulkan only when
+# it runs.
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # Recommended: a driver, and what programs that link the static libraries need to build.
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libvulkan1, mesa-vulkan-drivers, libvulkan-dev, libopenexr-dev, zlib1g-dev")
