@@ -115,11 +115,10 @@ HdrImage::Part part_of(const Configuration& configuration) {
     return part;
 }
 
-void write_picture_of(const std::filesystem::path& file, const Film& film, const std::optional<float>& exposure,
-                      std::span<const ImageChannel> layers) {
-    HdrImage picture = film.mean();
-    picture.part = part_of(film.configuration);
-    write_image(file, picture, exposure_of(exposure, film.configuration, picture), layers);
+void write_picture_of(const std::filesystem::path& file, const Configuration& configuration, HdrImage picture,
+                      const std::optional<float>& exposure, std::span<const ImageChannel> layers) {
+    picture.part = part_of(configuration);
+    write_image(file, picture, exposure_of(exposure, configuration, picture), layers);
 }
 
 std::string hash_of(const Configuration& configuration) {

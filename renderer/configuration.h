@@ -19,9 +19,9 @@ float exposure_of(const std::optional<float>& wanted, const Configuration& confi
 // The position of the film's pixels in the picture. Throws Error for a configuration without it.
 HdrImage::Part part_of(const Configuration& configuration);
 
-// Writes the mean with this exposure.
-void write_picture_of(const std::filesystem::path& file, const Film& film, const std::optional<float>& exposure,
-                      std::span<const ImageChannel> layers = {});
+// Writes the picture of a film of this configuration, with this exposure.
+void write_picture_of(const std::filesystem::path& file, const Configuration& configuration, HdrImage picture,
+                      const std::optional<float>& exposure, std::span<const ImageChannel> layers = {});
 
 // Returns the CRC-32 of the text, to tell configurations apart at a glance.
 std::string hash_of(const Configuration& configuration);

@@ -20,11 +20,11 @@ void* open_library(const char* name) noexcept;
 void close_library(void* library) noexcept;
 void* symbol_of(void* library, const char* name) noexcept;
 
-struct VulkanLoader {
+struct SystemLibrary {
     const char* library;
     const char* hint;  // how to get it
 };
-extern const VulkanLoader vulkan_loader;
+extern const SystemLibrary vulkan_loader, image_denoiser;
 
 // Processes.
 int process_id() noexcept;

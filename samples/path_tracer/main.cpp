@@ -100,8 +100,7 @@ class FrameRenderer {
         const Rendering rendering = render_film(options_, session_, *accel_, ranks_);
         report_render(options_, session_, *accel_, rendering, &note);
         // One exposure serves all frames: otherwise they would flicker.
-        if (!options_.exposure)
-            options_.exposure = exposure_of({}, rendering.film.configuration, rendering.film.mean());
+        if (!options_.exposure) options_.exposure = exposure_of({}, rendering.film.configuration, rendering.picture);
         return rendering.signal;
     }
 
@@ -168,7 +167,7 @@ int merge_films(const MergeOptions& options) {
     if (is_film_file(options.output))
         save_film(options.output, film);
     else
-        write_picture_of(options.output, film, options.exposure);
+        write_picture_of(options.output, film.configuration, film.mean(), options.exposure);
     report_merge(options, film);
     return 0;
 }

@@ -50,6 +50,8 @@ void add_files(CLI::App& app, Options& options) {
     app.add_flag("--aovs", options.aovs,
                  "also write these layers to the .exr: albedo, normal, depth, instance and primitive of the first hit, "
                  "samples, variance");
+    app.add_flag("--denoise", options.denoise,
+                 "remove the picture's noise with Open Image Denoise, if that library is installed; films keep it");
     app.add_option("--variant", options.variant, "name of a material variant of the scene (KHR_materials_variants)");
     samples::add_path(app, "--environment", options.environment,
                       "environment map that lights the scene: latitude-longitude .hdr or .exr");
@@ -207,11 +209,12 @@ ParsedOptions parse_options(int argc, char** argv) {
     add_camera(app, result.options);
     add_machine(app, result.options);
     for (const char* other : {"--accel", "--time", "--target-error", "--resume", "--shard", "--write-partial-images",
-                              "--keep-film", "--mse-reference-image", "--aovs"})
+                              "--keep-film", "--mse-reference-image", "--aovs", "--denoise"})
         app.get_option("--cross-check")->excludes(other);
     app.get_option("--target-error")->excludes("--shard");
-    for (const char* other : {"--camera", "--variant", "--environment", "--max-depth", "--seed", "--cropwindow",
-                              "--filter", "--lens-radius", "--focal-distance", "--spp", "--time", "--target-error"})
+    for (const char* other :
+         {"--camera", "--variant", "--environment", "--max-depth", "--seed", "--cropwindow", "--filter",
+          "--lens-radius", "--focal-distance", "--spp", "--time", "--target-error", "--denoise"})
         app.get_option("--view")->excludes(other);
     add_sequence(app, result.options.sequence);
     result.exit_status = samples::parse(app, argc, argv, "path_tracer");

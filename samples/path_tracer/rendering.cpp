@@ -13,6 +13,7 @@
 
 #include "engine/core/platform.h"
 #include "renderer/configuration.h"
+#include "renderer/denoiser.h"
 #include "renderer/film_file.h"
 #include "renderer/rounds.h"
 #include "samples/support/progress.h"
@@ -253,7 +254,7 @@ class FilmRenderer {
     void write_what_is_due() {
         if (is_preview_due() && ranks_.index() == 0) {
             read();
-            write_output();
+            write_picture(result_.film.mean(), {});
             preview_.restart();
             if (!std::exchange(has_preview_, true) && !options_.quiet)
                 std::fprintf(stderr, "%s: written after %.1f s, still coarse; better pictures will replace it\n",
@@ -279,23 +280,31 @@ class FilmRenderer {
         display_due_.restart();
     }
 
-    std::vector<ImageChannel> layers() const {
-        if (!options_.aovs) return {};
-        std::vector<ImageChannel> layers =
-            layers_of(session_.renderer->first_surfaces(accel_), samples_of_first_surfaces);
-        for (ImageChannel& channel : layers_of(result_.film)) layers.push_back(std::move(channel));
-        return layers;
+    void write_picture(const HdrImage& picture, std::span<const ImageChannel> layers) const {
+        if (!is_film_file(options_.output))
+            write_picture_of(options_.output, result_.film.configuration, picture, options_.exposure, layers);
     }
 
-    void write_output(std::span<const ImageChannel> layers = {}) const {
-        if (!is_film_file(options_.output)) write_picture_of(options_.output, result_.film, options_.exposure, layers);
+    void write_output() {
+        result_.picture = result_.film.mean();
+        std::vector<ImageChannel> layers;
+        if (options_.aovs || session_.denoiser) {
+            const std::vector<FirstSurface> surfaces = session_.renderer->first_surfaces(accel_);
+            if (session_.denoiser)
+                result_.picture =
+                    session_.denoiser->denoised(std::move(result_.picture), surfaces, samples_of_first_surfaces);
+            if (options_.aovs) layers = layers_of(surfaces, samples_of_first_surfaces);
+        }
+        if (options_.aovs)
+            for (ImageChannel& channel : layers_of(result_.film)) layers.push_back(std::move(channel));
+        write_picture(result_.picture, layers);
     }
 
     // The signal may come from mpirun, because a rank is lost: each rank saves its film, and none waits for others.
     void stop() {
         ranks_.abandon();
         if (options_.checkpoint_seconds) save_film(file_, result_.film);
-        if (ranks_.index() == 0) write_output(layers());
+        if (ranks_.index() == 0) write_output();
     }
 
     // A checkpoint has no use beside a finished picture.
@@ -306,7 +315,7 @@ class FilmRenderer {
         gather(ranks_, result_.film, result_.stats);
         const std::filesystem::path whole = film_file(options_.output);
         if (ranks_.index() == 0) {
-            write_output(layers());
+            write_output();
             if (options_.keep_film || whole == options_.output) save_film(whole, result_.film);
         }
         const bool is_kept = file_ == whole && (options_.keep_film || whole == options_.output);

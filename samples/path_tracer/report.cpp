@@ -111,12 +111,29 @@ std::string film_text(const Film& film) {
     return out.str();
 }
 
-// Returns a line with the picture's difference from the reference, which also goes into the record; empty without one.
-std::string reference_text(const std::filesystem::path& file, const Film& film, nlohmann::json* record) {
+std::string text_of(const PictureError& error) { return text("MSE ", error.mse, ", relMSE ", error.relative_mse); }
+
+// Returns a line with the picture's difference from the reference, or nothing without one.
+std::string reference_text(const std::filesystem::path& file, const HdrImage& picture) {
     if (file.empty()) return {};
-    const PictureError error = error_against(film.mean(), load_reference(file, film.width, film.height));
-    if (record) record->update({{"mse", error.mse}, {"relative_mse", error.relative_mse}});
-    return text("against '", file.string(), "': MSE ", error.mse, ", relMSE ", error.relative_mse, '\n');
+    const PictureError error = error_against(picture, load_reference(file, picture.width, picture.height));
+    return text("against '", file.string(), "': ", text_of(error), '\n');
+}
+
+// The same of a rendering, with that of the noisy picture if there is another one. It also goes into the record.
+std::string reference_text(const Options& options, const Rendering& rendering, nlohmann::json& record) {
+    if (options.reference.empty()) return {};
+    const Film& film = rendering.film;
+    const HdrImage reference = load_reference(options.reference, film.width, film.height);
+    const PictureError error = error_against(rendering.picture, reference);
+    record.update({{"mse", error.mse}, {"relative_mse", error.relative_mse}});
+    std::string line = text("against '", options.reference.string(), "': ", text_of(error));
+    if (options.denoise) {
+        const PictureError noisy = error_against(film.mean(), reference);
+        record.update({{"noisy_mse", noisy.mse}, {"noisy_relative_mse", noisy.relative_mse}});
+        line += "; with its noise: " + text_of(noisy);
+    }
+    return line + '\n';
 }
 
 // "shaded as: plain | glass; left out: alpha, textures, environment".
@@ -184,7 +201,7 @@ void report_render(const Options& options, const Session& session, const Abstrac
         std::fprintf(stderr, "path_tracer: %llu contributions were NaN or infinite; the picture leaves them out\n",
                      static_cast<unsigned long long>(stats.non_finite));
     nlohmann::json record = render_json(options, session, accel, rendering);
-    const std::string against = reference_text(options.reference, film, &record);
+    const std::string against = reference_text(options, rendering, record);
     if (frame) add_frame(*frame, record);
     if (!options.json.empty()) write_line(options.json, record.dump() + "\n", std::ios::app);
     if (options.stats) print_stats(session, accel, stats);
@@ -204,7 +221,7 @@ void say_interrupted(const Rendering& rendering, const std::filesystem::path& ch
 }
 
 void report_merge(const MergeOptions& options, const Film& film) {
-    const std::string against = reference_text(options.reference, film, nullptr);
+    const std::string against = reference_text(options.reference, film.mean());
     if (options.quiet) return;
     std::printf("%s: %s of %zu films\n%s", options.output.string().c_str(), film_text(film).c_str(),
                 options.films.size(), against.c_str());

@@ -178,7 +178,10 @@ Session make_session(const Options& options, const Ranks& ranks) {
     for (const std::filesystem::path& file : {options.output, options.json, options.cross_check}) check_folder(file);
     if (options.aovs && lower_suffix(options.output) != ".exr")
         fail("--aovs: '", options.output.string(), "' must end in .exr");
+    if (options.denoise && !is_image_file(options.output))
+        fail("--denoise: '", options.output.string(), "' must be a picture, .png or .exr");
     Session session;
+    if (options.denoise) session.denoiser = std::make_unique<Denoiser>();
     session.scene = load(options);
     print_notes(session.scene, options);
     session.rules = make_rules(options);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <twinray/tlas.h>
+#include "renderer/denoiser.h"
 #include "renderer/environment.h"
 #include "renderer/lights.h"
 #include "renderer/renderer.h"
@@ -31,6 +32,7 @@ struct Options : samples::DeviceOptions {
     bool resume = false;
     bool keep_film = false;
     bool aovs = false;
+    bool denoise = false;
     std::vector<float> crop;                 // fractions x0 x1 y0 y1; none: all
     std::vector<double> look_from, look_at;  // in the file's coordinates
     std::vector<float> up = {0, 1, 0};
@@ -79,6 +81,7 @@ struct Session {
     StoppingRules rules;
     Shard shard;
     Configuration configuration;
+    std::unique_ptr<const Denoiser> denoiser;  // null: noise stays
     std::unique_ptr<Context> context;
     AccelChoice accel;  // what traces, and why
     std::unique_ptr<DeviceScene> device_scene;

@@ -70,7 +70,10 @@ double seconds_of(int who) {
 
 }  // namespace
 
-const VulkanLoader vulkan_loader = {"libvulkan.so.1", "Debian: apt-get install libvulkan1"};
+const SystemLibrary vulkan_loader = {"libvulkan.so.1", "Debian: apt-get install libvulkan1"};
+const SystemLibrary image_denoiser = {
+    "libOpenImageDenoise.so.2",
+    "the package pyoidn of PyPI has it; LD_LIBRARY_PATH must name its folder pyoidn/oidn/lib"};
 
 void* open_library(const char* name) noexcept { return dlopen(name, RTLD_NOW | RTLD_LOCAL); }
 void close_library(void* library) noexcept { dlclose(library); }

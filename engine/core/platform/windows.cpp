@@ -136,7 +136,9 @@ bool has_sockets() {
 
 }  // namespace
 
-const VulkanLoader vulkan_loader = {"vulkan-1.dll", "the driver of a GPU brings it"};
+const SystemLibrary vulkan_loader = {"vulkan-1.dll", "the driver of a GPU brings it"};
+const SystemLibrary image_denoiser = {"OpenImageDenoise.dll",
+                                      "the package pyoidn of PyPI has it; PATH must name its folder pyoidn\\oidn\\bin"};
 
 void* open_library(const char* name) noexcept { return LoadLibraryW(wide(name).c_str()); }
 void close_library(void* library) noexcept { FreeLibrary(static_cast<HMODULE>(library)); }
