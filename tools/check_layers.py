@@ -56,9 +56,10 @@ PLATFORM, PLATFORM_READERS = "engine/core/platform.h", ("renderer", "samples", "
 OF_SYSTEMS = ("engine/core/platform/", "bindings/", "tests/core/processes_test.cpp", "tests/fuzz/contract.cpp",
               "tests/fuzz/replay.cpp", "tests/python/", "tests/report/reproducer/write_test.cpp",
               "tests/support/broken_driver/", "tests/support/leaks_of_others.cpp", "tests/swtlas/full_disk_test.cpp")
-SYSTEM = re.compile(r"\b_WIN32\b|\b_MSC_VER\b|\b__MINGW32__\b|\b__linux__\b|\b__unix__\b|\b__APPLE__\b|"
-                    r"#\s*include\s*<(unistd|dlfcn|fcntl|spawn|netdb|poll|termios|pthread|windows|winsock2|io|process|direct|"
-                    r"sys/\w+)\.h>")
+SYSTEM = re.compile(r"\b(_?WIN(32|64)|_MSC_VER|__MINGW(32|64)__|__CYGWIN__|__linux(__)?|__unix(__)?|__APPLE__|__FreeBSD__|"
+                    r"__GLIBC__|_POSIX_\w+)\b|#\s*include\s*<(arpa/\w+|direct|dirent|dlfcn|fcntl|glob|io|netdb|netinet/\w+|"
+                    r"poll|process|psapi|pthread|pwd|sched|shellapi|shlobj|spawn|sys/\w+|termios|unistd|windows|winsock2|"
+                    r"ws2tcpip)\.h>")
 MOST_HEADERS = {  # of this project behind a header, directly or not; lower them whenever they fall
     "include/twinray/tlas.h": 12, "engine/accel/accel_backend.h": 38,
 }
