@@ -3,7 +3,9 @@
 # Makes a folder with all that twinray takes from others, for Windows: libraries of Debian's source packages, compiled by
 # MinGW-w64, and Debian's headers that need no library.
 #   tools/windows_packages.sh FOLDER    FOLDER/done is the last thing that it writes; it does nothing if that is there
-# apt-get source must be able to fetch, so the script brings its own list of sources of the running release.
+#   WINDOWS_SOURCES             source packages: NAME, or NAME/RELEASE for one of another release where a mirror lacks the
+#                               running one's: "gmp imath/bookworm openexr/bookworm glfw3 imgui"
+# apt-get source must be able to fetch, so the script brings its own list of sources.
 set -euo pipefail
 
 folder=$(realpath -m "${1:?usage: tools/windows_packages.sh FOLDER}")
@@ -16,9 +18,9 @@ header_packages=(
     libvulkan-dev libvulkan-volk-dev libvulkan-memory-allocator-dev libglm-dev nlohmann-json3-dev libcli11-dev
     libeigen3-dev libtinygltf-dev libstb-dev
 )
+read -r -a source_packages <<<"${WINDOWS_SOURCES-gmp imath openexr glfw3 imgui}"
 
 if [[ -e $folder/done ]]; then exit 0; fi
-mkdir -p "$sources"
 export TWINRAY_WINDOWS_PACKAGES=$folder
 
 say() { printf 'windows_packages: %s\n' "$*"; }
@@ -33,24 +35,29 @@ copy_headers() {
 }
 
 fetch_sources() {
-    local apt=$folder/apt release mirror
+    local apt=$folder/apt release mirror package suites=()
     release=$(. /etc/os-release && echo "$VERSION_CODENAME")
     # The mirror that this system takes its packages from; apt-get expands what stands in quotes.
     # shellcheck disable=SC2016
     mirror=$(apt-get indextargets --format '$(CODENAME) $(REPO_URI)' | sed -n "s/^$release //p" | sort -u | head -n 1)
+    suites=("$release")
+    for package in "${source_packages[@]}"; do
+        if [[ $package == */* ]]; then suites+=("${package#*/}"); fi
+    done
     mkdir -p "$apt/lists/partial" "$apt/lists.d"
     cat >"$apt/lists.d/debian.sources" <<END
 Types: deb-src
 URIs: $mirror
-Suites: $release
+Suites: ${suites[*]}
 Components: main
 Signed-By: /usr/share/keyrings/debian-archive-keyring.gpg
 END
     local options=(-qq -o "Dir::Etc::sourceparts=$apt/lists.d" -o Dir::Etc::sourcelist=/dev/null
         -o "Dir::State::lists=$apt/lists" -o APT::Sandbox::User=root)
     apt-get "${options[@]}" update
-    (cd "$sources" && apt-get "${options[@]}" source --download-only gmp imath openexr glfw3 imgui)
-    local package
+    rm -rf "$sources" # of a run that failed
+    mkdir -p "$sources"
+    (cd "$sources" && apt-get "${options[@]}" source --download-only "${source_packages[@]}")
     for package in "$sources"/*.dsc; do dpkg-source --no-check -x "$package" "${package%.dsc}" >/dev/null; done
 }
 
