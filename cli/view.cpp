@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fstream>
 #include <iostream>
+#include <numbers>
 #include <nlohmann/json.hpp>
 
 #include "cli/command/values.h"
@@ -45,7 +46,7 @@ viewer::State state_of(const ViewOptions& options) {
     viewer::State state = options.state;
     state.width = options.size[0], state.height = options.size[1];
     state.orbit.up = up_of(options.up);
-    state.orbit.vertical_fov = options.fov * M_PI / 180;
+    state.orbit.vertical_fov = options.fov * std::numbers::pi / 180;
     state.orbit.is_orthographic = options.is_orthographic;
     if (options.tree_depth >= 0) state.tree_depth = options.tree_depth;
     if (state.layer == Layer::path && state.shown == Shown::difference)

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numbers>
 
 #include <twinray/geometry.h>
 #include <twinray/scene.h>
@@ -254,7 +255,7 @@ TEST(Lens, RaysStartUniformlyOnADisk) {
         turns.push_back(std::atan2(offset.y, offset.x));
     }
     EXPECT_LT(distance_of(radii, [](double r) { return r * r * 16; }), 0.002);
-    EXPECT_LT(distance_of(turns, [](double angle) { return angle / (2 * M_PI) + 0.5; }), 0.002);
+    EXPECT_LT(distance_of(turns, [](double angle) { return angle / (2 * std::numbers::pi) + 0.5; }), 0.002);
 }
 
 TEST(Lens, OfNoSizeIsAPinhole) {

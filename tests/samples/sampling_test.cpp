@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <set>
 
@@ -10,6 +11,8 @@
 
 namespace twinray::path_tracer {
 namespace {
+
+using std::numbers::pi;
 
 // Every elementary interval of every aligned block of 2^k samples holds one of them.
 TEST(SamplePair, IsStratifiedInEveryWayThatTwoDimensionsAllow) {
@@ -48,7 +51,7 @@ TEST(UnitCircle, IsAccurateToFloatRounding) {
     for (int i = -4096; i <= 4096; ++i) {
         const float turns = static_cast<float>(i) / 2048;
         const vec2 circle = unit_circle(turns);
-        const double angle = 2 * M_PI * static_cast<double>(turns);
+        const double angle = 2 * pi * static_cast<double>(turns);
         EXPECT_NEAR(circle.x, std::cos(angle), 2e-7) << turns;
         EXPECT_NEAR(circle.y, std::sin(angle), 2e-7) << turns;
     }
@@ -110,8 +113,8 @@ TEST(EnvironmentMap, DensityIntegratesToOneOverTheSphere) {
     double total = 0;
     for (uint y = 0; y < 5; ++y)
         for (uint x = 0; x < 7; ++x)
-            total += static_cast<double>(luminance(image.rgb[y * 7 + x]) * map.density_per_luminance) * 2 * M_PI / 7 *
-                     (std::cos(M_PI * y / 5) - std::cos(M_PI * (y + 1) / 5));
+            total += static_cast<double>(luminance(image.rgb[y * 7 + x]) * map.density_per_luminance) * 2 * pi / 7 *
+                     (std::cos(pi * y / 5) - std::cos(pi * (y + 1) / 5));
     EXPECT_NEAR(total, 1, 1e-6);
 }
 
