@@ -150,6 +150,7 @@ bool parse(const Command& command, const std::vector<std::string>& arguments) {
     CLI::App app;
     app.set_help_flag();
     app.allow_extras();
+    app.allow_windows_style_options(false);  // a name of a file may begin with a slash on every system
     std::vector<Given> all;
     for (const Option& positional : command.positionals) all.push_back({&positional, declare(app, positional)});
     for (const Option* option : options_of(command)) all.push_back({option, declare(app, *option)});

@@ -33,6 +33,7 @@ CLI::Option* add_path(CLI::App& app, const std::string& name, std::filesystem::p
 }
 
 std::optional<int> parse(CLI::App& app, int argc, char** argv, const std::string& program) {
+    app.allow_windows_style_options(false);  // a name of a file may begin with a slash on every system
     try {
         std::vector<std::string> words = platform::arguments_of(argc, argv);
         std::ranges::reverse(words);  // as CLI11 takes them

@@ -44,6 +44,13 @@ TEST(Parse, ValuesGoWhereTheyAreBound) {
     EXPECT_TRUE(values.quiet);
 }
 
+// On Windows, too, where the parser of others takes them for options.
+TEST(Parse, NamesOfFilesMayBeginWithASlash) {
+    const SampleValues values = parsed({"/a.ply", "-o", "/here"});
+    EXPECT_EQ(values.scene, "/a.ply");
+    EXPECT_EQ(values.output, "/here");
+}
+
 TEST(Parse, WhatIsNotGivenKeepsItsDefault) {
     const SampleValues values = parsed({"a.ply"});
     EXPECT_EQ(values.accel, "auto");
