@@ -1,12 +1,14 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Builds twinray for Windows on Debian 12 or 13 by MinGW-w64, runs its tests by Wine on Mesa's CPU driver, compares what
-# its programs write with what those for Linux write, and packs the zip. Wine tests the port, not Windows' drivers.
+# its programs write with what those for Linux write, and packs the zips, against which it builds a host. Wine tests the
+# port, not Windows' drivers.
 #   tools/check_windows.sh          everything, from nothing: it needs root or sudo for packages
 #   tools/check_windows.sh quick    the library, the command, the accelerators' common contract, the first comparisons
 #   SKIP_APT=1                      install nothing, whatever is missing
 #   WINDOWS_PRESET_OPTIONS          further options of CMake
-# Folders: build/windows-packages (libraries of others), build/windows, build/release (for Linux), build/wine.
+# Folders: build/windows-packages (libraries of others), build/windows, build/windows-dll, build/release (for Linux),
+# build/wine.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 . tools/lib.sh
@@ -39,7 +41,7 @@ install_packages() {
 # Wine of Debian 12 has Vulkan only where there is a display, and takes names for UTF-8 only in such a locale.
 start_wine() {
     export WINEPREFIX=$PWD/build/wine WINEDEBUG=${WINEDEBUG--all} DISPLAY=$display LC_ALL=C.UTF-8
-    Xvfb "$display" -screen 0 1280x1024x24 >build/xvfb.log 2>&1 &
+    Xvfb "$display" -screen 0 1280x1024x24 -fbdir build >build/xvfb.log 2>&1 &
     xvfb=$!
     trap 'kill "$xvfb" 2>/dev/null; wineserver -k || true' EXIT
     wineboot -i >build/wineboot.log 2>&1
@@ -65,6 +67,32 @@ run_tests() {
     TWINRAY_WITHOUT_VALIDATION=1 TWINRAY_REQUIRE=vulkan tools/run_tests.py build/windows "${which[@]}"
 }
 
+pack() { # build folder
+    (cd "$1" && cpack >cpack.log && du -h packages/*.zip)
+}
+
+build_dlls() {
+    cmake --preset windows -B build/windows-dll -DBUILD_SHARED_LIBS=ON -DTWINRAY_BUILD_PATH_TRACER=OFF \
+        -DTWINRAY_BUILD_SAMPLES=OFF -DTWINRAY_BUILD_TESTS=OFF >build/windows-dll-configure.log
+    cmake --build build/windows-dll -j "$jobs"
+}
+
+# A program outside twinray finds what a zip has, is built against it and traces; so does the command of the zip.
+check_zip() { # build folder [option of CMake]...
+    local built=$1/host program
+    rm -rf "$built"
+    mkdir -p "$built"
+    unzip -q "$1"/packages/*.zip -d "$built/zip"
+    TWINRAY_WINDOWS_PACKAGES=$PWD/build/windows-packages cmake -S tests/install/host -B "$built/build" -G Ninja \
+        --toolchain "$PWD/cmake/toolchains/mingw.cmake" -DCMAKE_BUILD_TYPE=Release \
+        -DCMAKE_PREFIX_PATH="$(echo "$PWD/$built/zip"/*)" "${@:2}" >"$built/configure.log"
+    cmake --build "$built/build" -j "$jobs"
+    for program in "$built"/build/host_*.exe "$built"/zip/*/bin/twinray.exe; do
+        echo "${program##*/}"
+        WINEPATH=$(echo "$built"/zip/*/bin) wine "$program" $([[ $program != *twinray.exe ]] || echo devices)
+    done
+}
+
 mkdir -p build
 status=0
 section "Packages" && install_packages
@@ -79,7 +107,10 @@ options=()
 if [[ $mode == quick ]]; then options=(--quick); fi
 python3 tests/windows/same_as_linux.py build/release/bin build/windows/bin "${options[@]}" || status=$?
 if [[ $mode == full ]]; then
-    section "Zip"
-    (cd build/windows && cpack >cpack.log && du -h packages/*.zip)
+    section "As users run it"
+    python3 tests/windows/as_users_run_it.py build/windows/bin build/Xvfb_screen0 build/window.png || status=$?
+    section "Zip" && pack build/windows && check_zip build/windows
+    section "Zip of DLLs" && build_dlls && pack build/windows-dll && check_zip build/windows-dll -DBUILD_SHARED_LIBS=ON
 fi
+section_end
 exit "$status"
