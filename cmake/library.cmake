@@ -30,6 +30,16 @@ function(twinray_add_library name)
     if(TWINRAY_FUZZ OR WIN32)
         add_library(twinray_${name} ${objects})
         target_link_libraries(twinray_${name} PRIVATE ${arg_MERGES})
+        if(WIN32)
+            add_custom_command(
+                TARGET twinray_${name}
+                PRE_LINK
+                COMMAND
+                    ${PROJECT_SOURCE_DIR}/cmake/rename_symbols_of_others.sh ${CMAKE_NM} ${CMAKE_OBJCOPY} ${objects}
+                COMMAND_EXPAND_LISTS
+                VERBATIM
+            )
+        endif()
         if(WIN32 AND name STREQUAL core)
             # The variables of our copy of volk have the names of the loader's functions, which a host may link.
             add_custom_command(

@@ -88,8 +88,10 @@ check_zip() { # build folder [option of CMake]...
         -DCMAKE_PREFIX_PATH="$(echo "$PWD/$built/zip"/*)" "${@:2}" >"$built/configure.log"
     cmake --build "$built/build" -j "$jobs"
     for program in "$built"/build/host_*.exe "$built"/zip/*/bin/twinray.exe; do
-        echo "${program##*/}"
-        WINEPATH=$(echo "$built"/zip/*/bin) wine "$program" $([[ $program != *twinray.exe ]] || echo devices)
+        local words=()
+        if [[ $program == *twinray.exe ]]; then words=(devices); fi
+        WINEPATH=$(echo "$built"/zip/*/bin) wine "$program" "${words[@]}" >"$built/${program##*/}.log"
+        echo "runs: ${program##*/}"
     done
 }
 
