@@ -46,7 +46,7 @@ function(twinray_add_library name)
                 TARGET twinray_core
                 PRE_LINK
                 COMMAND
-                    ${CMAKE_OBJCOPY} --wildcard --localize-symbol=vk* --localize-symbol=volk*
+                    ${CMAKE_OBJCOPY} --preserve-dates --wildcard --localize-symbol=vk* --localize-symbol=volk*
                     $<FILTER:$<TARGET_OBJECTS:twinray_core_part>,INCLUDE,core/vulkan>
                 VERBATIM
             )

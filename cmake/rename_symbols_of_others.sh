@@ -14,4 +14,5 @@ trap 'rm -f "$names"' EXIT
     awk '/^(\.refptr\.)?(vma[A-Z]|stbi)/ || (/^(\.refptr\.)?_Z/ && /Vma[A-Z]|8tinygltf/ && !/7twinray/) { print $1, "twinray_" $1 }' |
     sort -u >"$names"
 if [[ ! -s $names ]]; then exit 0; fi
-for object in "$@"; do "$objcopy" --redefine-syms="$names" "$object"; done
+# With a newer date, ninja would compile them again.
+for object in "$@"; do "$objcopy" --preserve-dates --redefine-syms="$names" "$object"; done

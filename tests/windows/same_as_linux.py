@@ -17,7 +17,7 @@ import tempfile
 linux, windows = (pathlib.Path(folder).resolve() for folder in sys.argv[1:3])
 is_quick = "--quick" in sys.argv
 root = pathlib.Path(tempfile.mkdtemp(prefix="twinray-same-"))
-sides = {"linux": root / "linux", "windows": root / "windows"}
+sides = {"linux": root / "Linux side", "windows": root / "Windows side"}
 found = []
 
 

@@ -25,18 +25,25 @@ def environment(side):
 def run(side, *arguments):
     command = [linux / "twinray"] if side == "linux" else ["wine", windows / "twinray.exe"]
     start = time.monotonic()
-    subprocess.run([*command, *arguments], cwd=here, env=environment(side), check=True, capture_output=True)
+    subprocess.run([*command, *arguments], cwd=here, env=environment(side), check=True, stdout=subprocess.DEVNULL)
     return time.monotonic() - start
+
+
+def processor_seconds():
+    times = os.times()
+    return times.children_user + times.children_system
 
 
 def rates(side):
     record = here / "bench.jsonl"
     record.unlink(missing_ok=True)
+    before = processor_seconds()
     run(side, "bench", "--scene", "instances:50x2000", "--backends", "sw,hw", "--levels", "watertight", "--layouts",
-        "compressed4", "--rounds", "1", "--width", "256", "--max-seconds", "10", "--no-embree", "--no-build", "--quiet",
+        "compressed4", "--rounds", "1", "--width", "256", "--max-seconds", "100", "--no-embree", "--no-build", "--quiet",
         "--json", record.name)
     records = map(json.loads, record.read_text().splitlines())
-    return {f"{r['contestant']}, {r['rays']}": r["mrays_per_s"] for r in records}
+    busy = {"all of these a second of the processors": 1 / (processor_seconds() - before)}
+    return {f"{r['contestant']}, {r['rays']}": r["mrays_per_s"] for r in records} | busy
 
 
 def forget(side):
