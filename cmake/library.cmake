@@ -34,8 +34,7 @@ function(twinray_add_library name)
             add_custom_command(
                 TARGET twinray_${name}
                 PRE_LINK
-                COMMAND
-                    ${PROJECT_SOURCE_DIR}/cmake/rename_symbols_of_others.sh ${CMAKE_NM} ${CMAKE_OBJCOPY} ${objects}
+                COMMAND ${PROJECT_SOURCE_DIR}/cmake/rename_symbols_of_others.sh ${CMAKE_NM} ${CMAKE_OBJCOPY} ${objects}
                 COMMAND_EXPAND_LISTS
                 VERBATIM
             )

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Compiles what a build for Windows compiles, but its tests, as code for MSVC's target, and throws it away: by clang, with
-libc++ and the headers of MinGW-w64, since MSVC's are not free. It finds what MSVC is known to refuse: GNU's extensions,
-initialisers out of order, headers and names of POSIX. MSVC itself is not run.
-Usage: check_msvc.py BUILD [PART OF A NAME]... (Debian: clang-19, libc++-19-dev; LIBCXX names another folder of headers)"""
+"""Compiles what a build for Windows compiles, but its tests, as code for MSVC's target, and throws it away: by clang,
+with libc++ and the headers of MinGW-w64, since MSVC's are not free. It finds what MSVC is known to refuse: GNU's
+extensions, initialisers out of order, headers and names of POSIX. MSVC itself is not run.
+Usage: check_msvc.py BUILD [PART OF A NAME]...; LIBCXX names another folder of libc++'s headers than Debian's
+Debian: clang-19, libc++-19-dev, g++-mingw-w64-x86-64-posix"""
 import json
 import os
 import pathlib

@@ -3,8 +3,8 @@
 # Makes a folder with all that twinray takes from others, for Windows: libraries of Debian's source packages, compiled by
 # MinGW-w64, and Debian's headers that need no library.
 #   tools/windows_packages.sh FOLDER    FOLDER/done is the last thing that it writes; it does nothing if that is there
-#   WINDOWS_SOURCES             source packages: NAME, or NAME/RELEASE for one of another release where a mirror lacks the
-#                               running one's: "gmp imath/bookworm openexr/bookworm glfw3 imgui"
+#   WINDOWS_SOURCES    source packages: NAME, or NAME/RELEASE for one of another release where a mirror lacks the
+#                      running one's: "gmp imath/bookworm openexr/bookworm glfw3 imgui"
 # apt-get source must be able to fetch, so the script brings its own list of sources.
 set -euo pipefail
 

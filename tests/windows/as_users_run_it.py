@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Runs the programs for Windows by Wine as a user does: names with letters beyond ASCII, with spaces and of more than 260
-letters, exit statuses, Ctrl-C, a window.
-Usage: as_users_run_it.py WINDOWS_BIN SCREEN PICTURE; SCREEN is the file that Xvfb -fbdir keeps its screen in, and PICTURE
-the PNG that the window is written to."""
+"""Runs the programs for Windows by Wine as a user does: names with letters beyond ASCII, with spaces and of more than
+260 letters, exit statuses, Ctrl-C, a window.
+Usage: as_users_run_it.py WINDOWS_BIN SCREEN PICTURE; SCREEN is the file that Xvfb -fbdir keeps its screen in, and
+PICTURE the PNG that the window is written to."""
 import pathlib
 import signal
 import struct
@@ -36,7 +36,7 @@ def names():
     (folder / "ends of lines.obj").write_bytes(BOX.replace("\n", "\r\n").encode())
     deep = folder
     while len(str(deep)) < 300:
-        deep = deep / ("ein tiefer Ordner " * 3 + "ü")
+        deep = deep / ("a deep folder " * 4 + "ü")
         deep.mkdir()
     (deep / "käfig.obj").write_text(BOX)
     factors = {}
@@ -101,8 +101,8 @@ def write_png(file, width, rows):
     def chunk(kind, data):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
     lines = zlib.compress(b"".join(b"\0" + row for row in rows))
-    file.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, len(rows), 8, 2, 0, 0, 0)) +
-                     chunk(b"IDAT", lines) + chunk(b"IEND", b""))
+    header = chunk(b"IHDR", struct.pack(">IIBBBBB", width, len(rows), 8, 2, 0, 0, 0))
+    file.write_bytes(b"\x89PNG\r\n\x1a\n" + header + chunk(b"IDAT", lines) + chunk(b"IEND", b""))
 
 
 def window():

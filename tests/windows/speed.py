@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Measures programs for Windows under Wine against those for Linux, by turns: rays a second, and the time that a program
-takes to its first hit. Run it on a machine that does nothing else.
+"""Measures programs for Windows under Wine against those for Linux, by turns: rays a second, and the time that a
+program takes to its first hit. Run it on a machine that does nothing else.
 Usage: speed.py LINUX_BIN WINDOWS_BIN"""
 import json
 import os
@@ -19,7 +19,9 @@ ROUNDS, SIDES = 5, ("linux", "windows")
 
 
 def environment(side):
-    return os.environ | {"XDG_CACHE_HOME": str(here / f"{side}-cache")}
+    """With folders of compiled kernels for Mesa and, on Linux, for twinray. Wine's fonts need the usual folder of caches."""
+    cache = str(here / f"{side}-cache")
+    return os.environ | {"MESA_SHADER_CACHE_DIR": cache} | ({"XDG_CACHE_HOME": cache} if side == "linux" else {})
 
 
 def run(side, *arguments):
@@ -39,15 +41,15 @@ def rates(side):
     record.unlink(missing_ok=True)
     before = processor_seconds()
     run(side, "bench", "--scene", "instances:50x2000", "--backends", "sw,hw", "--levels", "watertight", "--layouts",
-        "compressed4", "--rounds", "1", "--width", "256", "--max-seconds", "100", "--no-embree", "--no-build", "--quiet",
-        "--json", record.name)
+        "compressed4", "--rounds", "1", "--width", "256", "--max-seconds", "100", "--no-embree", "--no-build",
+        "--quiet", "--json", record.name)
     records = map(json.loads, record.read_text().splitlines())
     busy = {"all of these a second of the processors": 1 / (processor_seconds() - before)}
     return {f"{r['contestant']}, {r['rays']}": r["mrays_per_s"] for r in records} | busy
 
 
 def forget(side):
-    """No kernel is compiled any more."""
+    """No kernel is left that was compiled."""
     shutil.rmtree(here / f"{side}-cache", ignore_errors=True)
     if side == "windows":
         for cache in pathlib.Path(os.environ["WINEPREFIX"]).glob("drive_c/users/*/AppData/Local/twinray/cache"):
