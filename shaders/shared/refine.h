@@ -121,7 +121,11 @@ struct PlaneHit
     double v;
 };
 
-FUNC double sum_of_sizes(dvec3 v) { return abs(v.x) + abs(v.y) + abs(v.z); }
+FUNC double sum_of_sizes(dvec3 v)
+{
+    PRECISE double sum = abs(v.x) + abs(v.y) + abs(v.z);
+    return sum;
+}
 
 FUNC PlaneHit meet_plane(dvec3 origin, dvec3 direction, GivenMesh mesh, uint primitive)
 {
@@ -159,9 +163,14 @@ const float REFINING_STEP = 2.384185791015625e-07f; // 2^-22
 FUNC void leave_out(float t, INOUT(Ray) ray, INOUT(float) step)
 {
     PRECISE float gap = step * abs(t);
-    if (abs(ray.t_max - t) <= abs(t - ray.t_min)) ray.t_max = min(ray.t_max, t) - gap;
-    else ray.t_min = max(ray.t_min, t) + gap;
-    step *= 4.0f;
+    PRECISE float from_begin = abs(t - ray.t_min);
+    PRECISE float to_end = abs(ray.t_max - t);
+    PRECISE float before = min(ray.t_max, t) - gap;
+    PRECISE float after = max(ray.t_min, t) + gap;
+    if (to_end <= from_begin) ray.t_max = before;
+    else ray.t_min = after;
+    PRECISE float next = 4.0f * step;
+    step = next;
 }
 
 // Makes a hit of the traced ray, `near`, one of the given ray: t, u and v are what float64 gives, rounded once.
