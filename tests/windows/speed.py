@@ -44,8 +44,8 @@ def rates(side):
         "compressed4", "--rounds", "1", "--width", "256", "--max-seconds", "100", "--no-embree", "--no-build",
         "--quiet", "--json", record.name)
     records = map(json.loads, record.read_text().splitlines())
-    busy = {"all of these a second of the processors": 1 / (processor_seconds() - before)}
-    return {f"{r['contestant']}, {r['rays']}": r["mrays_per_s"] for r in records} | busy
+    busy = {"all of these, seconds of processors": processor_seconds() - before}
+    return {f"{r['contestant']}, {r['rays']}": r["mrays_per_s"] for r in records}, busy
 
 
 def forget(side):
@@ -90,7 +90,8 @@ measured = {side: [] for side in SIDES}
 for _ in range(ROUNDS):
     for side in SIDES:
         measured[side].append(rates(side))
-compare(measured, True)
+compare({side: [rate for rate, _ in rows] for side, rows in measured.items()}, True)
+compare({side: [busy for _, busy in rows] for side, rows in measured.items()}, False)
 compare(first_hits(), False)
 print(f"rays a second: median of {len(ratios[True])} ratios {statistics.median(ratios[True]):.3f}, "
       f"least {min(ratios[True]):.3f}")
