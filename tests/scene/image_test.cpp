@@ -128,7 +128,9 @@ TEST(ImageTest, FilesAreWrittenThroughLinksAndLeaveNothingBesideThem) {
     const HdrImage image{.width = 1, .height = 1, .rgb = {vec3(1)}};
     std::filesystem::create_directory(dir / "there");
     for (const std::string name : {"a.exr", "a.png"}) {
-        std::filesystem::create_symlink("there/" + name, dir / name);
+        std::error_code error;
+        std::filesystem::create_symlink("there/" + name, dir / name, error);
+        if (error == std::errc::function_not_supported) GTEST_SKIP() << "the C++ library makes no links here";
         for (int i = 0; i < 2; ++i) write_image(dir / name, image, 0, {});
         EXPECT_TRUE(std::filesystem::is_symlink(dir / name));
         EXPECT_TRUE(std::filesystem::is_regular_file(dir / ("there/" + name)));

@@ -164,7 +164,7 @@ TEST_F(RecorderTest, TableHoldsWhatTheLinesHold) {
     other.params = {{"other", 1}};
     const std::vector<Record> records = {full_record(), other};
     write_csv(file_, records);
-    std::ifstream in(file_, std::ios::binary);
+    std::ifstream in(file_);
     std::stringstream text;
     text << in.rdbuf();
     const auto rows = csv_rows(text.str());
