@@ -45,6 +45,7 @@ start_wine() {
     xvfb=$!
     trap 'kill "$xvfb" 2>/dev/null; wineserver -k || true' EXIT
     # Its server stays: a program starts in 0.1 s, not in 1 s, and no process of Wine's keeps its output open for 3 s.
+    mkdir -p "$WINEPREFIX"
     wineserver -p >build/wineboot.log 2>&1
     wineboot -i >>build/wineboot.log 2>&1
 }
