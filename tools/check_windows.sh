@@ -43,7 +43,13 @@ start_wine() {
     export WINEPREFIX=$PWD/build/wine WINEDEBUG=${WINEDEBUG--all} DISPLAY=$display LC_ALL=C.UTF-8
     Xvfb "$display" -screen 0 1280x1024x24 -fbdir build >build/xvfb.log 2>&1 &
     xvfb=$!
-    trap 'kill "$xvfb" 2>/dev/null; wineserver -k || true' EXIT
+    trap 'kill "$xvfb" 2>/dev/null || true; wineserver -k || true' EXIT
+    sleep 1
+    if ! kill -0 "$xvfb" 2>/dev/null; then
+        echo "check_windows: no Xvfb on display $display: $(<build/xvfb.log)" >&2
+        echo "WINDOWS_DISPLAY=:N chooses another display" >&2
+        exit 1
+    fi
     # Its server stays: a program starts in 0.1 s, not in 1 s, and no process of Wine's keeps its output open for 3 s.
     mkdir -p "$WINEPREFIX"
     wineserver -p >build/wineboot.log 2>&1
