@@ -1,7 +1,7 @@
 # Makes twinray::core, ::scene, ::analysis and ::validation, and twinray::twinray, which is all of them. Each is one
-# object file made of its parts, in which only namespace twinray is global. So a host may bring any version of Vulkan Memory
-# Allocator, stb or tinygltf, and an inline function of twinray's headers that the host compiles with its own options
-# (-ffast-math) never replaces the one that the library was tested with.
+# object file made of its parts, in which only namespace twinray is global. So a host may bring any version of Vulkan
+# Memory Allocator, stb or tinygltf, and an inline function of twinray's headers that the host compiles with its own
+# options (-ffast-math) never replaces the one that the library was tested with.
 set(TWINRAY_LIBRARIES "")
 set(TWINRAY_PARTS "")
 
@@ -25,8 +25,8 @@ function(twinray_add_library name)
         list(APPEND objects $<TARGET_OBJECTS:${part}>)
     endforeach()
 
-    # A merged object would count what clang's sanitizers count of each part several times. Objects for Windows could not
-    # be linked: their inline functions would become local in groups that a linker drops.
+    # A merged object would count what clang's sanitizers count of each part several times. Objects for Windows could
+    # not be linked: their inline functions would become local in groups that a linker drops.
     if(TWINRAY_FUZZ OR WIN32)
         add_library(twinray_${name} ${objects})
         target_link_libraries(twinray_${name} PRIVATE ${arg_MERGES})

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Runs the programs and tests that are built on other Vulkan drivers than this machine's: each has a room, a minimal
-# Debian with nothing else (tools/room.sh). Ends with a table. Exit status 1: something failed on one of them; 77: a room
-# could not be made, for the printed reason.
+# Debian with nothing else (tools/room.sh). Ends with a table. Exit status 1: something failed on one of them; 77: a
+# room could not be made, for the printed reason.
 #   tools/check_drivers.sh [--quick] [--build FOLDER] [--rooms FOLDER] [NAME...]
 #     NAME       mesa-25.0 (backports of Debian 12), mesa-26.1 (of Debian 13), mesa-26.2 (sid), swiftshader
 #                (chromium-common of Debian 12), default: all; newest, testing: those that sid and Debian

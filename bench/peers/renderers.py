@@ -20,8 +20,11 @@ import numpy as np
 import peer_scenes
 
 SIDE, BLOCK = 64, 8
-# Its own Cornell box has independent samples; ldsampler and multijitter are its best (orthogonal takes other numbers of samples).
-MITSUBAS = [("scalar_rgb", "independent"), ("llvm_ad_rgb", "independent"), ("llvm_ad_rgb", "ldsampler"), ("llvm_ad_rgb", "multijitter")]
+# Its own Cornell box has independent samples; ldsampler and multijitter are its best. orthogonal takes other numbers of
+# samples.
+MITSUBAS = [("scalar_rgb", "independent")] + [
+    ("llvm_ad_rgb", sampler) for sampler in ("independent", "ldsampler", "multijitter")
+]
 
 
 def scenes_module():

@@ -179,7 +179,7 @@ FUNC bool refine(INOUT(Hit) hit, INOUT(Ray) near, INOUT(float) step, TraceOption
 {
     Ray ray = options.given;
     PRECISE double moved = double(hit.t) + options.advance;
-    // Where the plane contains the ray, and in boxes, float32 has the last word.
+    // Float32 has the last word in boxes, and if the plane contains the ray.
     PlaneHit traced;
     traced.det = double(0.0f);
     traced.t = moved;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// One file of more than 400 lines, since all tests share the builders of modules below.
 // SPIR-V in which constants are known, word by word, and branches that they decide, as text.
 #include "engine/core/frozen_spirv.h"
 #include "engine/core/pruned_spirv.h"
@@ -17,6 +18,7 @@
 #include "engine/core/sort_args.h"
 #include "engine/core/spirv_words.h"
 #include "tests/scene/temp_dir.h"
+#include "tests/support/device.h"
 
 namespace twinray {
 namespace {
@@ -87,7 +89,8 @@ TEST(FrozenSpirv, KeepsWhatItDoesNotKnow) {
 class PrunedSpirv : public ::testing::Test {
   protected:
     void SetUp() override {
-        if (std::system(SPIRV_AS " --version") != 0) GTEST_SKIP() << "the shell here cannot run " SPIRV_AS;
+        if (std::system(SPIRV_AS " --version") != 0)
+            TWINRAY_LACKS("spirv_tools", "the shell here cannot run " SPIRV_AS);
     }
     void run(const std::string& command) const {
         EXPECT_EQ(std::system(("cd " + (folder_ / "").string() + " && " + command).c_str()), 0) << command;

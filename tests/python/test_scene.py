@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""twinray.Scene: names, shapes and dtypes of Open3D's RaycastingScene, and right answers."""
+"""twinray.Scene: names, shapes and dtypes of Open3D's RaycastingScene, and right answers.
+
+One file of more than 400 lines, since it is about one class.
+"""
 
 import copy
 import doctest

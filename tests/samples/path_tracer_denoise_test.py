@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""`path_tracer --denoise` with the library, without it and with another one in its place. It ends with 77, skipped, after
-the last two if the library is not found. Usage: path_tracer_denoise_test.py PATH_TRACER"""
+"""`path_tracer --denoise` with the library, without it and with another one in its place. It ends with 77, skipped,
+after the last two if the library is not found. Usage: path_tracer_denoise_test.py PATH_TRACER"""
 import json
 import os
 import pathlib
@@ -49,8 +49,8 @@ if not is_found(folders):
 run(*box, "--spp", "256", "--seed", "2", "-o", "better.exr")
 run(*box, "--spp", "4", "-o", "noisy.exr", "--keep-film")
 noisy = run(*box, "--resume", "--spp", "4", "-o", "noisy.exr", "--keep-film", "--mse-reference-image", "better.exr")
-shown = run(*box, "--spp", "4", "-o", "smooth.exr", "--keep-film", "--aovs", "--denoise", "--mse-reference-image", "better.exr",
-            "--json", "smooth.jsonl")
+shown = run(*box, "--spp", "4", "-o", "smooth.exr", "--keep-film", "--aovs", "--denoise",
+            "--mse-reference-image", "better.exr", "--json", "smooth.jsonl")
 record = json.loads((here / "smooth.jsonl").read_text())
 assert "; with its noise: MSE" in shown and shown.split("with its noise: ")[1].strip() in noisy, (shown, noisy)
 assert record["relative_mse"] < 0.2 * record["noisy_relative_mse"], record

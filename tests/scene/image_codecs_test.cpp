@@ -4,6 +4,7 @@
 
 #include "engine/scene/image_codecs.h"
 #include "tests/scene/gltf_builder.h"
+#include "tests/support/device.h"
 
 #ifdef TWINRAY_HAS_WEBP
 #include <webp/encode.h>
@@ -88,7 +89,7 @@ std::string avif_file(std::uint32_t depth, std::vector<T> texels) {
 
 TEST(ImageCodecs, AvifIsDecoded) {
     const std::string file = avif_file(8, TEXELS);
-    if (file.empty()) GTEST_SKIP() << "this libavif encodes nothing";
+    if (file.empty()) TWINRAY_LACKS("avif", "this libavif encodes nothing");
     const Image decoded = decode_image(span_of(file), "a");
     ASSERT_EQ(decoded.rgba.size(), TEXELS.size());
     for (std::size_t i = 0; i < TEXELS.size(); ++i) EXPECT_NEAR(decoded.rgba[i], TEXELS[i], 8) << i;
@@ -99,7 +100,7 @@ TEST(ImageCodecs, AvifIsDecoded) {
 TEST(ImageCodecs, AnAvifOfTenBitsKeepsThem) {
     const std::vector<std::uint16_t> texels(16, 0x4040);
     const std::string file = avif_file(10, texels);
-    if (file.empty()) GTEST_SKIP() << "this libavif encodes nothing";
+    if (file.empty()) TWINRAY_LACKS("avif", "this libavif encodes nothing");
     const Image decoded = decode_image(span_of(file), "a");
     ASSERT_EQ(decoded.rgba16.size(), texels.size());
     for (std::size_t i = 0; i < texels.size(); ++i) EXPECT_NEAR(decoded.rgba16[i], texels[i], 128) << i;

@@ -11,12 +11,12 @@
 namespace twinray::test {
 
 // Whether tests must fail rather than skip without this: TWINRAY_REQUIRE is a list of `vulkan`, `ray_tracing`,
-// `embree`.
+// `embree`, `avif`, `links`, `spirv_tools`.
 bool is_required(const char* what);
 // Whether contexts have the validation layer, as they do unless TWINRAY_WITHOUT_VALIDATION is set: Wine has no layers.
 bool has_validation();
 
-// Leaves a test that needs what this device lacks; under TWINRAY_REQUIRE with that name it fails.
+// Leaves a test that needs what this machine lacks; under TWINRAY_REQUIRE with that name it fails.
 #define TWINRAY_LACKS(what, reason)                                           \
     do {                                                                      \
         if (::twinray::test::is_required(what)) {                             \

@@ -108,8 +108,9 @@ def write_png(file, width, rows):
 def window():
     """A window stays open and shows a scene until it is closed."""
     (folder / "Sitzung.txt").write_text("frames 4\nshot Bild vom Fenster.png\nframes 100000\n")
-    process = subprocess.Popen(words("twinray", ["view", "käfig 1.obj", "--size", "800", "500", "--play", "Sitzung.txt"]),
-                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, cwd=folder)
+    view = ["view", "käfig 1.obj", "--size", "800", "500", "--play", "Sitzung.txt"]
+    process = subprocess.Popen(
+        words("twinray", view), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, cwd=folder)
     shot = folder / "Bild vom Fenster.png"
     for _ in range(1200):
         if shot.exists() or process.poll() is not None:

@@ -19,7 +19,7 @@ ROUNDS, SIDES = 5, ("linux", "windows")
 
 
 def environment(side):
-    """With folders of compiled kernels for Mesa and, on Linux, for twinray. Wine's fonts need the usual folder of caches."""
+    """With folders of compiled kernels for Mesa and, on Linux, for twinray. Wine's fonts need the usual caches."""
     cache = str(here / f"{side}-cache")
     return os.environ | {"MESA_SHADER_CACHE_DIR": cache} | ({"XDG_CACHE_HOME": cache} if side == "linux" else {})
 
