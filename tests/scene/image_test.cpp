@@ -131,8 +131,7 @@ TEST(ImageTest, FilesAreWrittenThroughLinksAndLeaveNothingBesideThem) {
     for (const std::string name : {"a.exr", "a.png"}) {
         std::error_code error;
         std::filesystem::create_symlink("there/" + name, dir / name, error);
-        if (error == std::errc::function_not_supported)
-            TWINRAY_LACKS("links", "the C++ library makes no links here");
+        if (error == std::errc::function_not_supported) TWINRAY_LACKS("links", "the C++ library makes no links here");
         for (int i = 0; i < 2; ++i) write_image(dir / name, image, 0, {});
         EXPECT_TRUE(std::filesystem::is_symlink(dir / name));
         EXPECT_TRUE(std::filesystem::is_regular_file(dir / ("there/" + name)));
