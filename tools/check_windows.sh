@@ -7,6 +7,7 @@
 #   tools/check_windows.sh quick    the library, the command, the accelerators' common contract, the first comparisons
 #   SKIP_APT=1                      install nothing, whatever is missing
 #   WINDOWS_PRESET_OPTIONS          further options of CMake
+# The exit status is 77 if packages cannot be had, 1 if something is wrong.
 # Folders: build/windows-packages (libraries of others), build/windows, build/windows-dll, build/release (for Linux),
 # build/wine.
 set -euo pipefail
@@ -35,7 +36,8 @@ install_packages() {
     done
     if ((${#missing[@]} == 0)); then return; fi
     if ((EUID != 0)); then sudo=(sudo); fi
-    "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}"
+    "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}" ||
+        exit 77
 }
 
 # Wine of Debian 12 has Vulkan only where there is a display, and takes names for UTF-8 only in such a locale.

@@ -5,7 +5,8 @@
 #   tools/windows_packages.sh FOLDER    FOLDER/done is the last thing that it writes; it does nothing if that is there
 #   WINDOWS_SOURCES    source packages: NAME, or NAME/RELEASE for one of another release where a mirror lacks the
 #                      running one's: "gmp imath/bookworm openexr/bookworm glfw3 imgui"
-# apt-get source must be able to fetch, so the script brings its own list of sources.
+# apt-get source must be able to fetch, so the script brings its own list of sources. The exit status is 77 if they
+# cannot be had.
 set -euo pipefail
 
 folder=$(realpath -m "${1:?usage: tools/windows_packages.sh FOLDER}")
@@ -52,12 +53,12 @@ Suites: ${suites[*]}
 Components: main
 Signed-By: /usr/share/keyrings/debian-archive-keyring.gpg
 END
-    local options=(-qq -o "Dir::Etc::sourceparts=$apt/lists.d" -o Dir::Etc::sourcelist=/dev/null
+    local options=(-qq -o Acquire::Retries=3 -o "Dir::Etc::sourceparts=$apt/lists.d" -o Dir::Etc::sourcelist=/dev/null
         -o "Dir::State::lists=$apt/lists" -o APT::Sandbox::User=root)
-    apt-get "${options[@]}" update
+    apt-get "${options[@]}" update || exit 77
     rm -rf "$sources" # of a run that failed
     mkdir -p "$sources"
-    (cd "$sources" && apt-get "${options[@]}" source --download-only "${source_packages[@]}")
+    (cd "$sources" && apt-get "${options[@]}" source --download-only "${source_packages[@]}") || exit 77
     for package in "$sources"/*.dsc; do dpkg-source --no-check -x "$package" "${package%.dsc}" >/dev/null; done
 }
 
