@@ -18,18 +18,27 @@ namespace twinray {
 namespace {
 
 // The most bytes of pixels that a byte of a file can become: deflate's 1032, for lines or for the means and ends of
-// DWA's 8 x 8 blocks; other codecs stay below.
+// DWA's 8 x 8 blocks, or 127 for two of a run. Other codecs stay below deflate's.
 std::uint64_t most_expansion(Imf::Compression compression) {
-    return compression == Imf::DWAA_COMPRESSION || compression == Imf::DWAB_COMPRESSION ? 1u << 15 : 1u << 11;
+    switch (compression) {
+        case Imf::NO_COMPRESSION: return 1;
+        case Imf::RLE_COMPRESSION: return 64;
+        case Imf::DWAA_COMPRESSION:
+        case Imf::DWAB_COMPRESSION: return 1u << 15;
+        default: return 1u << 11;
+    }
 }
 
 // Checks a size that only a header gives before memory is taken for it.
 void check_pixels_fit(const Imf::Header& header, std::uint64_t pixels, const std::filesystem::path& file) {
     std::uint64_t pixel_bytes = 0;
-    for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel)
-        pixel_bytes += channel.channel().type == Imf::HALF ? 2 : 4;
+    for (auto each = header.channels().begin(); each != header.channels().end(); ++each) {
+        const Imf::Channel& channel = each.channel();
+        const std::uint64_t pixels_a_value = std::uint64_t(channel.xSampling) * std::uint64_t(channel.ySampling);
+        pixel_bytes += pixels / pixels_a_value * (channel.type == Imf::HALF ? 2 : 4);
+    }
     const std::uint64_t file_bytes = std::filesystem::file_size(file);
-    if (pixels * pixel_bytes > most_expansion(header.compression()) * file_bytes)
+    if (pixel_bytes > most_expansion(header.compression()) * file_bytes)
         fail("'", file.string(), "': ", pixels, " pixels are more than its ", file_bytes, " bytes can hold");
 }
 

@@ -8,6 +8,7 @@
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfOutputFile.h>
+#include <ImfRgbaFile.h>
 
 #include "engine/scene/importers/placeholder.h"
 #include "tests/scene/packed_bytes.h"
@@ -118,9 +119,10 @@ TEST(HdrImage, RowsOfRunsAreReadWholeOrRefused) {
     for (const std::string& line : {"\n"s, "\0\n"s}) {
         const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n" + line + "-Y 1 +X 8\n";
         EXPECT_EQ(load_hdr_image(dir.write("a.hdr", header + runs)).rgb, std::vector(8, vec3(1, 0.5f, 0) + 0x1p-8f));
-        for (std::size_t left = 4; left + 1 < runs.size(); ++left)
-            expect_contains(error_of([&] { load_hdr_image(dir.write("a.hdr", header + runs.substr(0, left))); }),
-                            "its rows are cut off");
+        for (std::size_t missing = 1; missing <= 8; ++missing)
+            expect_contains(
+                error_of([&] { load_hdr_image(dir.write("a.hdr", header + runs.substr(0, runs.size() - missing))); }),
+                "its rows are cut off");
     }
 }
 
@@ -168,13 +170,32 @@ TEST(HdrImage, MorePixelsThanTheFileCanHoldAreRefused) {
     expect_contains(error_of([&] { load_hdr_image(dir.write("a.hdr", radiance)); }),
                     "4 x 4 pixels are more than its 49 bytes can hold");
     const std::vector<float> values(4 * 3, 0.5f);
-    const auto file = write_exr(dir, {"R", "G", "B"}, 2, 2, values, Imf::RLE_COMPRESSION);
-    const Bytes bytes = read_file(file);
-    std::string exr(bytes.begin(), bytes.end());
     const std::string before_window("dataWindow\0box2i\0\x10\0\0\0", 21);
-    const std::size_t window = exr.find(before_window) + before_window.size();
-    exr.replace(window + 8, 4, std::string("\xff\xff\3\0", 4));  // the last column, from 4
-    expect_contains(error_of([&] { load_hdr_image(dir.write("b.exr", exr)); }), "pixels are more than its");
+    const std::pair<Imf::Compression, std::string> last_columns[] = {{Imf::NO_COMPRESSION, {"\x3f\0\0\0", 4}},
+                                                                     {Imf::RLE_COMPRESSION, {"\xff\x0f\0\0", 4}},
+                                                                     {Imf::ZIP_COMPRESSION, {"\xff\xff\3\0", 4}}};
+    for (const auto& [compression, last_column] : last_columns) {
+        const Bytes bytes = read_file(write_exr(dir, {"R", "G", "B"}, 2, 2, values, compression));
+        std::string exr(bytes.begin(), bytes.end());
+        exr.replace(exr.find(before_window) + before_window.size() + 8, 4, last_column);  // 4 before
+        expect_contains(error_of([&] { load_hdr_image(dir.write("b.exr", exr)); }), "pixels are more than its");
+    }
+}
+
+// Two of three channels have a value for four pixels.
+TEST(HdrImage, ExrOfLuminanceAndSparseColoursIsRead) {
+    const TempDir dir;
+    const std::filesystem::path file = dir / "a.exr";
+    {
+        Imf::RgbaOutputFile out(file.c_str(), 64, 64, Imf::WRITE_YC, 1, Imath::V2f(0), 1, Imf::INCREASING_Y,
+                                Imf::NO_COMPRESSION);
+        const std::vector<Imf::Rgba> pixels(64 * 64, Imf::Rgba(0.5f, 0.5f, 0.5f));
+        out.setFrameBuffer(pixels.data(), 1, 64);
+        out.writePixels(64);
+    }
+    const HdrImage image = load_hdr_image(file);
+    ASSERT_EQ(image.rgb.size(), std::size_t{64 * 64});
+    EXPECT_NEAR(image.rgb[0].x, 0.5f, 0.01f);
 }
 
 TEST(HdrImage, ExrKeepsFloatsExactly) {
