@@ -187,7 +187,7 @@ TEST(HdrImage, ExrOfLuminanceAndSparseColoursIsRead) {
     const TempDir dir;
     const std::filesystem::path file = dir / "a.exr";
     {
-        Imf::RgbaOutputFile out(file.c_str(), 64, 64, Imf::WRITE_YC, 1, Imath::V2f(0), 1, Imf::INCREASING_Y,
+        Imf::RgbaOutputFile out(file.string().c_str(), 64, 64, Imf::WRITE_YC, 1, Imath::V2f(0), 1, Imf::INCREASING_Y,
                                 Imf::NO_COMPRESSION);
         const std::vector<Imf::Rgba> pixels(64 * 64, Imf::Rgba(0.5f, 0.5f, 0.5f));
         out.setFrameBuffer(pixels.data(), 1, 64);
