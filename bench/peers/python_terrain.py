@@ -4,7 +4,8 @@
 
     python_terrain.py workers [--side 1024] [--tile 256] [--rounds 3]    one process against two on the same cores,
                                                                          and with a worker that is killed
-    python_terrain.py packages [--side 256]                              beside Open3D; errors against float64
+    python_terrain.py packages [--side 256] [--xrspatial PYTHON]         beside Open3D, and xarray-spatial in a Python
+                                                                         that has it; errors against float64
     python_terrain.py out-of-core [--side 10000] [--tile 1000]           hours of sun of 10^8 cells, into FILE.zarr
     python_terrain.py factors [--faces 20000] [--rays 1024]              view factors in chunks of 100 and 1,000 rows
 
@@ -18,7 +19,9 @@ import pathlib
 import resource
 import signal
 import statistics
+import subprocess
 import sys
+import tempfile
 import threading
 import time
 import warnings
@@ -132,10 +135,10 @@ def workers(options):
 
 
 def true_view(heights, rows, columns, azimuths=720):
-    """In float64: the part of the light of a uniform sky, by the horizon of the surface of triangles along each
-    azimuth, at the crossings with its edges."""
+    """In float64: the parts of a uniform sky's light and of the hemisphere, (cells, 2), by the horizon of the surface
+    of triangles along each azimuth, at the crossings with its edges."""
     size = heights.shape[0]
-    answers = np.zeros(len(rows))
+    answers = np.zeros((len(rows), 2))
     for i, (row, column) in enumerate(zip(rows, columns, strict=True)):
         angle = (np.arange(azimuths) + 0.5) * (2 * np.pi / azimuths)
         dx, dy = np.cos(angle), np.sin(angle)
@@ -165,12 +168,42 @@ def true_view(heights, rows, columns, azimuths=720):
                 z = heights[v, u] * (1 - f) + heights[v + 1, u + 1] * f
             steep = np.where(is_inside, (z - heights[row, column]) / (t * CELL), 0)
             slope = np.maximum(slope, steep.max(axis=1))
-        answers[i] = np.mean(1 / (1 + slope**2))  # cos^2 of the horizon
+        answers[i] = np.mean(1 / (1 + slope**2)), np.mean(1 - slope / np.hypot(1, slope))  # cos^2 and 1 - sin of it
     return answers
 
 
+# xarray-spatial has wheels of a recent version for newer Pythons only, so it runs in a process of its own.
+SKY_OF_XRSPATIAL = """
+import sys, time
+import numpy as np, xarray, xrspatial
+heights, cell, rounds, directions = np.load(sys.argv[1]), *map(float, sys.argv[2:4]), int(sys.argv[4])
+y, x = (np.arange(count) * cell for count in heights.shape)
+raster = xarray.DataArray(heights, dims=("y", "x"), coords={"y": -y, "x": x})
+def find():
+    return xrspatial.sky_view_factor(raster, max_radius=max(heights.shape), n_directions=directions).values
+find()  # compiled
+times = []
+for _ in range(int(rounds)):
+    start = time.perf_counter()
+    found = find()
+    times.append(time.perf_counter() - start)
+np.save(sys.argv[1], found)
+print(xrspatial.__version__, sorted(times)[len(times) // 2])
+"""
+
+
+def sky_of_xrspatial(python, heights, rounds, directions):
+    """Version, seconds and the part of the hemisphere."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = os.path.join(folder, "heights.npy")
+        np.save(file, heights)
+        words = [python, "-c", SKY_OF_XRSPATIAL, file, str(CELL), str(rounds), str(directions)]
+        version, seconds = subprocess.run(words, check=True, capture_output=True, text=True).stdout.split()
+        return version, float(seconds), np.load(file)
+
+
 def packages(options):
-    """Seconds of all cells, and errors at some, of patches of the sky by twinray and by Open3D."""
+    """Seconds of all cells, and errors at some, of the sky by twinray, Open3D and xarray-spatial."""
     import twinray
     from twinray import terrain
 
@@ -178,11 +211,11 @@ def packages(options):
     random = np.random.default_rng(2)
     rows, columns = random.integers(0, options.side, (2, options.cells))
     start = time.perf_counter()
-    true = true_view(heights, rows, columns)
+    light, solid_angle = true_view(heights, rows, columns).T
     record = {"cells": heights.size, "cells_of_reference": options.cells}
-    print(f"reference: {options.cells} cells, {time.perf_counter() - start:.1f} s, mean {true.mean():.4f}", flush=True)
+    print(f"reference: {options.cells} cells, {time.perf_counter() - start:.1f} s, mean {light.mean():.4f}", flush=True)
 
-    def tell(name, took, found):
+    def tell(name, took, found, true=light):
         error = found[rows, columns] - true
         record[name] = {
             "seconds": took,
@@ -192,10 +225,15 @@ def packages(options):
         }
         print(name, record[name], flush=True)
 
-    for patches in (None, "tregenza145", "reinhart577"):
+    for name, true, what in (
+        ("horizon", light, {}),
+        ("horizon, solid angle", solid_angle, {"measure": "solid_angle"}),
+        ("tregenza145", light, {"patches": "tregenza145"}),
+        ("reinhart577", light, {"patches": "reinhart577"}),
+    ):
 
-        def ours(patches=patches):
-            return terrain.sky_view(heights, CELL, patches=patches, tile=options.side).compute(scheduler="sync")
+        def ours(what=what):
+            return terrain.sky_view(heights, CELL, tile=options.side, **what).compute(scheduler="sync")
 
         ours()
         times = []
@@ -203,7 +241,10 @@ def packages(options):
             start = time.perf_counter()
             found = ours()
             times.append(time.perf_counter() - start)
-        tell(f"twinray {patches or 'horizon'}", statistics.median(times), found)
+        tell(f"twinray {name}", statistics.median(times), found, true)
+    for directions in (16, 64) if options.xrspatial else ():
+        version, took, found = sky_of_xrspatial(options.xrspatial, heights, options.rounds, directions)
+        tell(f"xarray-spatial {version}, {directions} directions, solid angle", took, found, solid_angle)
     try:
         import open3d
     except ImportError:
@@ -214,18 +255,18 @@ def packages(options):
     triangles = terrain.triangles_of(np.ones(heights.shape, bool))
     for patches in ("tregenza145", "reinhart577"):
         directions, angles = twinray.sky_patches(patches)
-        light = np.asarray(angles * directions[:, 2])
+        weights = np.asarray(angles * directions[:, 2])
 
-        def theirs(directions=directions, light=light):
+        def theirs(directions=directions, weights=weights):
             scene = open3d.t.geometry.RaycastingScene()
             scene.add_triangles(open3d.core.Tensor(vertices), open3d.core.Tensor(triangles))
             seen = np.zeros(heights.size)
             rays = np.empty((heights.size, 6), np.float32)
             rays[:, :3] = vertices + np.float32([0, 0, CELL / 1024])
-            for direction, weight in zip(directions, light, strict=True):
+            for direction, weight in zip(directions, weights, strict=True):
                 rays[:, 3:] = direction
                 seen += weight * ~scene.test_occlusions(open3d.core.Tensor(rays)).numpy()
-            return (seen / light.sum()).reshape(heights.shape)
+            return (seen / weights.sum()).reshape(heights.shape)
 
         times = []
         for _ in range(options.rounds):
@@ -337,6 +378,7 @@ def main():
     parser.add_argument("--tile", type=int)
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--cells", type=int, default=10_000, help="of the reference")
+    parser.add_argument("--xrspatial", metavar="PYTHON", help="a Python that has xarray-spatial")
     parser.add_argument("--relief", type=float, help="of the terrain out of core; it is read once without it")
     parser.add_argument("--faces", type=int, default=20_000)
     parser.add_argument("--rays", type=int, default=1024)

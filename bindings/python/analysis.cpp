@@ -163,4 +163,9 @@ std::vector<std::uint8_t> visible(Scene& scene, std::span<const vec3> points, st
     return visibility(turn.accel(), points, vectors, normals, {.t_near = t_near});
 }
 
+std::vector<float> horizon(Scene& scene, const HeightRaster& raster, const HorizonDesc& desc) {
+    const Scene::Turn turn(scene);
+    return twinray::horizon(turn.accel().context(), raster, desc);
+}
+
 }  // namespace twinray::python

@@ -80,4 +80,7 @@ VerifyResult verify(Scene& scene, std::vector<Ray>&& rays, std::size_t count, st
 std::vector<std::uint8_t> visible(Scene& scene, std::span<const vec3> points, std::span<const vec3> vectors,
                                   std::span<const vec3> normals, float t_near);
 
+// On the device of the scene.
+std::vector<float> horizon(Scene& scene, const HeightRaster& raster, const HorizonDesc& desc);
+
 }  // namespace twinray::python

@@ -358,6 +358,25 @@ void bind_analysis(nb::module_& m) {
         return given<std::uint8_t>(
             unlocked([&] { return visible(scene, as<vec3>(points), as<vec3>(vectors), as<vec3>(normals), t_near); }));
     });
+    // corner and size: column and row
+    m.def("horizon",
+          [](Scene& scene, const nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu>& heights,
+             std::array<uint, 2> corner, std::array<uint, 2> size, const Rows<float, 2>& ways,
+             const std::string& measure, float lift, float curvature, float reach) {
+              const HeightRaster raster{.heights = {heights.data(), heights.size()},
+                                        .columns = static_cast<uint>(heights.shape(1)),
+                                        .rows = static_cast<uint>(heights.shape(0))};
+              const HorizonDesc desc{.corner = {corner[0], corner[1]},
+                                     .size = {size[0], size[1]},
+                                     .ways = {reinterpret_cast<const vec2*>(ways.data()), ways.shape(0)},
+                                     .measure = measure == "slope"   ? HorizonMeasure::slope
+                                                : measure == "light" ? HorizonMeasure::light
+                                                                     : HorizonMeasure::solid_angle,
+                                     .lift = lift,
+                                     .curvature = curvature,
+                                     .reach = reach};
+              return given<float>(unlocked([&] { return horizon(scene, raster, desc); }));
+          });
 }
 
 Buffer make_buffer(Context& context, std::uint64_t bytes, bool in_host_memory) {

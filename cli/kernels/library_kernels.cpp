@@ -74,6 +74,9 @@ void make_analysis(Context& context) {
     illuminate(accel, scene, faces, {.grid = {.side = 1}});
     const vec3 up(0, 1, 0);
     visibility(accel, std::span(&up, 1), std::span(&up, 1));
+    const std::array<float, 4> heights = {};
+    const vec2 way(1);
+    horizon(accel.context(), {.heights = heights, .columns = 2, .rows = 2}, {.size = {1, 1}, .ways = {&way, 1}});
 }
 
 }  // namespace

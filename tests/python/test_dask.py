@@ -158,7 +158,7 @@ def test_wrong_arguments_are_told_before_work():
         (lambda: terrain.sky_view(np.zeros((3, 3))), "spacing: an array"),
         (lambda: terrain.sky_view(np.zeros(3), 1), "heights: shape"),
         (lambda: terrain.sky_view(np.zeros((3, 3)), 0), "spacing: 0"),
-        (lambda: terrain.horizon(np.zeros((3, 3)), 1, steps=0), "steps: 0"),
+        (lambda: terrain.horizon(np.zeros((3, 3)), 1, azimuths=0), "azimuths: 0"),
         (lambda: terrain.horizon(np.zeros((3, 3)), 1, lowest=90), "lowest: 90"),
         (lambda: terrain.sky_view(np.zeros((3, 3)), 1, weights=[1]), "weights: they are of patches"),
         (lambda: terrain.visible(np.zeros((3, 3)), [[0, 0, -1]], 1), "vectors: not all"),
@@ -236,27 +236,55 @@ def test_terrain_against_a_scene_of_all():
     assert (found != wanted).mean() < 1e-4  # rays within rounding of an edge
 
 
-def test_the_horizon_and_the_sky_above_it():
+def true_slope(z, row, column, way, bend=0.0):
+    """In float64, by all edges of the triangles: the steepest crossing with a line of columns and rows per length."""
+    corners = terrain.triangles_of(np.isfinite(z)).astype(np.int64)
+    p, q = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]]).T
+    places = [np.column_stack([each % z.shape[1] - column, each // z.shape[1] - row]) for each in (p, q)]
+    off = [xy[:, 0] * way[1] - xy[:, 1] * way[0] for xy in places]
+    crosses = off[0] * off[1] < 0
+    part = off[0][crosses] / (off[0] - off[1])[crosses]
+    along = ((places[0][crosses].T * (1 - part) + places[1][crosses].T * part).T @ way) / (way @ way)
+    heights = z.ravel()[p][crosses] * (1 - part) + z.ravel()[q][crosses] * part
+    ahead = along > 1e-9
+    slopes = (heights[ahead] - z[row, column]) / along[ahead] - bend * along[ahead] / 2
+    return max(0.0, slopes.max(initial=0.0))
+
+
+@pytest.mark.parametrize("curvature", [0.0, 1.0])
+def test_the_horizon_is_exact(curvature):
+    heights = np.round(raster(rows=30, columns=41, step=512.0) * 1600) / 16  # with holes; terrain rounds as much
+    heights = heights.assign_coords(y=heights.y * 1.5)
+    found = terrain.horizon(heights, azimuths=9, lowest=0.1, tile=16, curvature=curvature).compute().values
+    largest = 0.0
+    for row, column in np.random.default_rng(3).integers(0, (30, 41), (40, 2)):
+        if np.isnan(heights.values[row, column]):
+            assert np.isnan(found[row, column]).all()
+            continue
+        for k in range(9):
+            angle = (k + 0.5) * 2 * np.pi / 9
+            way = np.array([np.sin(angle) / 512, -np.cos(angle) / 768])
+            wanted = true_slope(heights.values, row, column, way, curvature / terrain.EARTH_RADIUS)
+            largest = max(largest, abs(np.degrees(np.arctan(wanted)) - found[row, column, k]))
+    assert largest < 1e-5
+    assert np.nanmax(found) > 10
+
+
+def test_the_sky_is_what_is_above_the_horizon():
     heights = raster()
-    heights[:] = np.nan_to_num(heights)
-    found = terrain.horizon(heights, azimuths=8, steps=12, lowest=0.5, tile=16).compute()
+    options = {"azimuths": 8, "lowest": 0.5}
+    found = terrain.horizon(heights, tile=16, **options).compute()
     assert found.dims == ("y", "x", "azimuth") and found.attrs["units"] == "degrees" and found.name == "horizon"
-    for azimuth, above, below in ((0, 0.1, -0.1), (5, 0.1, -0.1)):
-        angle = np.radians((azimuth + 0.5) * 45)
-        cell = found.values[20, 25, azimuth]
-        rays = [
-            [np.sin(angle), np.cos(angle), np.tan(np.radians(cell + more))] for more in (above, below)
-        ]  # of twice the last step
-        assert terrain.visible(heights, rays, tile=64)[20, 25].compute().values.tolist() == [1, 0]
-    view = terrain.sky_view(heights, azimuths=8, steps=12, lowest=0.5, tile=64).compute().values
-    assert np.abs(view - (np.cos(np.radians(found.values)) ** 2).mean(axis=2)).max() < 1e-6
-    whole = terrain.sky_view(heights, azimuths=8, steps=12, lowest=0.5, tile=64, measure="solid_angle").compute()
-    assert np.abs(whole.values - (1 - np.sin(np.radians(found.values))).mean(axis=2)).max() < 1e-6
+    view = terrain.sky_view(heights, tile=64, **options).compute().values
+    assert np.nanmax(np.abs(view - (np.cos(np.radians(found.values)) ** 2).mean(axis=2))) < 1e-6
+    whole = terrain.sky_view(heights, tile=64, measure="solid_angle", **options).compute().values
+    assert np.nanmax(np.abs(whole - (1 - np.sin(np.radians(found.values))).mean(axis=2))) < 1e-6
     wall = np.zeros((3, 64))
     wall[:, 40:] = 1000.0
-    east = terrain.horizon(wall, 10.0, azimuths=2, steps=16).compute()[1, 30, 0]
-    assert abs(east - np.degrees(np.arctan(1000 / 100))) < 0.01
-    assert (terrain.horizon(wall[:, :30], 10.0).compute() == 1.5).all()
+    east = terrain.horizon(wall, 10.0, azimuths=2).compute()[1, 30, 0]
+    assert abs(east - np.degrees(np.arctan(1000 / 100))) < 1e-5
+    assert (terrain.horizon(wall[:, :30], 10.0).compute() == 0).all()
+    assert (terrain.horizon(wall[:1], 10.0).compute() == 0).all()  # a row has no surface
 
 
 def test_a_wall_hides_what_it_must():

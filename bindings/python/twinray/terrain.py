@@ -41,8 +41,7 @@ def sky_view(
     patches: Literal["tregenza145", "reinhart577", "reinhart2305"] | None = None,
     weights: ArrayLike | None = None,
     measure: Literal["light", "solid_angle"] = "light",
-    azimuths: int = 24,
-    steps: int = 7,
+    azimuths: int = 32,
     lowest: float = 3.0,
     **options: Any,
 ) -> Any:
@@ -56,11 +55,11 @@ def sky_view(
         From column to column, eastward, and from row to row, northward, negative where rows go south; one number: of
         square cells whose rows go south. By default the coordinates of the DataArray tell.
     patches : {"tregenza145", "reinhart577", "reinhart2305"}, optional
-        Patches of the sky, one ray each. By default the sky above the `horizon` counts, which is more exact for the
-        same number of rays.
+        Patches of the sky, one ray each. By default the sky above the `horizon` counts, which is quicker and more
+        exact.
     weights : array_like, (patches,), optional
         The brightness of each patch; by default a uniform sky's.
-    azimuths, steps, lowest
+    azimuths, lowest
         The options of `horizon`; not with `patches`.
     measure : {"light", "solid_angle"}
         The part of the light on a horizontal plane, or of the hemisphere itself.
@@ -70,7 +69,7 @@ def sky_view(
         Height of the sensors above ground; 0 by default.
     curvature : float
         Curvature of the earth: 0 is a plane, 1 a sphere, 0.857 a sphere with the refraction of air. Heights must be in
-        metres. 64 x 64 cells share the vertical of their middle.
+        metres. For rays 64 x 64 cells share the vertical of their middle.
     tile : int
         Cells along a side of a tile; 1024 by default.
     accel, device : optional
@@ -81,7 +80,7 @@ def sky_view(
     if patches is None:
         if weights is not None:
             raise ValueError("weights: they are of patches, which are not chosen")
-        search = _Search(azimuths, steps, lowest, measure)
+        search = _Horizon(azimuths, lowest, measure)
         return _over_tiles(heights, spacing, search.lowest_rays(), search, options)
     directions, angles = sky_patches(patches)
     light = np.asarray(angles) * (1 if weights is None else weights_of(weights, "weights", len(angles)))
@@ -94,26 +93,23 @@ def horizon(
     heights: Any,
     spacing: float | tuple[float, float] | None = None,
     *,
-    azimuths: int = 24,
-    steps: int = 7,
+    azimuths: int = 32,
     lowest: float = 3.0,
     **options: Any,
 ) -> Any:
     """Find how high the horizon is, in degrees, (rows, columns, azimuths) float32; NaN where a cell has no height.
 
-    Each step is a ray an azimuth. Above the horizon the sky is free where nothing overhangs, as in a raster without
-    holes. Parameters that are not listed are those of `sky_view`.
+    It is exact but for roundings: the highest of the points where the line of an azimuth crosses the surface's edges,
+    and at least 0. No ray is traced and no accelerator is built. The other parameters are those of `sky_view`.
 
     Parameters
     ----------
     azimuths : int
         From half a step east of north on, clockwise.
-    steps : int
-        From 1 to 24. Each halves the angle from 0 to 90 degrees in which the horizon lies.
     lowest : float
-        In degrees, of the lowest ray, which says how wide halos are. A horizon below is given as half of it.
+        In degrees. The raster counts as far as anything could stand above this, which says how wide halos are.
     """
-    search = _Search(azimuths, steps, lowest, None)
+    search = _Horizon(azimuths, lowest, None)
     return _over_tiles(heights, spacing, search.lowest_rays(), search, options)
 
 
@@ -152,7 +148,31 @@ def visible(
     return _over_tiles(heights, spacing, across, _Each(len(across)), options)
 
 
-class _Sum:
+class _OfRays:
+    """Answers of rays: `of(scene, points, across)` tells them for cells that have a height."""
+
+    def of_tile(self, z, plan, inside):
+        """The answers of the cells inside, of a tile with its halo."""
+        shape = tuple(part.stop - part.start for part in inside)
+        result = np.full((*shape, *self.more), self.fill, self.dtype)
+        is_asked = np.isfinite(z[inside])
+        vertices = _vertices(z, plan, inside)
+        scene = plan.spec.build()
+        scene.add_triangles(vertices.reshape(-1, 3), triangles_of(np.isfinite(z)))
+        points = vertices[inside]
+        points[..., 2] += plan.lift + _LIFT
+        side = _SIDE_OF_CURVED_BLOCK if plan.curvature else _SIDE_OF_BLOCK
+        for row in range(0, shape[0], side):
+            for column in range(0, shape[1], side):
+                block = (slice(row, row + side), slice(column, column + side))
+                if is_asked[block].any():
+                    asked = points[block][is_asked[block]]
+                    across = plan.directions_at(points[block].reshape(-1, 3).mean(axis=0))
+                    result[block][is_asked[block]] = self.of(scene, asked, across)
+        return result
+
+
+class _Sum(_OfRays):
     """Sums the weights of the directions that a cell sees."""
 
     dtype, fill, more = np.dtype(np.float32), np.nan, ()
@@ -160,11 +180,11 @@ class _Sum:
     def __init__(self, weights, name, units):
         self.weights, self.name, self.units = weights, name, units
 
-    def __call__(self, scene, points, across, unit):
+    def of(self, scene, points, across):
         return weighted(_seen(scene, points, across), self.weights)
 
 
-class _Each:
+class _Each(_OfRays):
     """The directions that a cell sees."""
 
     dtype, fill, name, units = np.dtype(np.uint8), 0, "visible", "1"
@@ -172,47 +192,48 @@ class _Each:
     def __init__(self, count):
         self.more, self.axis = (count,), "vector"
 
-    def __call__(self, scene, points, across, unit):
+    def of(self, scene, points, across):
         return _seen(scene, points, across)
 
 
-class _Search:
+class _Horizon:
     """The horizon of a cell, or how much of the sky is above it."""
 
     dtype, fill = np.dtype(np.float32), np.nan
 
-    def __init__(self, azimuths, steps, lowest, measure):
-        for name, value, most in (("azimuths", azimuths, 1 << 16), ("steps", steps, 24)):
-            if not hasattr(value, "__index__") or not 1 <= value <= most:
-                raise ValueError(f"{name}: {value!r}; wanted is an integer from 1 to {most}")
+    def __init__(self, azimuths, lowest, measure):
+        if not hasattr(azimuths, "__index__") or not 1 <= azimuths <= 1 << 16:
+            raise ValueError(f"azimuths: {azimuths!r}; wanted is an integer from 1 to {1 << 16}")
         if not 0 < number_of(lowest, "lowest") < 90:
             raise ValueError(f"lowest: {lowest}; wanted are degrees above 0 and below 90")
-        self.steps, self.lowest, self.measure = steps, math.radians(lowest), measure
-        self.around = (np.arange(azimuths) + 0.5) * (2 * math.pi / azimuths)
+        self.lowest, self.measure = math.radians(lowest), measure
+        around = (np.arange(azimuths) + 0.5) * (2 * math.pi / azimuths)
+        self.ways = np.stack([np.sin(around), np.cos(around)], axis=-1)  # east and north
         self.more, self.axis = ((azimuths,) if measure is None else ()), "azimuth"
         self.name, self.units = ("horizon", "degrees") if measure is None else ("sky_view", "1")
-        self.weights = np.array([azimuths, steps, lowest, ("light", "solid_angle", None).index(measure)])
+        self.weights = np.array([azimuths, lowest, ("light", "solid_angle", None).index(measure)])
 
     def lowest_rays(self):
-        slope = np.full(len(self.around), math.tan(self.lowest))
-        return np.stack([np.sin(self.around), np.cos(self.around), slope], axis=-1)
+        return np.column_stack([self.ways, np.full(len(self.ways), math.tan(self.lowest))])
 
-    def __call__(self, scene, points, across, unit):
-        low, high = np.zeros((2, len(points), len(across)))
-        high += math.pi / 2
-        rays = np.empty((*low.shape, 6), np.float32)
-        rays[..., :3] = scene._frame.moved(points, scene.origin)[:, None, :]
-        rays[..., 3:5] = across[:, :2]
-        for _ in range(self.steps):
-            middle = np.maximum((low + high) / 2, self.lowest)
-            rays[..., 5] = across[:, 2] + (np.tan(middle) - math.tan(self.lowest)) / unit
-            is_hidden = scene._core.occlusions(rays.reshape(-1, 6), [0.0, 0.0, 0.0], 0.0, np.inf).reshape(low.shape)
-            low, high = np.where(is_hidden, middle, low), np.where(is_hidden, high, middle)
-        middle = (low + high) / 2
-        if self.measure is None:
-            return np.degrees(middle)
-        part = np.cos(middle) ** 2 if self.measure == "light" else 1 - np.sin(middle)
-        return weighted(part, np.full(len(across), 1 / len(across)))
+    def of_tile(self, z, plan, inside):
+        """The answers of the cells inside, of a tile with its halo."""
+        grid = plan.grid
+        fine = _fine_heights(z, plan, inside).astype(np.float32)
+        fine = np.pad(fine, [(0, max(0, 2 - side)) for side in z.shape], constant_values=np.nan)  # at least 2 x 2
+        found = _core.horizon(
+            plan.spec.build()._core,
+            fine,
+            [part.start for part in reversed(inside)],
+            [part.stop - part.start for part in reversed(inside)],
+            (self.ways * (grid.unit / grid.dx, grid.unit / grid.dy)).astype(np.float32),
+            self.measure or "slope",
+            plan.lift,
+            plan.curvature * grid.unit / EARTH_RADIUS,
+            plan.way / grid.unit,
+        )
+        found = found.reshape(*(part.stop - part.start for part in inside), *self.more)
+        return found if self.measure else np.degrees(np.arctan(found))
 
 
 class _Grid:
@@ -256,9 +277,10 @@ def _over_tiles(
     lifted = number_of(options.get("height", 0.0), "height", 0)
     relief = options.get("relief")
     relief = _relief_of(array) if relief is None else number_of(relief, "relief", 0)
-    halo = grid.halo(_way(relief, directions, curvature))
+    way = _way(relief, directions, curvature)
+    halo = grid.halo(way)
     spec = SceneSpec(accel=options.get("accel", "auto"), device=options.get("device"))
-    plan = delayed(_Plan(spec, grid, directions, answer, lifted, curvature), pure=True)
+    plan = delayed(_Plan(spec, grid, directions, answer, lifted, curvature, way), pure=True)
     rows = [_tile_row(array, first, tile, halo, plan, answer) for first in range(0, array.shape[0], tile)]
     found = da.concatenate(rows) if rows else da.zeros((*array.shape, *answer.more), dtype=answer.dtype)
     return found if source is None else _labelled(found, source, answer)
@@ -295,10 +317,10 @@ def _tile_row(array, first, tile, halo, plan, answer):
 class _Plan:
     """The settings that all tiles share."""
 
-    def __init__(self, spec, grid, directions, answer, lifted, curvature):
+    def __init__(self, spec, grid, directions, answer, lifted, curvature, way):
         self.spec, self.grid, self.directions, self.answer = spec, grid, directions, answer
-        self.lift = np.round(lifted / grid.unit * _FINE) / _FINE + _LIFT
-        self.curvature = curvature
+        self.lift = np.round(lifted / grid.unit * _FINE) / _FINE
+        self.curvature, self.way = curvature, way
 
     def directions_at(self, point):
         """The directions, in cells, as they are where the surface is bent about the middle of the tile."""
@@ -310,7 +332,7 @@ class _Plan:
 
     def __dask_tokenize__(self):
         weights = getattr(self.answer, "weights", np.zeros(0))
-        grid = (self.grid.dx, self.grid.dy, self.lift, self.curvature)
+        grid = (self.grid.dx, self.grid.dy, self.lift, self.curvature, self.way)
         return (type(self.answer).__name__, self.spec.key, grid, self.directions.tobytes(), weights.tobytes())
 
 
@@ -321,28 +343,12 @@ def _tile(heights, plan, inside, corner):
 
 
 def _answered(heights, plan, inside):
-    """The answers of the cells inside, of a tile with its halo."""
-    shape = tuple(part.stop - part.start for part in inside)
-    result = np.full((*shape, *plan.answer.more), plan.answer.fill, plan.answer.dtype)
     z = np.asarray(heights, np.float64)
     z = np.where(np.isfinite(z), z, np.nan)
-    is_asked = np.isfinite(z[inside])
-    if not is_asked.any():
-        return result
-    vertices = _vertices(z, plan, inside)
-    scene = plan.spec.build()
-    scene.add_triangles(vertices.reshape(-1, 3), triangles_of(np.isfinite(z)))
-    points = vertices[inside]
-    points[..., 2] += plan.lift
-    side = _SIDE_OF_CURVED_BLOCK if plan.curvature else _SIDE_OF_BLOCK
-    for row in range(0, shape[0], side):
-        for column in range(0, shape[1], side):
-            block = (slice(row, row + side), slice(column, column + side))
-            if is_asked[block].any():
-                asked = points[block][is_asked[block]]
-                across = plan.directions_at(points[block].reshape(-1, 3).mean(axis=0))
-                result[block][is_asked[block]] = plan.answer(scene, asked, across, plan.grid.unit)
-    return result
+    answer = plan.answer
+    if np.isfinite(z[inside]).any():
+        return answer.of_tile(z, plan, inside)
+    return np.full((*(part.stop - part.start for part in inside), *answer.more), answer.fill, answer.dtype)
 
 
 def _seen(scene, points, across):
@@ -361,9 +367,14 @@ def _vertices(z, plan, inside):
     vertices = np.empty((*z.shape, 3))
     vertices[..., 0] = column[None, :]
     vertices[..., 1] = row[:, None]
-    fine = np.round(z * (_FINE / plan.grid.unit))
-    vertices[..., 2] = np.nan_to_num(fine - np.round(np.nanmean(fine[inside]))) / _FINE
+    vertices[..., 2] = np.nan_to_num(_fine_heights(z, plan, inside))
     return vertices
+
+
+def _fine_heights(z, plan, inside):
+    """In cells, about 0 in the middle of the tile."""
+    fine = np.round(z * (_FINE / plan.grid.unit))
+    return (fine - np.round(np.nanmean(fine[inside]))) / _FINE
 
 
 def triangles_of(is_there):
