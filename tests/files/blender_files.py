@@ -30,6 +30,13 @@ bpy.ops.export_scene.gltf(filepath="blender.glb")
 bpy.ops.export_scene.gltf(
     filepath="blender_draco.glb", export_draco_mesh_compression_enable=True, export_draco_position_quantization=14
 )
+if "export_meshopt_extension" in bpy.ops.export_scene.gltf.get_rna_type().properties:
+    for name in ("EXT", "KHR"):
+        bpy.ops.export_scene.gltf(
+            filepath=f"blender_{name.lower()}_meshopt.glb",
+            export_meshopt_compression_enable=True,
+            export_meshopt_extension=f"{name}_meshopt_compression",
+        )
 bpy.ops.wm.obj_export(filepath="blender.obj")
 bpy.ops.wm.ply_export(filepath="blender.ply")
 bpy.ops.wm.stl_export(filepath="blender.stl")

@@ -271,20 +271,27 @@ def by_ifcopenshell():
         yield f"IFC, metres, {name}", compare("wall.ply", Model(mesh.triangles, mesh.bounds.mean(0), directions()))
 
 
-def by_blender():
+def by_blender(folder):
     """The files are made by Blender's own Python, blender_files.py."""
     here = pathlib.Path(__file__).parent
-    run("blender/bin/python", here / "blender_files.py")
+    run(f"{folder}/bin/python", here / "blender_files.py")
     own = np.load("blender.npz")
     model = Model(own["triangles"], own["middle"], directions(), own["t"])
     for name, turn, most in (
         ("blender.glb, y up", Y_UP, ROUNDING),
         ("blender_draco.glb, y up", Y_UP, QUANTISED),
+        ("blender_ext_meshopt.glb, y up", Y_UP, QUANTISED),
+        ("blender_khr_meshopt.glb, y up", Y_UP, QUANTISED),
         ("blender.obj, y up", Y_UP, ROUNDING),
         ("blender.ply, z up", None, ROUNDING),
         ("blender.stl, z up", None, ROUNDING),
     ):
-        yield name, compare(name.split(",")[0], model, turn, most=most)
+        file = pathlib.Path(name.split(",")[0])
+        if not file.exists():  # an older Blender has no meshopt
+            continue
+        is_plain = most == QUANTISED and b"_compression" not in file.read_bytes()
+        yield name + (", written plain" if is_plain else ""), compare(file.name, model, turn, most=most)
+        file.unlink()
 
 
 def by_radiance():
@@ -313,7 +320,8 @@ def by_radiance():
 
 
 TOOLS: dict[str, tuple[str, Callable]] = {
-    "Blender": ("bpy", by_blender),
+    "Blender": ("blender", lambda: by_blender("blender")),
+    "newer Blender": ("newer_blender", lambda: by_blender("newer_blender")),
     "Open CASCADE": ("build123d", by_open_cascade),
     "IfcOpenShell": ("ifcopenshell", by_ifcopenshell),
     "gltfpack": ("gltfpack", by_gltfpack),
@@ -330,8 +338,8 @@ TOOLS: dict[str, tuple[str, Callable]] = {
 
 def version_of(program):
     """"" if it is not installed."""
-    if program == "bpy":
-        there = sorted(pathlib.Path("blender").glob("lib/python*/site-packages/bpy-*.dist-info"))
+    if program.endswith("blender"):  # the folder of its venv
+        there = sorted(pathlib.Path(program).glob("lib/python*/site-packages/bpy-*.dist-info"))
         return there[0].name.split("-")[1].removesuffix(".dist") if there else ""
     if program == "assimp" and shutil.which(program):
         return run("sh", "-c", "assimp version | grep -o 'Version [0-9.]*'").split()[-1]

@@ -29,4 +29,6 @@ install venv 2.4.6 trimesh==5.2.0 rtree==1.4.1 scipy==1.17.1 pillow==13.0.0 open
     meshio==5.3.5 pyvista==0.49.1 pymeshlab==2025.7.post1 build123d==0.13.0 cascadio==0.1.1 \
     ifcopenshell==0.9.0.post1 pyradiance==1.3.1 "$here/../.."
 install blender 1.26.4 bpy==5.0.1
+if python3.13 -c "" 2>/dev/null && [[ ! -x newer_blender/bin/python ]]; then python3.13 -m venv newer_blender; fi
+install newer_blender 2.4.6 bpy==5.2.3
 PATH=$PWD/node_modules/.bin:$PATH exec venv/bin/python "$here/exporters.py" "$bin"
