@@ -36,8 +36,9 @@ install_packages() {
     done
     if ((${#missing[@]} == 0)); then return; fi
     if ((EUID != 0)); then sudo=(sudo); fi
-    "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}" ||
-        exit 77
+    local install=("${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends)
+    "${install[@]}" --download-only "${missing[@]}" || exit 77
+    "${install[@]}" "${missing[@]}"
 }
 
 # Wine of Debian 12 has Vulkan only where there is a display, and takes names for UTF-8 only in such a locale.
@@ -46,7 +47,10 @@ start_wine() {
     Xvfb "$display" -screen 0 1280x1024x24 -fbdir build >build/xvfb.log 2>&1 &
     xvfb=$!
     trap 'kill "$xvfb" 2>/dev/null || true; wineserver -k || true' EXIT
-    sleep 1
+    for ((tries = 0; tries < 100; ++tries)); do
+        if [[ -S /tmp/.X11-unix/X${display#:} ]] || ! kill -0 "$xvfb" 2>/dev/null; then break; fi
+        sleep 0.1
+    done
     if ! kill -0 "$xvfb" 2>/dev/null; then
         echo "check_windows: no Xvfb on display $display: $(<build/xvfb.log)" >&2
         echo "WINDOWS_DISPLAY=:N chooses another display" >&2

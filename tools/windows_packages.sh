@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: MIT
 # Makes a folder with all that twinray takes from others, for Windows: libraries of Debian's source packages, compiled by
 # MinGW-w64, and Debian's headers that need no library.
-#   tools/windows_packages.sh FOLDER    FOLDER/done is the last thing that it writes; it does nothing if that is there
+#   tools/windows_packages.sh FOLDER    FOLDER/done is the last thing that it writes; it does nothing if that is there,
+#                                       by the same script and options
 #   WINDOWS_SOURCES    source packages: NAME, or NAME/RELEASE for one of another release where a mirror lacks the
 #                      running one's: "gmp imath/bookworm openexr/bookworm glfw3 imgui"
 # apt-get source must be able to fetch, so the script brings its own list of sources. The exit status is 77 if they
@@ -21,7 +22,9 @@ header_packages=(
 )
 read -r -a source_packages <<<"${WINDOWS_SOURCES-gmp imath openexr glfw3 imgui}"
 
-if [[ -e $folder/done ]]; then exit 0; fi
+made_by=$(cat "$0" /etc/os-release - <<<"${source_packages[*]}" | sha256sum)
+if [[ $(cat "$folder/done" 2>/dev/null) == "$made_by" ]]; then exit 0; fi
+if [[ -e $folder/done ]]; then rm -rf "$folder"; fi # of another script
 export TWINRAY_WINDOWS_PACKAGES=$folder
 
 say() { printf 'windows_packages: %s\n' "$*"; }
@@ -40,7 +43,12 @@ fetch_sources() {
     release=$(. /etc/os-release && echo "$VERSION_CODENAME")
     # The mirror that this system takes its packages from; apt-get expands what stands in quotes.
     # shellcheck disable=SC2016
-    mirror=$(apt-get indextargets --format '$(CODENAME) $(REPO_URI)' | sed -n "s/^$release //p" | sort -u | head -n 1)
+    mirror=$(apt-get indextargets --format '$(CODENAME) $(REPO_URI)' 'Origin: Debian' |
+        sed -n "s/^$release //p" | sort -u | head -n 1)
+    if [[ -z $mirror ]]; then
+        say "apt knows no mirror of Debian $release; run apt-get update" >&2
+        exit 1
+    fi
     suites=("$release")
     for package in "${source_packages[@]}"; do
         if [[ $package == */* ]]; then suites+=("${package#*/}"); fi
@@ -125,5 +133,5 @@ say "GLFW" && build_with_cmake "$(source_of glfw3)" -DGLFW_BUILD_EXAMPLES=OFF -D
 say "Dear ImGui" && build_imgui
 say "GoogleTest" && cp -r /usr/src/googletest "$sources/googletest" && build_with_cmake "$sources/googletest" -DBUILD_GMOCK=OFF
 make_vulkan_library
-touch "$folder/done"
+echo "$made_by" >"$folder/done"
 say "done: $folder"

@@ -358,20 +358,22 @@ void bind_analysis(nb::module_& m) {
         return given<std::uint8_t>(
             unlocked([&] { return visible(scene, as<vec3>(points), as<vec3>(vectors), as<vec3>(normals), t_near); }));
     });
+    nb::enum_<HorizonMeasure>(m, "HorizonMeasure")
+        .value("slope", HorizonMeasure::slope)
+        .value("light", HorizonMeasure::light)
+        .value("solid_angle", HorizonMeasure::solid_angle);
     // corner and size: column and row
     m.def("horizon",
           [](Scene& scene, const nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu>& heights,
-             std::array<uint, 2> corner, std::array<uint, 2> size, const Rows<float, 2>& ways,
-             const std::string& measure, float lift, float curvature, float reach) {
+             std::array<uint, 2> corner, std::array<uint, 2> size, const Rows<float, 2>& ways, HorizonMeasure measure,
+             float lift, float curvature, float reach) {
               const HeightRaster raster{.heights = {heights.data(), heights.size()},
                                         .columns = static_cast<uint>(heights.shape(1)),
                                         .rows = static_cast<uint>(heights.shape(0))};
               const HorizonDesc desc{.corner = {corner[0], corner[1]},
                                      .size = {size[0], size[1]},
                                      .ways = {reinterpret_cast<const vec2*>(ways.data()), ways.shape(0)},
-                                     .measure = measure == "slope"   ? HorizonMeasure::slope
-                                                : measure == "light" ? HorizonMeasure::light
-                                                                     : HorizonMeasure::solid_angle,
+                                     .measure = measure,
                                      .lift = lift,
                                      .curvature = curvature,
                                      .reach = reach};

@@ -379,27 +379,29 @@ struct SkyPatch {
 // Returns the patches of one of sky_names; throws Error for another name.
 std::vector<SkyPatch> sky_patches(std::string_view name);
 
-// A raster of heights. Its surface is the triangles (c, r), (c + 1, r), (c + 1, r + 1) and (c, r), (c + 1, r + 1),
-// (c, r + 1) between the middles of cells, c the column and r the row.
+// A raster of heights, of at most 2^20 columns and rows. Its surface is the triangles (c, r), (c + 1, r), (c + 1, r +
+// 1) and (c, r), (c + 1, r + 1), (c, r + 1) between the middles of cells, c the column and r the row.
 struct HeightRaster {
     std::span<const float> heights;  // row by row; NaN where there is none
-    uint columns = 0, rows = 0;      // at least 2 each; fewer than 2^31 cells
+    uint columns = 0, rows = 0;      // at least 2 each; fewer than 2^30 cells
 };
 // The answers of horizon() for a cell: slope, the horizon's height over its distance, one a way, at least 0; or one
 // number, the part of a uniform sky's light on a horizontal plane, or of the hemisphere, that is above the horizon.
 enum class HorizonMeasure { slope, light, solid_angle };
-// Options of horizon().
+// Options of horizon(). Lengths are in the unit of the heights.
 struct HorizonDesc {
-    uvec2 corner = {}, size = {};     // columns and rows of the cells asked for
-    std::span<const vec2> ways = {};  // columns and rows per length of the heights, finite
+    uvec2 corner = {}, size = {};  // columns and rows of the cells asked for
+    // Columns and rows per length: {sin(a) / 30, -cos(a) / 30} for azimuth a over cells of 30 whose rows go south.
+    std::span<const vec2> ways = {};
     HorizonMeasure measure = HorizonMeasure::slope;
     float lift = 0;          // of the eye above its cell, at least 0
     float curvature = 0;     // of the planet: one over its radius
     float reach = INFINITY;  // how far the raster hides anything
 };
-// Finds the horizon exactly, along lines, without rays and accelerators. Answers are row by row of the cells asked for;
-// that of a cell without a height is NaN. They do not depend on the raster beyond `reach`. Throws Error for cells that
-// the raster has not, and for 2^31 cells and ways or more.
+// Finds the horizon along lines, without rays and accelerators, at the points where they cross edges of triangles: on a
+// plane its highest. Answers are row by row of the cells asked for, a cell's by way; those of a cell without a height
+// are NaN. They do not depend on the raster beyond `reach`. Throws Error for what a member's comment does not allow,
+// and for 2^31 answers or more.
 std::vector<float> horizon(Context& context, const HeightRaster& raster, const HorizonDesc& desc);
 
 // Options of visibility().

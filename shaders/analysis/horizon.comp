@@ -9,6 +9,7 @@
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { HorizonArgs args; };
 
+const float AT_END = 1.0f / 65536.0f; // of an edge: more than a place on it is rounded, and a vertex itself
 const float ROUNDINGS = 1.0f + 1.0f / 65536.0f; // more than those of a slope
 
 float height_at(ivec2 at)
@@ -37,14 +38,39 @@ int steps_done(float along, float speed, float pause)
     return float(steps) * pause > along ? steps - 1 : steps;
 }
 
-// The slope to the point of an edge of the surface, `part` of it behind p; 0 if neither triangle at the edge is there.
-float slope_to(Way way, ivec2 p, ivec2 q, ivec2 corner, ivec2 other_corner, float part, float along, float least)
+// Whether a triangle at the cell is there: two neighbours of the six that its triangles have.
+bool is_corner(ivec2 cell)
 {
+    const ivec2 around[6] =
+        ivec2[6](ivec2(1, 0), ivec2(1, 1), ivec2(0, 1), ivec2(-1, 0), ivec2(-1, -1), ivec2(0, -1));
+    if (!is_there(cell)) return false;
+    bool was_there = is_there(cell + around[5]), is_any = false;
+    for (uint k = 0u; k < 6u; ++k)
+    {
+        bool is_next = is_there(cell + around[k]);
+        is_any = is_any || (was_there && is_next);
+        was_there = is_next;
+    }
+    return is_any;
+}
+
+// The slope to the point of an edge of the surface, `part` of it behind p, if it is steeper than `least` and part of a
+// triangle: that with `third` or `other_third`, or at an end of the edge any. It is no higher than the edge's ends, by
+// the same rounding as that of maxima.
+float slope_to(Way way, ivec2 p, ivec2 q, ivec2 third, ivec2 other_third, float part, float along, float least)
+{
+    bool is_p = part < AT_END, is_q = part > 1.0f - AT_END;
     float a = height_at(p), b = height_at(q);
-    PRECISE float rise = (a - way.eye) + (b - a) * clamp(part, 0.0f, 1.0f);
-    PRECISE float slope = rise / along - 0.5f * args.bend * along;
+    if (is_p && b <= NO_HEIGHT) b = a;
+    if (is_q && a <= NO_HEIGHT) a = b;
+    PRECISE float higher = max(a, b) - way.eye;
+    PRECISE float between = (a - way.eye) + (b - a) * part;
+    PRECISE float slope = min(between, higher) / along - 0.5f * args.bend * along;
     if (!(slope > least && along <= args.reach)) return least;
-    return is_there(p) && is_there(q) && (is_there(corner) || is_there(other_corner)) ? slope : least;
+    bool is_surface = is_p   ? is_corner(p)
+                      : is_q ? is_corner(q)
+                             : is_there(p) && is_there(q) && (is_there(third) || is_there(other_third));
+    return is_surface ? slope : least;
 }
 
 // The steepest of `best` and the points where a way crosses the diagonal and the far sides of a square: `done` steps
@@ -80,8 +106,11 @@ float slope_of_horizon(ivec2 start, vec2 across)
 {
     Way way;
     way.start = start;
-    way.side = ivec2(across.x > 0.0f ? 1 : -1, across.y > 0.0f ? 1 : -1);
     way.speed = abs(across);
+    // A way along a column or a row has squares on both sides, but at the raster's border.
+    bvec2 is_ahead = mix(greaterThan(across, vec2(0.0f)), lessThan(start + 1, ivec2(args.columns, args.rows)),
+                         lessThanEqual(way.speed, vec2(PARALLEL)));
+    way.side = ivec2(is_ahead.x ? 1 : -1, is_ahead.y ? 1 : -1);
     way.pause = 1.0f / way.speed;
     PRECISE float eye = height_at(start) + args.lift;
     way.eye = eye;
@@ -103,8 +132,8 @@ float slope_of_horizon(ivec2 start, vec2 across)
             --level;
             continue;
         }
-        ivec2 end = ivec2(way.side.x > 0 ? (block.x + 1 << int(level)) - start.x : start.x - (block.x << int(level)),
-                          way.side.y > 0 ? (block.y + 1 << int(level)) - start.y : start.y - (block.y << int(level)));
+        ivec2 end = ivec2(way.side.x > 0 ? ((block.x + 1) << int(level)) - start.x : start.x - (block.x << int(level)),
+                          way.side.y > 0 ? ((block.y + 1) << int(level)) - start.y : start.y - (block.y << int(level)));
         PRECISE vec2 leave = vec2(end) * way.pause;
         if (!is_low) best = slope_in_square(way, done, along, leave, best);
         along = min(leave.x, leave.y);

@@ -9,6 +9,7 @@ const uint HORIZON_LIGHT = 1u;       // the part of a uniform sky's light on a h
 const uint HORIZON_SOLID_ANGLE = 2u; // the part of the hemisphere, likewise
 
 const float NO_HEIGHT = -3.0e38f; // of a hole
+const float PARALLEL = 1.0e-20f;  // a way that stays in its column, or row, all over a raster
 
 // Level 0 has the largest of the four heights of each square; each level halves the sides of the one before it.
 struct HorizonLevel
@@ -20,10 +21,10 @@ BUFFER_OF(HorizonLevel, 4);
 
 struct HorizonArgs
 {
-    Floats heights; // row by row, in sides of a cell, like all lengths here
+    Floats heights; // row by row
     Floats maxima;  // of all levels
     REF(HorizonLevel) levels;
-    Vec2s ways;    // columns and rows per length, neither 0
+    Vec2s ways;    // columns and rows per length; a component of PARALLEL is as good as 0
     Floats answers;
     uint columns;
     uint rows;

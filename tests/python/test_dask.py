@@ -159,6 +159,10 @@ def test_wrong_arguments_are_told_before_work():
         (lambda: terrain.sky_view(np.zeros(3), 1), "heights: shape"),
         (lambda: terrain.sky_view(np.zeros((3, 3)), 0), "spacing: 0"),
         (lambda: terrain.horizon(np.zeros((3, 3)), 1, azimuths=0), "azimuths: 0"),
+        (
+            lambda: terrain.horizon(np.zeros((3, 3)), 1, azimuths=1 << 11),
+            "azimuths: 2048 of tiles of 1024 x 1024 cells",
+        ),
         (lambda: terrain.horizon(np.zeros((3, 3)), 1, lowest=90), "lowest: 90"),
         (lambda: terrain.sky_view(np.zeros((3, 3)), 1, weights=[1]), "weights: they are of patches"),
         (lambda: terrain.visible(np.zeros((3, 3)), [[0, 0, -1]], 1), "vectors: not all"),
@@ -242,7 +246,8 @@ def true_slope(z, row, column, way, bend=0.0):
     p, q = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]]).T
     places = [np.column_stack([each % z.shape[1] - column, each // z.shape[1] - row]) for each in (p, q)]
     off = [xy[:, 0] * way[1] - xy[:, 1] * way[0] for xy in places]
-    crosses = off[0] * off[1] < 0
+    off = [np.where(np.abs(each) < 1e-9 * np.abs(way).max(), 0, each) for each in off]  # vertices on the line
+    crosses = (off[0] * off[1] <= 0) & (off[0] != off[1])
     part = off[0][crosses] / (off[0] - off[1])[crosses]
     along = ((places[0][crosses].T * (1 - part) + places[1][crosses].T * part).T @ way) / (way @ way)
     heights = z.ravel()[p][crosses] * (1 - part) + z.ravel()[q][crosses] * part
@@ -251,23 +256,43 @@ def true_slope(z, row, column, way, bend=0.0):
     return max(0.0, slopes.max(initial=0.0))
 
 
-@pytest.mark.parametrize("curvature", [0.0, 1.0])
-def test_the_horizon_is_exact(curvature):
+# Some ways lead along rows, columns and diagonals, from cells at the border and beside holes.
+@pytest.mark.parametrize(("curvature", "azimuths", "oblong"), [(0.0, 9, 1.5), (1.0, 9, 1.5), (0.0, 2, 1), (0.0, 4, 1)])
+def test_the_horizon_is_exact(curvature, azimuths, oblong):
     heights = np.round(raster(rows=30, columns=41, step=512.0) * 1600) / 16  # with holes; terrain rounds as much
-    heights = heights.assign_coords(y=heights.y * 1.5)
-    found = terrain.horizon(heights, azimuths=9, lowest=0.1, tile=16, curvature=curvature).compute().values
+    heights = heights.assign_coords(y=heights.y * oblong)
+    options = {"azimuths": azimuths, "lowest": 0.1, "curvature": curvature}
+    found = terrain.horizon(heights, tile=16, **options).compute().values
+    assert same(found, terrain.horizon(heights, tile=64, **options).compute().values)
     largest = 0.0
-    for row, column in np.random.default_rng(3).integers(0, (30, 41), (40, 2)):
+    cells = [
+        *np.random.default_rng(3).integers(0, (30, 41), (40, 2)),
+        (0, 7),
+        (29, 9),
+        (11, 0),
+        (5, 40),
+        (9, 22),
+        (12, 19),
+    ]
+    for row, column in cells:
         if np.isnan(heights.values[row, column]):
             assert np.isnan(found[row, column]).all()
             continue
-        for k in range(9):
-            angle = (k + 0.5) * 2 * np.pi / 9
-            way = np.array([np.sin(angle) / 512, -np.cos(angle) / 768])
+        for k in range(azimuths):
+            angle = (k + 0.5) * 2 * np.pi / azimuths
+            way = np.array([np.sin(angle) / 512, -np.cos(angle) / (512 * oblong)])
             wanted = true_slope(heights.values, row, column, way, curvature / terrain.EARTH_RADIUS)
             largest = max(largest, abs(np.degrees(np.arctan(wanted)) - found[row, column, k]))
     assert largest < 1e-5
     assert np.nanmax(found) > 10
+
+
+def test_tiles_round_high_mountains_alike():
+    heights = raster(step=1.0)
+    heights[:, 20:] += 5000.3  # 5,000 cells high
+    options = {"azimuths": 8, "lowest": 40.0}
+    found = [terrain.horizon(heights, tile=tile, **options).compute().values for tile in (64, 16, 7)]
+    assert all(same(each, found[0]) for each in found[1:])
 
 
 def test_the_sky_is_what_is_above_the_horizon():
@@ -277,12 +302,13 @@ def test_the_sky_is_what_is_above_the_horizon():
     assert found.dims == ("y", "x", "azimuth") and found.attrs["units"] == "degrees" and found.name == "horizon"
     view = terrain.sky_view(heights, tile=64, **options).compute().values
     assert np.nanmax(np.abs(view - (np.cos(np.radians(found.values)) ** 2).mean(axis=2))) < 1e-6
+    assert same(np.isnan(view), np.isnan(heights.values))
     whole = terrain.sky_view(heights, tile=64, measure="solid_angle", **options).compute().values
     assert np.nanmax(np.abs(whole - (1 - np.sin(np.radians(found.values))).mean(axis=2))) < 1e-6
     wall = np.zeros((3, 64))
     wall[:, 40:] = 1000.0
-    east = terrain.horizon(wall, 10.0, azimuths=2).compute()[1, 30, 0]
-    assert abs(east - np.degrees(np.arctan(1000 / 100))) < 1e-5
+    east = terrain.horizon(wall, 10.0, azimuths=2).compute()[:, 30, 0]
+    assert np.abs(east - np.degrees(np.arctan(1000 / 100))).max() < 1e-5
     assert (terrain.horizon(wall[:, :30], 10.0).compute() == 0).all()
     assert (terrain.horizon(wall[:1], 10.0).compute() == 0).all()  # a row has no surface
 

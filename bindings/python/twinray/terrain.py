@@ -2,7 +2,7 @@
 """Sky and sun of rasters of heights, tile by tile, so that they need not fit into memory: extra ``twinray[dask]``.
 
 A raster is a surface of triangles between the middles of cells; cells without a height (NaN) are holes in it. Each tile
-is a scene of its own, with a halo as wide as anything could stand that hides the lowest ray. Results are lazy arrays of
+is asked by itself, with a halo as wide as anything could stand that hides the lowest ray. Results are lazy arrays of
 Dask, a chunk a tile.
 
 One file of more than 400 lines, since all its questions share how tiles and halos are cut.
@@ -28,9 +28,11 @@ from .sky import sky_patches
 __all__ = ["horizon", "sky_view", "sun_hours", "visible"]
 
 EARTH_RADIUS = 6_371_000.0  #: metres
+_TILE = 1024
 _SIDE_OF_BLOCK = 256  # in cells
 _SIDE_OF_CURVED_BLOCK = 64  # which has one vertical
-_FINE = 2.0**13  # heights are whole numbers of so small parts of a cell, so that tiles round them alike
+_FINE = 13  # heights are whole numbers of 2^-13 of a cell, so that tiles round them alike,
+_WHOLE = 22  # or of larger parts: float32 holds those of the whole relief
 _LIFT = 2.0**-10  # of a cell: where sensors on the ground begin, so that rays uphill meet the slope ahead
 
 
@@ -110,6 +112,9 @@ def horizon(
         In degrees. The raster counts as far as anything could stand above this, which says how wide halos are.
     """
     search = _Horizon(azimuths, lowest, None)
+    tile = options.get("tile", _TILE)
+    if hasattr(tile, "__index__") and tile * tile * azimuths >= 1 << 31:
+        raise ValueError(f"azimuths: {azimuths} of tiles of {tile} x {tile} cells; fewer than 2^31 answers a tile fit")
     return _over_tiles(heights, spacing, search.lowest_rays(), search, options)
 
 
@@ -227,7 +232,7 @@ class _Horizon:
             [part.start for part in reversed(inside)],
             [part.stop - part.start for part in reversed(inside)],
             (self.ways * (grid.unit / grid.dx, grid.unit / grid.dy)).astype(np.float32),
-            self.measure or "slope",
+            getattr(_core.HorizonMeasure, self.measure or "slope"),
             plan.lift,
             plan.curvature * grid.unit / EARTH_RADIUS,
             plan.way / grid.unit,
@@ -269,7 +274,7 @@ def _over_tiles(
     unknown = sorted(set(options) - set(_names))
     if unknown:
         raise TypeError(f"unknown options {unknown}; there are {', '.join(_names)}")
-    tile = options.get("tile", 1024)
+    tile = options.get("tile", _TILE)
     if not hasattr(tile, "__index__") or tile < 1:
         raise ValueError(f"tile: {tile!r}; wanted is an integer of at least 1")
     source, array, grid = _raster(heights, spacing, tile)
@@ -280,7 +285,7 @@ def _over_tiles(
     way = _way(relief, directions, curvature)
     halo = grid.halo(way)
     spec = SceneSpec(accel=options.get("accel", "auto"), device=options.get("device"))
-    plan = delayed(_Plan(spec, grid, directions, answer, lifted, curvature, way), pure=True)
+    plan = delayed(_Plan(spec, grid, directions, answer, lifted, curvature, way, relief), pure=True)
     rows = [_tile_row(array, first, tile, halo, plan, answer) for first in range(0, array.shape[0], tile)]
     found = da.concatenate(rows) if rows else da.zeros((*array.shape, *answer.more), dtype=answer.dtype)
     return found if source is None else _labelled(found, source, answer)
@@ -317,9 +322,10 @@ def _tile_row(array, first, tile, halo, plan, answer):
 class _Plan:
     """The settings that all tiles share."""
 
-    def __init__(self, spec, grid, directions, answer, lifted, curvature, way):
+    def __init__(self, spec, grid, directions, answer, lifted, curvature, way, relief):
         self.spec, self.grid, self.directions, self.answer = spec, grid, directions, answer
-        self.lift = np.round(lifted / grid.unit * _FINE) / _FINE
+        self.fine = 2.0 ** min(_FINE, _WHOLE - math.ceil(math.log2(max(1.0, relief / grid.unit))))
+        self.lift = np.round(lifted / grid.unit * self.fine) / self.fine
         self.curvature, self.way = curvature, way
 
     def directions_at(self, point):
@@ -332,7 +338,7 @@ class _Plan:
 
     def __dask_tokenize__(self):
         weights = getattr(self.answer, "weights", np.zeros(0))
-        grid = (self.grid.dx, self.grid.dy, self.lift, self.curvature, self.way)
+        grid = (self.grid.dx, self.grid.dy, self.fine, self.lift, self.curvature, self.way)
         return (type(self.answer).__name__, self.spec.key, grid, self.directions.tobytes(), weights.tobytes())
 
 
@@ -373,8 +379,8 @@ def _vertices(z, plan, inside):
 
 def _fine_heights(z, plan, inside):
     """In cells, about 0 in the middle of the tile."""
-    fine = np.round(z * (_FINE / plan.grid.unit))
-    return (fine - np.round(np.nanmean(fine[inside]))) / _FINE
+    fine = np.round(z * (plan.fine / plan.grid.unit))
+    return (fine - np.round(np.nanmean(fine[inside]))) / plan.fine
 
 
 def triangles_of(is_there):
