@@ -9,11 +9,13 @@ A test is a TEST of GoogleTest, whose suites are processes each, or a ctest of a
 
 import collections
 import dataclasses
+import os
 import pathlib
 import re
 import shutil
 import subprocess
 import sys
+import tempfile
 import time
 import xml.etree.ElementTree as ElementTree
 
@@ -105,7 +107,13 @@ def main(build, *arguments):
     listed = subprocess.run([*ctest, "-N"], capture_output=True, text=True, check=True).stdout
     progress = Progress(build, re.findall(r"^ *Test +#\d+: (.+)$", listed, re.M))
     ctest += ["-j", str(JOBS), "--output-on-failure", "--no-tests=error", "--output-junit", junit]
-    with subprocess.Popen(ctest, stdout=subprocess.PIPE, text=True, errors="replace") as process:
+    # What tests leave in the folder of temporary files goes with it.
+    with (
+        tempfile.TemporaryDirectory(prefix="twinray-tests-", ignore_cleanup_errors=True) as folder,
+        subprocess.Popen(
+            ctest, stdout=subprocess.PIPE, text=True, errors="replace", env={**os.environ, "TMPDIR": folder}
+        ) as process,
+    ):
         for line in process.stdout:
             print(line, end="", flush=True)
             progress.see(line)
