@@ -39,6 +39,10 @@ if(MINGW AND BUILD_SHARED_LIBS)
 endif()
 
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
+# The programs and DLLs contain what else tools/windows_packages.sh has.
+if(MINGW)
+    install(DIRECTORY $ENV{TWINRAY_WINDOWS_PACKAGES}/licenses DESTINATION ${CMAKE_INSTALL_DOCDIR})
+endif()
 
 # Only the public headers, and the files that their GLSL needs.
 install(DIRECTORY include/twinray DESTINATION ${headers_dir})
@@ -66,6 +70,16 @@ if(NOT BUILD_SHARED_LIBS)
             endif()
         endforeach()
     endif()
+endif()
+set(only_of_mingw "")
+if(MINGW)
+    set(only_of_mingw
+        "if(NOT MINGW)
+    set(twinray_FOUND FALSE)
+    set(twinray_NOT_FOUND_MESSAGE \"these libraries were built by MinGW-w64: a compiler of another C++ ABI, such as MSVC, cannot link them\")
+    return()
+endif()"
+    )
 endif()
 list(TRANSFORM TWINRAY_LIBRARIES PREPEND "-l" OUTPUT_VARIABLE link_flags)
 list(REVERSE link_flags)

@@ -26,7 +26,7 @@ python_for_package() {
     local folder=$PWD/build/venv
     local packages=(nanobind==3.1.0 nanobind-backend==1.0.0 numpy scipy pytest==9.2.0 trimesh==5.2.0)
     packages+=(tqdm matplotlib nbclient ipykernel) # of notebooks
-    packages+=('dask[array,distributed]' xarray)
+    packages+=('dask[array,distributed]' xarray rioxarray zarr)
     if [[ "$(cat "$folder/complete" 2>/dev/null)" != "${packages[*]}" ]]; then
         python3 -m venv --clear "$folder" >&2 &&
             "$folder/bin/pip" install --quiet --disable-pip-version-check "${packages[@]}" >&2 || return

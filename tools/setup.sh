@@ -24,7 +24,7 @@ packages=(
     vulkan-validationlayers
     libgtest-dev libgmp-dev libeigen3-dev assimp-testmodels chromium-common graphviz gnuplot-nox
     doxygen
-    libglfw3-dev libimgui-dev xvfb xauth mesa-drm-shim
+    libglfw3-dev libimgui-dev xvfb xauth mesa-drm-shim libopenmpi-dev openmpi-bin
 )
 if [[ $(uname -m) == x86_64 ]]; then packages+=(libembree-dev); fi # twinray bench measures it, too
 oldest_mesa=24 # the first whose lavapipe has acceleration structures and ray queries
@@ -35,6 +35,7 @@ declare -A without=(
     [assimp-testmodels]="tests of its models are skipped" [gnuplot-nox]="no plots" [doxygen]="no documentation"
     [libwebp-dev]="pictures in WebP are checkerboards" [libavif-dev]="pictures in AVIF are checkerboards"
     [libmeshoptimizer-dev]="glTF compressed by meshopt is refused" [libdraco-dev]="glTF compressed by Draco is refused"
+    [libopenmpi-dev]="no ranks of MPI" [openmpi-bin]="no ranks of MPI"
     [graphviz]="no figures in the documentation" [vulkan-validationlayers]="nothing checks our use of Vulkan"
 )
 

@@ -22,20 +22,35 @@ header_packages=(
 )
 read -r -a source_packages <<<"${WINDOWS_SOURCES-gmp imath openexr glfw3 imgui}"
 
-made_by=$(cat "$0" /etc/os-release - <<<"${source_packages[*]}" | sha256sum)
+made_by=$(
+    {
+        cat "$0" "$toolchain" /etc/os-release
+        dpkg-query -W "${header_packages[@]}" g++-mingw-w64-x86-64-posix libz-mingw-w64-dev
+        echo "${source_packages[*]}"
+    } | sha256sum
+)
 if [[ $(cat "$folder/done" 2>/dev/null) == "$made_by" ]]; then exit 0; fi
-if [[ -e $folder/done ]]; then rm -rf "$folder"; fi # of another script
+rm -rf "${folder:?}"/{done,include,lib,share,licenses,sources,apt} # of another script, or of one that failed
 export TWINRAY_WINDOWS_PACKAGES=$folder
 
 say() { printf 'windows_packages: %s\n' "$*"; }
 
 copy_headers() {
-    local package file
-    for package in "${header_packages[@]}"; do
-        while read -r file; do
-            if [[ -f $file ]]; then install -Dm644 "$file" "$folder/${file#/usr/}"; fi
-        done < <(dpkg -L "$package" | grep -E '^/usr/(include|share/cmake|share/eigen3)/')
+    local files file
+    files=$(dpkg -L "${header_packages[@]}")
+    while read -r file; do
+        if [[ -f $file ]]; then install -Dm644 "$file" "$folder/${file#/usr/}"; fi
+    done < <(grep -E '^/usr/(include|share/cmake|share/eigen3)/' <<<"$files")
+}
+
+# As Debian writes them down.
+copy_licenses() {
+    local package source
+    mkdir -p "$folder/licenses"
+    for package in "${header_packages[@]}" g++-mingw-w64-x86-64-posix libz-mingw-w64-dev; do
+        cp -L "/usr/share/doc/$package/copyright" "$folder/licenses/$package.txt"
     done
+    for source in "$sources"/*/; do cp "$source/debian/copyright" "$folder/licenses/$(basename "$source").txt"; done
 }
 
 fetch_sources() {
@@ -47,7 +62,7 @@ fetch_sources() {
         sed -n "s/^$release //p" | sort -u | head -n 1)
     if [[ -z $mirror ]]; then
         say "apt knows no mirror of Debian $release; run apt-get update" >&2
-        exit 1
+        exit 77
     fi
     suites=("$release")
     for package in "${source_packages[@]}"; do
@@ -118,20 +133,30 @@ END
 # The window links Vulkan's loader, of which Windows has the DLL alone.
 make_vulkan_library() {
     local library
-    library=$(ldconfig -p | awk '$1 == "libvulkan.so.1" { print $NF; exit }')
+    library=$(PATH=$PATH:/usr/sbin:/sbin ldconfig -p | awk '$1 == "libvulkan.so.1" && !seen++ { print $NF }')
     { echo "LIBRARY vulkan-1.dll" && echo EXPORTS && nm -D --defined-only "$library" | awk '$3 ~ /^vk/ { print $3 }'; } |
         sed 's/@.*//' >"$folder/vulkan-1.def"
     "$target-dlltool" -d "$folder/vulkan-1.def" -l "$folder/lib/libvulkan-1.dll.a"
 }
 
-say "headers of Debian" && copy_headers
-say "sources of Debian" && fetch_sources
-say "GMP" && build_gmp
-say "Imath" && build_with_cmake "$(source_of imath)"
-say "OpenEXR" && build_with_cmake "$(source_of openexr)" -DOPENEXR_BUILD_TOOLS=OFF -DOPENEXR_INSTALL_EXAMPLES=OFF
-say "GLFW" && build_with_cmake "$(source_of glfw3)" -DGLFW_BUILD_EXAMPLES=OFF -DGLFW_BUILD_TESTS=OFF -DGLFW_BUILD_DOCS=OFF
-say "Dear ImGui" && build_imgui
-say "GoogleTest" && cp -r /usr/src/googletest "$sources/googletest" && build_with_cmake "$sources/googletest" -DBUILD_GMOCK=OFF
+say "headers of Debian"
+copy_headers
+say "sources of Debian"
+fetch_sources
+copy_licenses
+say "GMP"
+build_gmp
+say "Imath"
+build_with_cmake "$(source_of imath)"
+say "OpenEXR"
+build_with_cmake "$(source_of openexr)" -DOPENEXR_BUILD_TOOLS=OFF -DOPENEXR_INSTALL_EXAMPLES=OFF
+say "GLFW"
+build_with_cmake "$(source_of glfw3)" -DGLFW_BUILD_EXAMPLES=OFF -DGLFW_BUILD_TESTS=OFF -DGLFW_BUILD_DOCS=OFF
+say "Dear ImGui"
+build_imgui
+say "GoogleTest"
+cp -r /usr/src/googletest "$sources/googletest"
+build_with_cmake "$sources/googletest" -DBUILD_GMOCK=OFF
 make_vulkan_library
 echo "$made_by" >"$folder/done"
 say "done: $folder"

@@ -469,7 +469,7 @@ void bind_device_memory(nb::module_& m) {
         .def("export_fd",
              [](const DeviceMemory& memory) {
                  const ExportedMemory exported = unlocked([&] { return memory.exported(); });
-                 return nb::make_tuple(exported.fd, exported.bytes);
+                 return nb::make_tuple(exported.handle, exported.bytes);
              })
         .def("device_uuid", [](const DeviceMemory& memory) {
             const auto uuid = memory.device_uuid();

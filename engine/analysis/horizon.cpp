@@ -2,7 +2,7 @@
 #include <twinray/analysis.h>
 
 #include <algorithm>
-#include <cfloat>
+#include <cmath>
 
 #include "analysis_horizon.spv.h"
 #include "engine/core/error.h"
@@ -67,7 +67,7 @@ std::vector<vec2> checked_ways(std::span<const vec2> ways) {
     std::vector<vec2> checked;
     for (const vec2 way : ways) {
         const float most = std::max(std::abs(way.x), std::abs(way.y));
-        if (!(most > PARALLEL * most_side && most <= FLT_MAX))
+        if (!(std::isfinite(way.x) && std::isfinite(way.y) && most > PARALLEL * most_side))
             fail("horizon: way ", checked.size(), " is (", way.x, ", ", way.y,
                  "); wanted are columns and rows per length, finite, one of them above ", PARALLEL * most_side);
         const auto component = [&](float value) {
@@ -122,7 +122,8 @@ std::vector<float> horizon(Context& context, const HeightRaster& raster, const H
     const std::uint64_t cells = std::uint64_t{desc.size.x} * desc.size.y;
     const std::uint64_t answer_count = cells * (desc.measure == HorizonMeasure::slope ? ways.size() : 1);
     if (answer_count >= 1u << 31)
-        fail("horizon: ", cells, " cells and ", ways.size(), " ways have ", answer_count, " answers; at most 2^31 - 1");
+        fail("horizon: ", cells, " cells and ", ways.size(), " ways have ", answer_count,
+             " answers; at most 2^31 - 1: ask for fewer cells at a time (in Python by tile=)");
     if (cells == 0 || ways.empty()) return std::vector<float>(answer_count);
     std::vector<float> heights(raster.heights.begin(), raster.heights.end());
     for (float& height : heights)

@@ -16,12 +16,10 @@ struct ExternalBuffer {
     ExternalMemory memory;
 };
 
-constexpr VkExternalMemoryHandleTypeFlagBits opaque_fd = VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT;
-
 VkBuffer new_buffer(const VulkanTable& vk, VkDevice device, std::uint64_t bytes, VkBufferUsageFlags usage) {
     VkExternalMemoryBufferCreateInfo external{};
     external.sType = VK_STRUCTURE_TYPE_EXTERNAL_MEMORY_BUFFER_CREATE_INFO;
-    external.handleTypes = opaque_fd;
+    external.handleTypes = platform::shared_memory.type;
     VkBufferCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
     info.pNext = &external;
@@ -42,17 +40,13 @@ std::uint32_t memory_type(const Context::State& state, std::uint32_t allowed) {
     fail("no memory of the device's own can be shared");
 }
 
-VkDeviceMemory new_memory(const Context::State& state, std::uint32_t type, std::uint64_t bytes, int fd) {
-    VkImportMemoryFdInfoKHR import{};
-    import.sType = VK_STRUCTURE_TYPE_IMPORT_MEMORY_FD_INFO_KHR;
-    import.handleType = opaque_fd;
-    import.fd = fd;
+// Makes memory to be exported or, with a handle, imports that.
+VkDeviceMemory new_memory(const Context::State& state, std::uint32_t type, std::uint64_t bytes, std::intptr_t handle) {
     VkExportMemoryAllocateInfo exports{};
     exports.sType = VK_STRUCTURE_TYPE_EXPORT_MEMORY_ALLOCATE_INFO;
-    exports.handleTypes = opaque_fd;
+    exports.handleTypes = platform::shared_memory.type;
     VkMemoryAllocateFlagsInfo flags{};
     flags.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO;
-    flags.pNext = fd < 0 ? static_cast<const void*>(&exports) : &import;
     flags.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
     VkMemoryAllocateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
@@ -60,18 +54,19 @@ VkDeviceMemory new_memory(const Context::State& state, std::uint32_t type, std::
     info.allocationSize = bytes;
     info.memoryTypeIndex = type;
     VkDeviceMemory memory = VK_NULL_HANDLE;
-    const VkResult result = state.vk().vkAllocateMemory(state.device(), &info, nullptr, &memory);
-    if (result != VK_SUCCESS && fd >= 0) platform::close_descriptor(fd);
-    vk_check(result, fd < 0 ? "allocate memory to be shared" : "import memory");
+    const PFN_vkAllocateMemory allocate = state.vk().vkAllocateMemory;
+    if (handle == platform::no_handle) {
+        flags.pNext = &exports;
+        vk_check(allocate(state.device(), &info, nullptr, &memory), "allocate memory to be shared");
+        return memory;
+    }
+    // A copy, because the driver owns an imported file descriptor, whatever fails then.
+    const std::intptr_t copy = platform::copy_handle(handle);
+    if (copy == platform::no_handle) fail("handle ", handle, " cannot be copied");
+    const VkResult result = platform::import_memory(allocate, state.device(), info, copy, memory);
+    if (result != VK_SUCCESS || !platform::shared_memory.is_taken_over) platform::close_handle(copy);
+    vk_check(result, "import memory");
     return memory;
-}
-
-// Returns a copy because the driver owns an imported file descriptor, whatever fails then.
-int copy_of(int fd) {
-    if (fd < 0) return fd;
-    const int copy = platform::copy_descriptor(fd);
-    if (copy < 0) fail("file descriptor ", fd, " cannot be copied");
-    return copy;
 }
 
 void free_external(const Context::State& state, const ExternalBuffer& buffer) {
@@ -79,24 +74,23 @@ void free_external(const Context::State& state, const ExternalBuffer& buffer) {
     state.vk().vkFreeMemory(state.device(), buffer.memory.memory, nullptr);
 }
 
-// Makes memory to be exported or, with fd >= 0, imports a copy of the file descriptor of memory that another has
-// exported. Throws Error naming the buffer.
+// Makes memory to be exported or, with a handle, imports what another has exported. Throws Error naming the buffer.
 ExternalBuffer make_external(Context& context, const BufferDesc& desc, VkBufferUsageFlags usage,
                              const ExportedMemory& imported) try {
     const Context::State& state = context.state();
-    if (!state.properties().external_memory_fd)
-        fail("device '", state.properties().name, "' has not enabled VK_KHR_external_memory_fd");
+    if (!state.properties().external_memory)
+        fail("device '", state.properties().name, "' has not enabled ", platform::shared_memory.extension);
     if (desc.memory != Memory::device) fail("only memory of the device can be shared");
     if (desc.bytes == 0) fail("0 bytes cannot be shared");
     ExternalBuffer made{new_buffer(state.vk(), state.device(), desc.bytes, usage), {}};
     try {
         VkMemoryRequirements needs{};
         state.vk().vkGetBufferMemoryRequirements(state.device(), made.buffer, &needs);
-        made.memory.bytes = imported.fd >= 0 ? imported.bytes : needs.size;
+        made.memory.bytes = imported.handle == platform::no_handle ? needs.size : imported.bytes;
         if (made.memory.bytes < needs.size)
             fail(made.memory.bytes, " bytes were exported; ", needs.size, " are needed");
         made.memory.memory =
-            new_memory(state, memory_type(state, needs.memoryTypeBits), made.memory.bytes, copy_of(imported.fd));
+            new_memory(state, memory_type(state, needs.memoryTypeBits), made.memory.bytes, imported.handle);
         vk_check(state.vk().vkBindBufferMemory(state.device(), made.buffer, made.memory.memory, 0), "bind memory");
     } catch (...) {
         free_external(state, made);
@@ -109,16 +103,13 @@ ExternalBuffer make_external(Context& context, const BufferDesc& desc, VkBufferU
     fail("buffer '", desc.name, "' to be shared: ", error.what());
 }
 
-// Returns a new file descriptor.
-int export_fd(const Context::State& state, VkDeviceMemory memory, const std::string& name) {
+// Returns a new handle.
+std::intptr_t export_memory(const Context::State& state, VkDeviceMemory memory, const std::string& name) {
     if (!memory) fail("buffer '", name, "' is not exportable");
-    VkMemoryGetFdInfoKHR info{};
-    info.sType = VK_STRUCTURE_TYPE_MEMORY_GET_FD_INFO_KHR;
-    info.memory = memory;
-    info.handleType = opaque_fd;
-    int fd = -1;
-    vk_check(state.vk().vkGetMemoryFdKHR(state.device(), &info, &fd), "export memory");
-    return fd;
+    const PFN_vkVoidFunction get = state.vk().vkGetDeviceProcAddr(state.device(), platform::shared_memory.get_handle);
+    std::intptr_t handle = platform::no_handle;
+    vk_check(platform::export_memory(get, state.device(), memory, handle), "export memory");
+    return handle;
 }
 
 VkBufferUsageFlags usage_of(const Context& context, const BufferDesc& desc) {
@@ -158,15 +149,15 @@ Buffer::Buffer(Context& context, const BufferDesc& desc, const ExportedMemory& m
 
 Buffer Buffer::exportable(Context& context, const BufferDesc& desc) { return {context, desc, ExportedMemory{}}; }
 Buffer Buffer::imported(Context& context, const BufferDesc& desc, const ExportedMemory& memory) {
-    if (memory.fd < 0) fail("buffer '", desc.name, "' to be shared: file descriptor ", memory.fd);
+    if (memory.handle == platform::no_handle) fail("buffer '", desc.name, "' to be shared: no handle");
     Buffer made(context, desc, memory);
-    platform::close_descriptor(memory.fd);
+    platform::close_handle(memory.handle);
     return made;
 }
 
 ExportedMemory Buffer::exported() const {
     if (!context_) fail("a buffer without memory is not exportable");
-    return {export_fd(context_->state(), external_.memory, name_), external_.bytes};
+    return {export_memory(context_->state(), external_.memory, name_), external_.bytes};
 }
 
 void Buffer::take_address(std::uint64_t alignment) {

@@ -6,6 +6,7 @@
 
 #include "engine/core/device_properties.h"
 #include "engine/core/error.h"
+#include "engine/core/platform.h"
 #include "engine/core/requirement.h"
 #include "engine/core/vulkan.h"
 
@@ -34,7 +35,8 @@ void check_needs(const DeviceProperties& enabled) {
 }
 
 // Detects, where possible, an application that states what the driver supports instead of what it enabled.
-void check_claims(const DeviceProperties& told, const DeviceProperties& supported, const VulkanTable& vk) {
+void check_claims(const DeviceProperties& told, const DeviceProperties& supported, const VulkanTable& vk,
+                  VkDevice device) {
     if (const char* feature = feature_beyond(told, supported))
         fail("adopted device '", told.name, "': ", feature,
              " is listed as enabled, but the device does not support it");
@@ -47,8 +49,9 @@ void check_claims(const DeviceProperties& told, const DeviceProperties& supporte
                    VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME);
     check_function(told.ray_tracing_pipeline, reinterpret_cast<const void*>(vk.vkCreateRayTracingPipelinesKHR),
                    VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME);
-    check_function(told.external_memory_fd, reinterpret_cast<const void*>(vk.vkGetMemoryFdKHR),
-                   VK_KHR_EXTERNAL_MEMORY_FD_EXTENSION_NAME);
+    const platform::SharedMemory& memory = platform::shared_memory;
+    check_function(told.external_memory,
+                   reinterpret_cast<const void*>(vk.vkGetDeviceProcAddr(device, memory.get_handle)), memory.extension);
 }
 
 }  // namespace
@@ -62,9 +65,9 @@ DeviceProperties check_adoption(const AdoptedDevice& adopted, const VulkanTable&
     properties.has_compute_queue = true;
     properties.api_version = std::min(supported.api_version, adopted.api_version);
     for (const FeatureBit& bit : feature_bits()) properties.*bit.fact = adopted.enabled.*bit.fact;
-    properties.external_memory_fd = adopted.enabled.external_memory_fd;
+    properties.external_memory = adopted.enabled.external_memory;
     check_needs(properties);
-    check_claims(properties, supported, vk);
+    check_claims(properties, supported, vk, adopted.device);
     return properties;
 }
 

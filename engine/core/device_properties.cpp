@@ -6,6 +6,7 @@
 
 #include "engine/core/cpu_threads.h"
 #include "engine/core/error.h"
+#include "engine/core/platform.h"
 #include "engine/core/requirement.h"
 #include "engine/core/vulkan.h"
 
@@ -191,7 +192,7 @@ void state_features(const VkDeviceCreateInfo& info, DeviceProperties& properties
         properties.acceleration_structure && has_extension(info, VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME);
     properties.primitive_culling &= properties.ray_tracing_pipeline;
     properties.device_fault &= has_extension(info, VK_EXT_DEVICE_FAULT_EXTENSION_NAME);
-    properties.external_memory_fd = has_extension(info, VK_KHR_EXTERNAL_MEMORY_FD_EXTENSION_NAME);
+    properties.external_memory = has_extension(info, platform::shared_memory.extension);
 }
 
 const char* feature_beyond(const DeviceProperties& told, const DeviceProperties& supported) {
@@ -293,7 +294,7 @@ DeviceRequirements::DeviceRequirements(const DeviceProperties& supported) : stat
     if (supported.ray_query) extensions.push_back(VK_KHR_RAY_QUERY_EXTENSION_NAME);
     if (supported.ray_tracing_pipeline) extensions.push_back(VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME);
     if (supported.device_fault) extensions.push_back(VK_EXT_DEVICE_FAULT_EXTENSION_NAME);
-    if (supported.external_memory_fd) extensions.push_back(VK_KHR_EXTERNAL_MEMORY_FD_EXTENSION_NAME);
+    if (supported.external_memory) extensions.push_back(platform::shared_memory.extension);
     state_->switch_on(state_->alone, state_->alone_structs);
 }
 

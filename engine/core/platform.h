@@ -13,6 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include <vulkan/vulkan_core.h>
+
 namespace twinray::platform {
 
 // Libraries. open_library returns null if there is none of that name; symbol_of, if it lacks the symbol.
@@ -66,9 +68,23 @@ bool is_error_terminal() noexcept;
 // Returns whether this process has memory there.
 bool is_mapped(std::uint64_t address) noexcept;
 
-// Descriptors of files. copy_descriptor returns -1 if that is none.
-int copy_descriptor(int descriptor) noexcept;
-void close_descriptor(int descriptor) noexcept;
+// Device memory that programs and APIs share, by a file descriptor or a handle of Windows, and how Vulkan exports it.
+struct SharedMemory {
+    const char* extension;
+    const char* get_handle;  // the function of a device that exports
+    VkExternalMemoryHandleTypeFlagBits type;
+    VkBool32 is_taken_over;  // by an import
+};
+extern const SharedMemory shared_memory;
+constexpr std::intptr_t no_handle = -1;
+// Returns no_handle if that is none.
+std::intptr_t copy_handle(std::intptr_t handle) noexcept;
+void close_handle(std::intptr_t handle) noexcept;
+// `get_handle` is the device's function of that name. Returns VK_SUCCESS and a new handle, or what the function says.
+VkResult export_memory(PFN_vkVoidFunction get_handle, VkDevice device, VkDeviceMemory memory, std::intptr_t& handle);
+// Allocates with `info`, to whose chain it adds the import of the handle.
+VkResult import_memory(PFN_vkAllocateMemory allocate, VkDevice device, VkMemoryAllocateInfo info, std::intptr_t handle,
+                       VkDeviceMemory& memory);
 
 // Seconds since the system started, of all processors together, and those of this process and its ended children.
 struct ProcessorSeconds {

@@ -35,10 +35,10 @@ struct BufferDesc {
     std::uint64_t alignment = 16;  // of the device address; a power of two
 };
 
-// Memory for other programs or APIs to import: an opaque file descriptor, which CUDA, HIP and Vulkan can import, and
-// the size of the whole memory, which they must be given.
+// Memory for other programs or APIs to import: an opaque file descriptor, on Windows an opaque HANDLE, which CUDA, HIP
+// and Vulkan can import, and the size of the whole memory, which they must be given.
 struct ExportedMemory {
-    int fd = -1;
+    std::intptr_t handle = -1;  // -1: none
     std::uint64_t bytes = 0;
 };
 
@@ -48,11 +48,11 @@ class Buffer {
     Buffer() = default;
     // Throws Error naming the buffer and its size if there is not enough memory.
     Buffer(Context& context, const BufferDesc& desc);
-    // Makes device memory that other programs and APIs can share (VK_KHR_external_memory_fd). Throws Error naming the
-    // buffer if the device does not support this, or for another Memory than device.
+    // Makes device memory that other programs and APIs can share (VK_KHR_external_memory_fd, on Windows _win32). Throws
+    // Error naming the buffer if the device does not support this, or for another Memory than device.
     static Buffer exportable(Context& context, const BufferDesc& desc);
-    // Imports memory that another program or API on the same device or driver has exported. The file descriptor becomes
-    // the buffer's; if this throws, it stays the caller's. The two sides must wait for each other's writes themselves:
+    // Imports memory that another program or API on the same device or driver has exported. The handle becomes the
+    // buffer's; if this throws, it stays the caller's. The two sides must wait for each other's writes themselves:
     // twinray does not order work of two APIs.
     static Buffer imported(Context& context, const BufferDesc& desc, const ExportedMemory& memory);
     ~Buffer();
@@ -63,7 +63,7 @@ class Buffer {
     std::uint64_t address() const { return address_; }  // on the device; 0 if it is empty
     std::uint64_t bytes() const { return bytes_; }      // as BufferDesc asked for
     const std::string& name() const { return name_; }   // as in BufferDesc
-    // Returns a new file descriptor, which the caller closes or passes to an import that takes it over. Throws Error
+    // Returns a new handle, which the caller closes or passes to an import that takes it over. Throws Error
     // unless the buffer is exportable.
     ExportedMemory exported() const;
     std::byte* mapped() const { return static_cast<std::byte*>(made_.mapped); }  // not null for upload and readback

@@ -51,9 +51,9 @@ struct DeviceProperties {
     bool acceleration_structure = false;
     bool ray_query = false;
     bool ray_tracing_pipeline = false;
-    bool primitive_culling = false;   // rays can skip triangles or boxes
-    bool device_fault = false;        // reports why the device was lost
-    bool external_memory_fd = false;  // memory can be shared with other programs and APIs: Buffer::exportable
+    bool primitive_culling = false;  // rays can skip triangles or boxes
+    bool device_fault = false;       // reports why the device was lost
+    bool external_memory = false;    // memory can be shared with other programs and APIs: Buffer::exportable
     bool runtime_descriptor_array = false;
     bool variable_descriptor_count = false;
     bool nonuniform_sampled_images = false;

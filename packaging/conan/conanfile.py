@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""twinray's libraries as a Conan package: conan create packaging/conan --build=missing"""
+"""twinray's libraries as a Conan package: conan create packaging/conan --build=missing -s compiler.cppstd=20"""
 import pathlib
 
 from conan import ConanFile

@@ -8,8 +8,10 @@
 namespace twinray::samples {
 
 Ranks::Ranks() {
-    if (const char* size = std::getenv("OMPI_COMM_WORLD_SIZE"); size && std::string(size) != "1")
-        fail("started by mpirun, but built without MPI (Debian: libopenmpi-dev); use --shard");
+    for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"})  // of Open MPI; of MPICH and srun
+        if (const char* size = std::getenv(name); size && std::string(size) != "1")
+            fail("started as one of ", size, " ranks (", name,
+                 "), but built without MPI (Debian: libopenmpi-dev); use ", "--shard");
 }
 
 Ranks::~Ranks() = default;

@@ -9,7 +9,8 @@
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { HorizonArgs args; };
 
-const float AT_END = 1.0f / 65536.0f; // of an edge: more than a place on it is rounded, and a vertex itself
+const float AT_END = 1.0f / 65536.0f; // of an edge, near: more than a place on it is rounded, and a vertex itself
+const float AT_END_BY_STEPS = 1.0f / 4194304.0f; // of the steps done: likewise far away
 const float ROUNDINGS = 1.0f + 1.0f / 65536.0f; // more than those of a slope
 
 float height_at(ivec2 at)
@@ -59,7 +60,8 @@ bool is_corner(ivec2 cell)
 // the same rounding as that of maxima.
 float slope_to(Way way, ivec2 p, ivec2 q, ivec2 third, ivec2 other_third, float part, float along, float least)
 {
-    bool is_p = part < AT_END, is_q = part > 1.0f - AT_END;
+    float end = max(AT_END, along * max(way.speed.x, way.speed.y) * AT_END_BY_STEPS);
+    bool is_p = part < end, is_q = part > 1.0f - end;
     float a = height_at(p), b = height_at(q);
     if (is_p && b <= NO_HEIGHT) b = a;
     if (is_q && a <= NO_HEIGHT) a = b;

@@ -78,6 +78,8 @@ TEST_F(HorizonTest, WrongArgumentsAreNamed) {
     const vec2 wrong_ways[] = {vec2(1, 0), vec2(INFINITY, 0), vec2(0, 0)};
     expect_contains(error(raster, {.size = {1, 1}, .ways = {wrong_ways, 2}}), "way 1 is (inf, 0)");
     expect_contains(error(raster, {.size = {1, 1}, .ways = {wrong_ways + 2, 1}}), "way 0 is (0, 0)");
+    for (const vec2 way : {vec2(1, NAN), vec2(NAN, 1)})
+        expect_contains(error(raster, {.size = {1, 1}, .ways = {&way, 1}}), "way 0 is (");
     expect_contains(error(raster, {.size = {1, 1}, .ways = ways, .lift = -1}), "lift is -1; wanted is at least 0");
     expect_contains(error(raster, {.size = {1, 1}, .ways = ways, .reach = NAN}), "reach is nan");
     EXPECT_TRUE(horizon(context(), raster, {.ways = ways}).empty());

@@ -166,7 +166,8 @@ class SharedMemory : public test::AccelTest {
 TWINRAY_OVER_EVERY_ACCEL(SharedMemory);
 
 TEST_P(SharedMemory, AMeshOfAnotherDeviceIsTracedAndFollowsIt) {
-    if (!context().properties().external_memory_fd) TWINRAY_LACKS("external_memory", "no VK_KHR_external_memory_fd");
+    if (!context().properties().external_memory)
+        TWINRAY_LACKS("external_memory", text("no ", platform::shared_memory.extension));
     const auto other = test::make_context();
     if (!other) return;
     Mesh mesh = square(0);
@@ -189,25 +190,25 @@ TEST_P(SharedMemory, AMeshOfAnotherDeviceIsTracedAndFollowsIt) {
 }
 
 TEST_P(SharedMemory, WhatCannotBeSharedIsRefused) {
-    if (!context().properties().external_memory_fd) TWINRAY_LACKS("external_memory", "no VK_KHR_external_memory_fd");
+    if (!context().properties().external_memory)
+        TWINRAY_LACKS("external_memory", text("no ", platform::shared_memory.extension));
     const Buffer own(context(), {.name = "own", .bytes = 64});
     EXPECT_NE(error_if_any([&] { own.exported(); }).find("buffer 'own' is not exportable"), std::string::npos);
     EXPECT_NE(error_if_any([&] {
                   Buffer::exportable(context(), {.name = "mapped", .bytes = 64, .memory = Memory::upload});
               }).find("buffer 'mapped' to be shared: only memory of the device"),
               std::string::npos);
-    EXPECT_NE(
-        error_if_any([&] { Buffer::imported(context(), {.name = "none", .bytes = 64}, {}); }).find("descriptor -1"),
-        std::string::npos);
+    EXPECT_NE(error_if_any([&] { Buffer::imported(context(), {.name = "none", .bytes = 64}, {}); }).find("no handle"),
+              std::string::npos);
     const Buffer small = Buffer::exportable(context(), {.name = "small", .bytes = 64});
     const ExportedMemory exported = small.exported();
     EXPECT_NE(error_if_any([&] {
                   Buffer::imported(context(), {.name = "large", .bytes = 1 << 20}, exported);
               }).find("bytes were exported; 1048576 are needed"),
               std::string::npos);
-    const int copy = platform::copy_descriptor(exported.fd);
-    EXPECT_GE(copy, 0) << "the descriptor is no longer the caller's";
-    for (const int descriptor : {copy, exported.fd}) platform::close_descriptor(descriptor);
+    const std::intptr_t copy = platform::copy_handle(exported.handle);
+    EXPECT_NE(copy, platform::no_handle) << "the handle is no longer the caller's";
+    for (const std::intptr_t handle : {copy, exported.handle}) platform::close_handle(handle);
 }
 
 }  // namespace

@@ -159,10 +159,10 @@ def test_wrong_arguments_are_told_before_work():
         (lambda: terrain.sky_view(np.zeros(3), 1), "heights: shape"),
         (lambda: terrain.sky_view(np.zeros((3, 3)), 0), "spacing: 0"),
         (lambda: terrain.horizon(np.zeros((3, 3)), 1, azimuths=0), "azimuths: 0"),
-        (
-            lambda: terrain.horizon(np.zeros((3, 3)), 1, azimuths=1 << 11),
-            "azimuths: 2048 of tiles of 1024 x 1024 cells",
-        ),
+        (lambda: terrain.horizon(np.zeros((3, 3)), 1, relief=np.inf), "relief: inf"),
+        (lambda: terrain.horizon(np.eye(3), 1, relief=0.5).compute(), "relief: 0.5; heights of this tile differ by 1"),
+        (lambda: terrain.horizon(raster().transpose()), r"dimensions \('x', 'y'\)"),
+        (lambda: terrain.horizon(raster().rename(x="lon", y="lat")), "coordinates are degrees"),
         (lambda: terrain.horizon(np.zeros((3, 3)), 1, lowest=90), "lowest: 90"),
         (lambda: terrain.sky_view(np.zeros((3, 3)), 1, weights=[1]), "weights: they are of patches"),
         (lambda: terrain.visible(np.zeros((3, 3)), [[0, 0, -1]], 1), "vectors: not all"),
@@ -201,12 +201,16 @@ def test_a_device_that_fails_is_asked_once_more(monkeypatch, rays, failures):
             work.compute(scheduler="sync")
 
 
-def test_workers_take_turns_on_gpus():
+def test_workers_take_turns_on_gpus(monkeypatch):
+    monkeypatch.delenv("SLURM_LOCALID", raising=False)
     kinds = ["discrete GPU", "CPU", "discrete GPU"]
     assert [_workers._dealt(kinds, name, "tcp://host:1") for name in (0, 1, 2)] == ["0", "2", "0"]
     assert _workers._dealt(kinds, "a-name", "tcp://host:40001") == "2"
+    assert _workers._dealt(kinds, "SLURMCluster-3", "tcp://host:2") == "2"
     assert _workers._dealt(["CPU"], 0, "tcp://host:1") is None
     assert _workers._dealt(["integrated GPU", "discrete GPU"], 0, "tcp://host:1") is None
+    monkeypatch.setenv("SLURM_LOCALID", "1")
+    assert _workers._dealt(kinds, "a-name", "tcp://host:40002") == "2"
 
 
 # Terrain
@@ -313,6 +317,20 @@ def test_the_sky_is_what_is_above_the_horizon():
     assert (terrain.horizon(wall[:1], 10.0).compute() == 0).all()  # a row has no surface
 
 
+def test_a_night_has_no_sun():
+    heights = raster()
+    for found in (terrain.sun_hours(heights, [[0, 0, -1]]), terrain.sun_hours(heights, np.zeros((0, 3)), [])):
+        assert np.nanmax(found.compute().values) == 0
+    points = np.zeros((5, 3))
+    assert td.sun_hours(grid(3), points, [[0, 0, -1]]).compute().tolist() == [0] * 5
+
+
+def test_values_that_say_no_height_are_holes():
+    heights = raster()
+    filled = heights.fillna(-9999).assign_attrs(_FillValue=-9999.0)
+    assert same(terrain.sky_view(filled).compute().values, terrain.sky_view(heights).compute().values)
+
+
 def test_a_wall_hides_what_it_must():
     heights = np.zeros((64, 64))
     heights[:, 40:] = 30.0  # a step of 30 m, with cells of 10 m
@@ -334,15 +352,22 @@ def test_a_curved_earth_hides_less_of_the_sky():
 
 
 def test_degrees_are_refused():
-    pytest.importorskip("rioxarray")
+    needed("rioxarray")
     heights = raster().rio.write_crs("EPSG:4326")
     with pytest.raises(ValueError, match="coordinates are degrees"):
         terrain.sky_view(heights)
     assert terrain.sky_view(heights, 30.0).shape == heights.shape
 
 
+def test_a_map_goes_to_zarr(tmp_path):
+    zarr = needed("zarr")
+    view = terrain.sky_view(raster(), tile=16)
+    view.data.to_zarr(str(tmp_path / "view.zarr"))
+    assert same(zarr.open(str(tmp_path / "view.zarr"))[:], view.compute().values)
+
+
 def test_a_geotiff_becomes_a_map(tmp_path):
-    pytest.importorskip("rioxarray")
+    needed("rioxarray")
     heights = raster().rio.write_crs("EPSG:25832")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
@@ -416,7 +441,7 @@ def test_the_example_of_ray(tmp_path):
 
 
 def test_the_page_of_sun_hours(tmp_path):
-    pytest.importorskip("rioxarray")
+    needed("rioxarray")
     needed("matplotlib")
     blocks = blocks_of("how-to/sun_hours_of_a_raster.md", "dask")
     assert len(blocks) == 2

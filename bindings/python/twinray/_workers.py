@@ -6,6 +6,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import re
 import threading
 from collections import OrderedDict
 from typing import Any, Literal
@@ -210,11 +211,13 @@ def _device_of_worker():
 
 
 def _dealt(kinds, name, address):
-    """The index of the device for a worker: workers of a LocalCluster are numbered, others have a port."""
+    """The index of the device for a worker, by the number that its name is or ends with, else by Slurm's number of the
+    task on its machine, else by its port."""
     for kind in ("discrete GPU", "integrated GPU"):
         indices = [i for i, each in enumerate(kinds) if each == kind]
         if len(indices) > 1:
-            number = name if isinstance(name, int) else int(address.rsplit(":", 1)[-1])
+            numbered = re.search(r"\d+$", str(name))
+            number = int(numbered[0] if numbered else os.environ.get("SLURM_LOCALID") or address.rsplit(":", 1)[-1])
             return str(indices[number % len(indices)])
         if indices:
             return None

@@ -130,7 +130,7 @@ def visible(
 
     def fill(first, last):
         part = slice(first, last)
-        seen[part] = _core.visible(scene._core, rows[part], across, sides[part], near).reshape(-1, len(across))
+        seen[part] = _core.visible(scene._core, rows[part], across, sides[part], near).reshape(seen[part].shape)
 
     in_blocks(len(rows), 1 + _RAYS_OF_BLOCK // max(1, len(across)), "visible" if progress else None, fill)
     if normals is None and near == 0:

@@ -29,6 +29,7 @@ __all__ = ["horizon", "sky_view", "sun_hours", "visible"]
 
 EARTH_RADIUS = 6_371_000.0  #: metres
 _TILE = 1024
+_DEGREES = "heights: coordinates are degrees; project them, as by .rio.reproject(), or give spacing"
 _SIDE_OF_BLOCK = 256  # in cells
 _SIDE_OF_CURVED_BLOCK = 64  # which has one vertical
 _FINE = 13  # heights are whole numbers of 2^-13 of a cell, so that tiles round them alike,
@@ -112,9 +113,6 @@ def horizon(
         In degrees. The raster counts as far as anything could stand above this, which says how wide halos are.
     """
     search = _Horizon(azimuths, lowest, None)
-    tile = options.get("tile", _TILE)
-    if hasattr(tile, "__index__") and tile * tile * azimuths >= 1 << 31:
-        raise ValueError(f"azimuths: {azimuths} of tiles of {tile} x {tile} cells; fewer than 2^31 answers a tile fit")
     return _over_tiles(heights, spacing, search.lowest_rays(), search, options)
 
 
@@ -278,10 +276,9 @@ def _over_tiles(
     if not hasattr(tile, "__index__") or tile < 1:
         raise ValueError(f"tile: {tile!r}; wanted is an integer of at least 1")
     source, array, grid = _raster(heights, spacing, tile)
-    curvature = number_of(options.get("curvature", 0.0), "curvature", 0)
-    lifted = number_of(options.get("height", 0.0), "height", 0)
+    curvature, lifted = (_finite(options.get(name, 0.0), name) for name in ("curvature", "height"))
     relief = options.get("relief")
-    relief = _relief_of(array) if relief is None else number_of(relief, "relief", 0)
+    relief = _relief_of(array) if relief is None else _finite(relief, "relief")
     way = _way(relief, directions, curvature)
     halo = grid.halo(way)
     spec = SceneSpec(accel=options.get("accel", "auto"), device=options.get("device"))
@@ -289,6 +286,13 @@ def _over_tiles(
     rows = [_tile_row(array, first, tile, halo, plan, answer) for first in range(0, array.shape[0], tile)]
     found = da.concatenate(rows) if rows else da.zeros((*array.shape, *answer.more), dtype=answer.dtype)
     return found if source is None else _labelled(found, source, answer)
+
+
+def _finite(value, name):
+    number = number_of(value, name, 0)
+    if number == math.inf:
+        raise ValueError(f"{name}: {number}; wanted is a finite number")
+    return number
 
 
 def _tile_row(array, first, tile, halo, plan, answer):
@@ -326,7 +330,7 @@ class _Plan:
         self.spec, self.grid, self.directions, self.answer = spec, grid, directions, answer
         self.fine = 2.0 ** min(_FINE, _WHOLE - math.ceil(math.log2(max(1.0, relief / grid.unit))))
         self.lift = np.round(lifted / grid.unit * self.fine) / self.fine
-        self.curvature, self.way = curvature, way
+        self.curvature, self.way, self.relief = curvature, way, relief
 
     def directions_at(self, point):
         """The directions, in cells, as they are where the surface is bent about the middle of the tile."""
@@ -352,6 +356,8 @@ def _answered(heights, plan, inside):
     z = np.asarray(heights, np.float64)
     z = np.where(np.isfinite(z), z, np.nan)
     answer = plan.answer
+    if np.isfinite(z).any() and np.nanmax(z) - np.nanmin(z) > plan.relief * (1 + 1e-6):
+        raise ValueError(f"relief: {plan.relief}; heights of this tile differ by {np.nanmax(z) - np.nanmin(z)}")
     if np.isfinite(z[inside]).any():
         return answer.of_tile(z, plan, inside)
     return np.full((*(part.stop - part.start for part in inside), *answer.more), answer.fill, answer.dtype)
@@ -360,7 +366,7 @@ def _answered(heights, plan, inside):
 def _seen(scene, points, across):
     moved = scene._frame.moved(points, scene.origin)
     seen = _core.visible(scene._core, moved, across, np.zeros((0, 3), np.float32), 0.0)
-    return seen.reshape(-1, len(across))
+    return seen.reshape(len(points), len(across))
 
 
 def _vertices(z, plan, inside):
@@ -417,11 +423,21 @@ def _raster(heights, spacing, tile):
     array = array if isinstance(array, da.Array) else da.from_array(np.asarray(array), chunks=tile)
     if array.ndim != 2 or array.dtype.kind not in "fiu":
         raise ValueError(f"heights: shape {array.shape}, dtype {array.dtype}; wanted are numbers (rows, columns)")
+    if is_labelled:
+        array = _without_nodata(heights, array)
     if spacing is None:
         if not is_labelled:
             raise ValueError("spacing: an array without coordinates needs it")
         spacing = _spacing_of(heights)
     return heights if is_labelled else None, array, _Grid(spacing)
+
+
+def _without_nodata(heights, array):
+    """NaN where a DataArray has the value that says that there is no height: as rioxarray and xarray give it."""
+    nodata = heights.attrs.get("_FillValue", getattr(getattr(heights, "rio", None), "nodata", None))
+    if nodata is None or not np.isfinite(nodata):
+        return array
+    return da.where(array == nodata, np.nan, array)
 
 
 def _opened(name, tile):
@@ -438,11 +454,16 @@ def _opened(name, tile):
 def _spacing_of(heights):
     crs = getattr(getattr(heights, "rio", None), "crs", None)
     if crs is not None and crs.is_geographic:
-        raise ValueError("heights: coordinates are degrees; project them, as by .rio.reproject(), or give spacing")
+        raise ValueError(_DEGREES)
+    if heights.dims == ("x", "y"):
+        raise ValueError("heights: dimensions ('x', 'y'); wanted are rows, then columns: give heights.transpose()")
     steps = []
     for dim in reversed(heights.dims):
         if dim not in heights.coords or heights.sizes[dim] < 2:
             raise ValueError(f"heights: dimension '{dim}' has no coordinates; give spacing")
+        units = str(heights.coords[dim].attrs.get("units", ""))
+        if str(dim).lower() in ("lon", "lat", "longitude", "latitude") or units.startswith("degree"):
+            raise ValueError(_DEGREES)
         values = np.asarray(heights.coords[dim], np.float64)
         step = (values[-1] - values[0]) / (len(values) - 1)
         if not np.abs(np.diff(values) - step).max() <= 1e-3 * abs(step):

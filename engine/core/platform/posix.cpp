@@ -128,8 +128,33 @@ bool is_mapped(std::uint64_t address) noexcept {
     return msync(reinterpret_cast<void*>(address / page * page), 1, MS_ASYNC) == 0;
 }
 
-int copy_descriptor(int descriptor) noexcept { return dup(descriptor); }
-void close_descriptor(int descriptor) noexcept { close(descriptor); }
+const SharedMemory shared_memory{VK_KHR_EXTERNAL_MEMORY_FD_EXTENSION_NAME, "vkGetMemoryFdKHR",
+                                 VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT, VK_TRUE};
+
+std::intptr_t copy_handle(std::intptr_t handle) noexcept { return dup(static_cast<int>(handle)); }
+void close_handle(std::intptr_t handle) noexcept { close(static_cast<int>(handle)); }
+
+VkResult export_memory(PFN_vkVoidFunction get_handle, VkDevice device, VkDeviceMemory memory, std::intptr_t& handle) {
+    VkMemoryGetFdInfoKHR info{};
+    info.sType = VK_STRUCTURE_TYPE_MEMORY_GET_FD_INFO_KHR;
+    info.memory = memory;
+    info.handleType = shared_memory.type;
+    int descriptor = -1;
+    const VkResult result = reinterpret_cast<PFN_vkGetMemoryFdKHR>(get_handle)(device, &info, &descriptor);
+    handle = descriptor;
+    return result;
+}
+
+VkResult import_memory(PFN_vkAllocateMemory allocate, VkDevice device, VkMemoryAllocateInfo info, std::intptr_t handle,
+                       VkDeviceMemory& memory) {
+    VkImportMemoryFdInfoKHR import{};
+    import.sType = VK_STRUCTURE_TYPE_IMPORT_MEMORY_FD_INFO_KHR;
+    import.pNext = info.pNext;
+    import.handleType = shared_memory.type;
+    import.fd = static_cast<int>(handle);
+    info.pNext = &import;
+    return allocate(device, &info, nullptr, &memory);
+}
 
 // proc(5): user, nice, system, idle, iowait, irq, softirq, steal, in ticks; what follows is in user already.
 std::optional<ProcessorSeconds> processor_seconds() {

@@ -20,6 +20,8 @@
 
 #include "engine/core/error.h"
 #include "engine/core/platform.h"
+// It needs windows.h.
+#include <vulkan/vulkan_win32.h>
 
 namespace twinray::platform {
 namespace {
@@ -228,8 +230,39 @@ bool is_mapped(std::uint64_t address) noexcept {
     return VirtualQuery(reinterpret_cast<const void*>(address), &info, sizeof info) != 0 && info.State == MEM_COMMIT;
 }
 
-int copy_descriptor(int descriptor) noexcept { return _dup(descriptor); }
-void close_descriptor(int descriptor) noexcept { _close(descriptor); }
+const SharedMemory shared_memory{VK_KHR_EXTERNAL_MEMORY_WIN32_EXTENSION_NAME, "vkGetMemoryWin32HandleKHR",
+                                 VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_WIN32_BIT, VK_FALSE};
+
+std::intptr_t copy_handle(std::intptr_t handle) noexcept {
+    HANDLE copy = nullptr;
+    const HANDLE self = GetCurrentProcess();
+    return DuplicateHandle(self, reinterpret_cast<HANDLE>(handle), self, &copy, 0, FALSE, DUPLICATE_SAME_ACCESS)
+               ? reinterpret_cast<std::intptr_t>(copy)
+               : no_handle;
+}
+void close_handle(std::intptr_t handle) noexcept { CloseHandle(reinterpret_cast<HANDLE>(handle)); }
+
+VkResult export_memory(PFN_vkVoidFunction get_handle, VkDevice device, VkDeviceMemory memory, std::intptr_t& handle) {
+    VkMemoryGetWin32HandleInfoKHR info{};
+    info.sType = VK_STRUCTURE_TYPE_MEMORY_GET_WIN32_HANDLE_INFO_KHR;
+    info.memory = memory;
+    info.handleType = shared_memory.type;
+    HANDLE made = nullptr;
+    const VkResult result = reinterpret_cast<PFN_vkGetMemoryWin32HandleKHR>(get_handle)(device, &info, &made);
+    handle = reinterpret_cast<std::intptr_t>(made);
+    return result;
+}
+
+VkResult import_memory(PFN_vkAllocateMemory allocate, VkDevice device, VkMemoryAllocateInfo info, std::intptr_t handle,
+                       VkDeviceMemory& memory) {
+    VkImportMemoryWin32HandleInfoKHR import{};
+    import.sType = VK_STRUCTURE_TYPE_IMPORT_MEMORY_WIN32_HANDLE_INFO_KHR;
+    import.pNext = info.pNext;
+    import.handleType = shared_memory.type;
+    import.handle = reinterpret_cast<HANDLE>(handle);
+    info.pNext = &import;
+    return allocate(device, &info, nullptr, &memory);
+}
 
 std::optional<ProcessorSeconds> processor_seconds() {
     FILETIME idle, kernel, user, started, ended, own_kernel, own_user;
