@@ -14,7 +14,8 @@ import time
 import zlib
 
 windows, screen, picture = (pathlib.Path(name).resolve() for name in sys.argv[1:4])
-here = pathlib.Path(tempfile.mkdtemp(prefix="twinray-users-"))
+held = tempfile.TemporaryDirectory(prefix="twinray-users-")  # as long as this program
+here = pathlib.Path(held.name)
 folder = here / "Größe und Höhe"
 BOX = ("".join(f"v {x} {y} {z}\n" for x in (0, 1) for y in (0, 1) for z in (0, 1)) +
        "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n")

@@ -16,7 +16,8 @@ import tempfile
 
 linux, windows = (pathlib.Path(folder).resolve() for folder in sys.argv[1:3])
 is_quick = "--quick" in sys.argv
-root = pathlib.Path(tempfile.mkdtemp(prefix="twinray-same-"))
+held = tempfile.TemporaryDirectory(prefix="twinray-same-")  # as long as this program
+root = pathlib.Path(held.name)
 sides = {"linux": root / "Linux side", "windows": root / "Windows side"}
 found = []
 

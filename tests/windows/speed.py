@@ -14,7 +14,8 @@ import tempfile
 import time
 
 linux, windows = (pathlib.Path(folder).resolve() for folder in sys.argv[1:3])
-here = pathlib.Path(tempfile.mkdtemp(prefix="twinray-speed-"))
+held = tempfile.TemporaryDirectory(prefix="twinray-speed-")  # as long as this program
+here = pathlib.Path(held.name)
 ROUNDS, SIDES = 5, ("linux", "windows")
 
 
