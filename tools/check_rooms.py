@@ -3,6 +3,7 @@
 """Checks docs/architecture.md against the tree: each folder has its sentence under "## Rooms", and each sentence its
 folder; files that sources, pages and figures name exist, and so do functions that figures name.
 Usage: check_rooms.py [ROOT]; prints the faults and exits with 1."""
+import fnmatch
 import os
 import pathlib
 import re
@@ -11,7 +12,6 @@ import sys
 
 root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).resolve().parent.parent)
 page = root / "docs/architecture.md"
-LEFT_OUT = re.compile(r"^(\.git|\.cache|build.*|out|__pycache__)$")  # as in .gitignore, where there is no git
 ROW = re.compile(r"\| `([^`]+)/` \| (.*?) *\|$")
 SOURCE = re.compile(r"\.(h|cpp|glsl|comp|rgen|rint|rahit|rchit|rmiss|frag|vert)$")
 SUFFIXES = r"(?:h|cpp|glsl|comp|rgen|py|sh|md|txt|json)"
@@ -29,9 +29,19 @@ def files_of_git():
 
 
 def files_of_walk():
+    """Where there is no git: all but what .gitignore names, whose patterns of folders end with a slash or a star."""
+    ignored = [line for line in (root / ".gitignore").read_text().split() if line[-1] in "/*"] + [".git/"]
+
+    def is_ignored(name):  # relative to the root
+        return any(
+            fnmatch.fnmatch(name if "/" in pattern[:-1] else name.rsplit("/", 1)[-1], pattern.strip("/"))
+            for pattern in ignored
+        )
+
     files = []
     for folder, below, names in os.walk(root):
-        below[:] = [name for name in below if not LEFT_OUT.match(name)]
+        inside = pathlib.Path(folder).relative_to(root)
+        below[:] = [name for name in below if not is_ignored((inside / name).as_posix())]
         files += [(pathlib.Path(folder) / name).relative_to(root).as_posix() for name in names]
     return files
 
