@@ -16,7 +16,7 @@ namespace twinray {
 
 // Calls body(begin, end) for disjoint ranges that cover [0, count), on `threads` threads (0: one per core). Ranges are
 // handed out in any order, so a body must write only within its range: results then do not depend on the thread count.
-// The first exception of a body is thrown here, after all threads have ended.
+// If bodies throw, the exception of the first range that fails is thrown here, after all threads have ended.
 template <class Body>
 void parallel_for(std::size_t count, const Body& body, unsigned threads = 0) {
     if (count == 0) return;
@@ -24,16 +24,18 @@ void parallel_for(std::size_t count, const Body& body, unsigned threads = 0) {
     const std::size_t grain = std::clamp<std::size_t>(count / (std::size_t{threads} * 16), 1, 4096);
     std::atomic<std::size_t> next{0};
     std::exception_ptr failure;
+    std::size_t failed = count;  // the range's begin
     std::mutex failure_mutex;
 
     const auto work = [&] {
+        std::size_t begin = 0;
         try {
-            for (std::size_t begin = next.fetch_add(grain); begin < count; begin = next.fetch_add(grain))
+            for (begin = next.fetch_add(grain); begin < count; begin = next.fetch_add(grain))
                 body(begin, std::min(begin + grain, count)), look_for_interruption();
         } catch (...) {
-            next = count;  // the other threads stop at their next range
+            next = count;  // the other threads stop at their next range; all before this one have been begun
             const std::lock_guard lock(failure_mutex);
-            if (!failure) failure = std::current_exception();
+            if (begin < failed) failed = begin, failure = std::current_exception();
         }
     };
     {

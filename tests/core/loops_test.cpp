@@ -3,6 +3,9 @@
 #include <twinray/sets.h>
 
 #include <gtest/gtest.h>
+#include <string>
+#include <chrono>
+#include <thread>
 
 #include <array>
 #include <stdexcept>
@@ -123,6 +126,27 @@ TEST(ParallelFor, ThrowsWhatABodyThrows) {
         if (begin > 500) throw std::runtime_error("late");
     };
     EXPECT_THROW(parallel_for(100000, body, 3), std::runtime_error);
+}
+
+// Later ranges fail sooner.
+TEST(ParallelFor, TheFirstRangeThatFailsIsToldHoweverLate) {
+    for (int time = 0; time < 20; ++time)
+        EXPECT_THROW(
+            {
+                try {
+                    parallel_for(
+                        64,
+                        [](std::size_t begin, std::size_t) {
+                            if (begin < 8) std::this_thread::sleep_for(std::chrono::milliseconds(8 - begin));
+                            throw std::runtime_error(std::to_string(begin));
+                        },
+                        4);
+                } catch (const std::runtime_error& error) {
+                    EXPECT_STREQ(error.what(), "0");
+                    throw;
+                }
+            },
+            std::runtime_error);
 }
 
 }  // namespace

@@ -9,9 +9,12 @@
 namespace twinray {
 namespace {
 
+// To the last bit, which pow() of some C libraries misses.
+double power_of_ten(double exponent) { return std::strtod(text("1e", static_cast<int>(exponent)).c_str(), nullptr); }
+
 // The least of 1, 2, 5 and 10 times a power of ten that is not below.
 double nice_step(double least) {
-    const double power = std::pow(10.0, std::floor(std::log10(least)));
+    const double power = power_of_ten(std::floor(std::log10(least)));
     for (const double factor : {1.0, 2.0, 5.0})
         if (factor * power >= least) return factor * power;
     return 10 * power;
@@ -113,9 +116,9 @@ std::vector<Tick> ValueScale::decade_ticks(std::size_t most) const {
     std::vector<Tick> ticks;
     for (double exponent = has_room ? first - 1 : first; exponent <= last; exponent += std::max(stride, 1.0))
         for (const double factor : {1.0, 2.0, 5.0}) {
-            const double value = factor * std::pow(10.0, exponent);
+            const double value = factor * power_of_ten(exponent);
             if (value < lo_ || value > hi_ || (factor > 1 && !has_room)) continue;
-            ticks.push_back({position(value), label_of(value, std::pow(10.0, exponent))});
+            ticks.push_back({position(value), label_of(value, power_of_ten(exponent))});
         }
     return ticks;
 }
