@@ -76,7 +76,8 @@ if(MINGW)
     set(only_of_mingw
         "if(NOT MINGW)
     set(twinray_FOUND FALSE)
-    set(twinray_NOT_FOUND_MESSAGE \"these libraries were built by MinGW-w64: a compiler of another C++ ABI, such as MSVC, cannot link them\")
+    set(twinray_NOT_FOUND_MESSAGE
+        \"these libraries were built by MinGW-w64: a compiler of another C++ ABI, such as MSVC, cannot link them\")
     return()
 endif()"
     )

@@ -107,7 +107,7 @@ def main(build, *arguments):
     listed = subprocess.run([*ctest, "-N"], capture_output=True, text=True, check=True).stdout
     progress = Progress(build, re.findall(r"^ *Test +#\d+: (.+)$", listed, re.M))
     ctest += ["-j", str(JOBS), "--output-on-failure", "--no-tests=error", "--output-junit", junit]
-    # What tests leave in the folder of temporary files goes with it.
+    # Tests may leave temporary files: their folder is removed at the end.
     with (
         tempfile.TemporaryDirectory(prefix="twinray-tests-", ignore_cleanup_errors=True) as folder,
         subprocess.Popen(

@@ -43,7 +43,7 @@ copy_headers() {
     done < <(grep -E '^/usr/(include|share/cmake|share/eigen3)/' <<<"$files")
 }
 
-# As Debian writes them down.
+# Copies the texts that Debian has of them.
 copy_licenses() {
     local package source
     mkdir -p "$folder/licenses"

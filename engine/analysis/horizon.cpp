@@ -102,7 +102,7 @@ Buffer upload(Commands& commands, const char* name, std::span<const T> rows) {
     return buffer;
 }
 
-// What kernels read.
+// The arrays that the kernel reads.
 struct Tables {
     Tables(Commands& commands, std::span<const float> raster, const Maxima& maxima, std::span<const vec2> across) {
         const auto pass = commands.pass("tables of a horizon");

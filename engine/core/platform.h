@@ -73,7 +73,7 @@ struct SharedMemory {
     const char* extension;
     const char* get_handle;  // the function of a device that exports
     VkExternalMemoryHandleTypeFlagBits type;
-    VkBool32 is_taken_over;  // by an import
+    bool is_taken_over;  // by an import
 };
 extern const SharedMemory shared_memory;
 constexpr std::intptr_t no_handle = -1;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Quantities computed from scenes by rays: view factors and radiosity, the light of sun and sky, centroids.
+// Quantities computed from scenes by rays: view factors and radiosity, the light of sun and sky, centroids; and the
+// horizon of a raster. One file of more than 400 lines, so that a host includes one header for all analyses.
 //
 // - A face is a triangle of an instance. Faces are numbered by instance, in the order of Scene::instances, then by
 //   triangle; those that no ray can hit keep their number and have the area 0.
@@ -379,8 +380,8 @@ struct SkyPatch {
 // Returns the patches of one of sky_names; throws Error for another name.
 std::vector<SkyPatch> sky_patches(std::string_view name);
 
-// A raster of heights, of at most 2^20 columns and rows. Its surface is the triangles (c, r), (c + 1, r), (c + 1, r +
-// 1) and (c, r), (c + 1, r + 1), (c, r + 1) between the middles of cells, c the column and r the row.
+// A raster of heights, of at most 2^20 columns and rows. With c for a column and r for a row, its surface is the
+// triangles (c, r), (c + 1, r), (c + 1, r + 1) and (c, r), (c + 1, r + 1), (c, r + 1) between the middles of cells.
 struct HeightRaster {
     std::span<const float> heights;  // row by row; NaN where there is none
     uint columns = 0, rows = 0;      // at least 2 each; fewer than 2^30 cells

@@ -11,7 +11,7 @@ Ranks::Ranks() {
     for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"})  // of Open MPI; of MPICH and srun
         if (const char* size = std::getenv(name); size && std::string(size) != "1")
             fail("started as one of ", size, " ranks (", name,
-                 "), but built without MPI (Debian: libopenmpi-dev); use ", "--shard");
+                 "), but built without MPI (Debian: libopenmpi-dev); use --shard");
 }
 
 Ranks::~Ranks() = default;

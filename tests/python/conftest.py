@@ -55,3 +55,16 @@ def cube(size=1.0):
         [1, 7, 3],
     ]
     return vertices, np.array(triangles, np.uint32)
+
+
+def raster(rows=40, columns=50, seed=2, step=10.0):
+    """A raster of random heights with a hole, as a DataArray whose rows go south."""
+    heights = np.random.default_rng(seed).uniform(0, 4, (rows, columns))
+    heights[10:14, 20:25] = np.nan
+    coords = {"y": -step * np.arange(rows), "x": step * np.arange(columns)}
+    return needed("xarray").DataArray(heights, dims=("y", "x"), coords=coords)
+
+
+def same(a, b):
+    """Whether two arrays have the same bits; NaN is equal to NaN."""
+    return np.array_equal(a, b, equal_nan=a.dtype.kind == "f")

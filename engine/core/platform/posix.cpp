@@ -129,7 +129,7 @@ bool is_mapped(std::uint64_t address) noexcept {
 }
 
 const SharedMemory shared_memory{VK_KHR_EXTERNAL_MEMORY_FD_EXTENSION_NAME, "vkGetMemoryFdKHR",
-                                 VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT, VK_TRUE};
+                                 VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT, true};
 
 std::intptr_t copy_handle(std::intptr_t handle) noexcept { return dup(static_cast<int>(handle)); }
 void close_handle(std::intptr_t handle) noexcept { close(static_cast<int>(handle)); }

@@ -231,7 +231,7 @@ bool is_mapped(std::uint64_t address) noexcept {
 }
 
 const SharedMemory shared_memory{VK_KHR_EXTERNAL_MEMORY_WIN32_EXTENSION_NAME, "vkGetMemoryWin32HandleKHR",
-                                 VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_WIN32_BIT, VK_FALSE};
+                                 VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_WIN32_BIT, false};
 
 std::intptr_t copy_handle(std::intptr_t handle) noexcept {
     HANDLE copy = nullptr;
