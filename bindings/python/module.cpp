@@ -3,6 +3,7 @@
 // checked and cast in Python, which has the public names. One file of more than 400 lines, since all bindings share the
 // helpers that convert arrays and give back Python's lock.
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -87,9 +88,12 @@ std::vector<Row> copied(const Array& rows) {
     return {span.begin(), span.end()};
 }
 
+std::atomic<bool> calls_end = false;
+
 bool no_signal_ends_it() {
     const nb::gil_scoped_acquire acquired;
-    return PyErr_CheckSignals() == 0;
+    if (calls_end) PyErr_SetNone(PyExc_KeyboardInterrupt);
+    return !calls_end && PyErr_CheckSignals() == 0;
 }
 
 // Calls without the GIL: others go on while the device works. Ctrl-C ends the call.
@@ -354,9 +358,9 @@ void bind_analysis(nb::module_& m) {
         return given<double>(std::move(rows), 4);
     });
     m.def("visible", [](Scene& scene, const Rows<float, 3>& points, const Rows<float, 3>& vectors,
-                        const Rows<float, 3>& normals, float t_near) {
-        return given<std::uint8_t>(
-            unlocked([&] { return visible(scene, as<vec3>(points), as<vec3>(vectors), as<vec3>(normals), t_near); }));
+                        const Rows<float, 3>& normals, float t_near, float t_far) {
+        return given<std::uint8_t>(unlocked(
+            [&] { return visible(scene, as<vec3>(points), as<vec3>(vectors), as<vec3>(normals), t_near, t_far); }));
     });
     nb::enum_<HorizonMeasure>(m, "HorizonMeasure")
         .value("slope", HorizonMeasure::slope)
@@ -511,6 +515,7 @@ NB_MODULE(_core, m) {
     bind_analysis(m);
     bind_device_memory(m);
     m.def("devices", &devices);
+    m.def("end_calls", [] { calls_end = true; });  // those of all threads, now and later, raise KeyboardInterrupt
     m.def("forget_devices", &forget_devices, nb::call_guard<nb::gil_scoped_release>());
 }
 

@@ -15,7 +15,7 @@ import time
 import numpy as np
 import pytest
 import twinray
-from conftest import cube, grid
+from conftest import cube, grid, needed
 
 DOWN = [[0.3, 0.6, 9, 0, 0, -1]]
 
@@ -251,6 +251,42 @@ os._exit(0)
         rest,
     )  # a tenth of a second where nobody else works
     assert "thread" in call or rest[0] == "True\n", rest
+
+
+@pytest.mark.parametrize("has_dask", [False, True])
+def test_ctrl_c_ends_the_calls_of_other_threads(has_dask):
+    if has_dask:
+        needed("dask.array")
+    call = (
+        "terrain.sky_view(heights, 10.0, relief=2, patches='reinhart2305', tile=512).compute()"
+        if has_dask
+        else "list(ThreadPoolExecutor(2).map(lambda tile: twinray.sky_light(scene, samples=1 << 20), range(2)))"
+    )
+    code = f"""
+import logging, os, signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)
+sys.path.insert(0, {os.path.dirname(__file__)!r})
+import numpy as np, twinray
+from concurrent.futures import ThreadPoolExecutor
+{"from twinray import terrain" if has_dask else ""}
+from conftest import grid
+logging.disable()
+heights = np.random.default_rng(1).random((1024, 1024))
+scene = twinray.Scene()
+scene.add_triangles(*grid(70))
+print("begun", flush=True)
+{call}
+"""
+    program = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    assert program.stdout.readline() == "begun\n", program.communicate()
+    time.sleep(3)
+    program.send_signal(signal.SIGINT)
+    begun = time.monotonic()
+    try:
+        rest = program.communicate(timeout=60)
+    finally:
+        program.kill()
+    assert program.returncode == -signal.SIGINT and time.monotonic() - begun < 5, rest
 
 
 def test_what_the_engine_says_goes_to_the_logger(tmp_path, caplog):

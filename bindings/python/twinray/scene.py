@@ -6,8 +6,10 @@ It is one file because it is one class; half of it are docstrings.
 
 from __future__ import annotations
 
+import concurrent.futures.thread  # noqa: F401
 import logging
 import os
+import sys
 import threading
 import weakref
 from typing import TYPE_CHECKING, Any, Literal
@@ -38,6 +40,17 @@ def _renew_locks():
 
 
 os.register_at_fork(after_in_child=_renew_locks)  # a thread that held one does not exist in the child
+
+
+def _end_calls_of_threads():
+    if getattr(sys, "last_type", None) is KeyboardInterrupt:
+        _core.end_calls()
+
+
+# Python joins the threads of executors when it ends. After Ctrl-C nobody waits for their results. Functions are called
+# in the reverse order of registration: this one before that of executors, whose module is imported above.
+if _register_at_exit := getattr(threading, "_register_atexit", None):
+    _register_at_exit(_end_calls_of_threads)
 
 
 class Scene:
