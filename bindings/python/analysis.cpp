@@ -158,9 +158,9 @@ VerifyResult verify(Scene& scene, std::vector<Ray>&& rays, std::size_t count, st
 }
 
 std::vector<std::uint8_t> visible(Scene& scene, std::span<const vec3> points, std::span<const vec3> vectors,
-                                  std::span<const vec3> normals, float t_near) {
+                                  std::span<const vec3> normals, float t_near, float t_far) {
     const Scene::Turn turn(scene);
-    return visibility(turn.accel(), points, vectors, normals, {.t_near = t_near});
+    return visibility(turn.accel(), points, vectors, normals, {.t_near = t_near, .t_far = t_far});
 }
 
 std::vector<float> horizon(Scene& scene, const HeightRaster& raster, const HorizonDesc& desc) {

@@ -78,7 +78,7 @@ struct VerifyResult {
 VerifyResult verify(Scene& scene, std::vector<Ray>&& rays, std::size_t count, std::uint64_t seed);
 
 std::vector<std::uint8_t> visible(Scene& scene, std::span<const vec3> points, std::span<const vec3> vectors,
-                                  std::span<const vec3> normals, float t_near);
+                                  std::span<const vec3> normals, float t_near, float t_far);
 
 // On the device of the scene.
 std::vector<float> horizon(Scene& scene, const HeightRaster& raster, const HorizonDesc& desc);

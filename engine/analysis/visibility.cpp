@@ -40,7 +40,7 @@ class Tiles {
     std::size_t directions_;
     Kernel<VisibleArgs> make_rays_, tell_;
     Buffer points_, vectors_, normals_, rays_, hits_, answers_;
-    float t_near_, reach_;
+    float t_near_, t_far_, reach_;
     Pace pace_;
 };
 
@@ -54,6 +54,7 @@ Tiles::Tiles(AbstractAccel& accel, std::span<const vec3> points, std::span<const
       vectors_(uploaded("directions", directions)),
       normals_(uploaded("normals of points", normals)),
       t_near_(desc.t_near),
+      t_far_(desc.t_far),
       reach_(normals.empty() ? 0 : reach_of(accel.world_bound())),
       pace_(accel.context()) {
     const std::size_t rays =
@@ -87,6 +88,7 @@ void Tiles::find(std::size_t first, std::size_t count, std::uint8_t* answers) {
                            .ray_count = rays,
                            .vector_count = static_cast<uint>(directions_),
                            .t_near = t_near_,
+                           .t_far = t_far_,
                            .reach = reach_};
     Commands commands(accel_.context(), "what points see");
     make_rays_.dispatch(commands, args, rays);
@@ -107,6 +109,7 @@ void check(std::span<const vec3> points, std::span<const vec3> directions, std::
     if (!normals.empty() && normals.size() != points.size())
         fail("visibility: ", normals.size(), " normals for ", points.size(), " points");
     if (!(desc.t_near >= 0)) fail("visibility: t_near ", desc.t_near, " must not be below 0");
+    if (!(desc.t_far > 0)) fail("visibility: t_far ", desc.t_far, " must be above 0");
 }
 
 }  // namespace

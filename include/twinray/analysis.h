@@ -407,7 +407,8 @@ std::vector<float> horizon(Context& context, const HeightRaster& raster, const H
 
 // Options of visibility().
 struct VisibilityDesc {
-    float t_near = 0;  // in lengths of a direction: nearer hits are ignored, for points on the scene itself
+    // In lengths of a direction. Other hits are ignored: nearer ones for points on the scene itself.
+    float t_near = 0, t_far = INFINITY;
     ProgressCallback progress = {};
 };
 // Returns 1 for each point and direction, of any length, if nothing is on the ray, else 0; rows are points. With

@@ -16,6 +16,7 @@ struct VisibleArgs
     uint ray_count;
     uint vector_count;
     float t_near;
+    float t_far;
     float reach; // the largest coordinate of the scene
 };
 #endif

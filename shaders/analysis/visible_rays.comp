@@ -31,7 +31,7 @@ void main()
     ray.origin = row(args.points, point);
     ray.t_min = args.t_near;
     ray.direction = row(args.vectors, i % args.vector_count);
-    ray.t_max = uintBitsToFloat(0x7f800000u);
+    ray.t_max = args.t_far;
     if (!is_absent(args.normals))
     {
         vec3 normal = row(args.normals, point);

@@ -104,6 +104,12 @@ def test_visible_is_what_occlusion_rays_say():
     assert free.shape == (300, 577) and free.dtype == np.uint8 and 0.05 < free.mean() < 0.95
     rays = np.concatenate([np.repeat(points, 577, axis=0), np.tile(vectors, (300, 1))], axis=1)
     assert (free == ~scene.test_occlusions(rays).reshape(300, 577)).all()
+    near = twinray.visible(points, vectors, scene=scene, tnear=0.01, tfar=0.1)
+    assert (
+        near == ~scene.test_occlusions(rays, 0.01, 0.1).reshape(300, 577)
+    ).all() and near.mean() > free.mean() + 0.01
+    with pytest.raises(twinray.Error, match="t_far 0 must be above 0"):
+        twinray.visible(points, vectors, scene=scene, tfar=0)
     east = twinray.visible(points, vectors, np.tile([1.0, 0, 0], (300, 1)), scene=scene)
     assert (east == free * (vectors[:, 0] > 0)).all()
     with pytest.raises(ValueError, match="normals: 2 rows"):

@@ -8,7 +8,7 @@ import pytest
 import twinray
 from conftest import grid, needed, raster, same
 
-needed("dask.array")
+da = needed("dask.array")
 xr = needed("xarray")
 from twinray import dask as td  # noqa: E402
 from twinray import terrain  # noqa: E402
@@ -147,6 +147,28 @@ def test_a_curved_earth_hides_less_of_the_sky():
         terrain.sun_hours(heights, sun, 1, 100.0, curvature=c, tile=512).compute()[4, 100] for c in (0.0, 1.0)
     )
     assert (flat, curved) == (0, 1)
+
+
+def test_ground_beyond_the_reach_hides_nothing(caplog):
+    heights = np.zeros((9, 200))
+    heights[:, 100:] = 500.0  # seen from column 50 the step begins 49 cells of 10 m away
+    east = [[1.0, 0, 0.1], [0, 0, 1]]
+    for reach, hours in ((480, 2), (510, 1), (np.inf, 1)):
+        found = [terrain.sun_hours(heights, east, 1, 10.0, reach=reach, tile=tile).compute() for tile in (256, 32, 7)]
+        assert found[0][4, 50] == hours and all(same(each, found[0]) for each in found[1:])
+        slope = terrain.horizon(heights, 10.0, azimuths=2, lowest=1.0, reach=reach).compute()[4, 50, 0]
+        assert (slope > 40) == (hours == 1)
+    assert not [told for told in caplog.messages if told.startswith("terrain")]
+    with pytest.raises(ValueError, match="reach: 0.0; wanted is a number above 0"):
+        terrain.sky_view(heights, 10.0, reach=0)
+
+
+def test_halos_that_need_much_memory_are_told(caplog):
+    heights = da.zeros((10_000, 10_000), chunks=1000)
+    terrain.sun_hours(heights, [[1, 0, 0.01]], 1, 10.0, relief=500.0)
+    terrain.sun_hours(heights, [[1, 0, 0.01]], 1, 10.0, relief=500.0, reach=9000.0)
+    (told,) = [told for told in caplog.messages if told.startswith("terrain")]
+    assert "tile of 1024 x 1024 cells needs 10000 x 10000" in told and "ground 50000 away" in told
 
 
 def test_degrees_are_refused():

@@ -95,6 +95,7 @@ def visible(
     *,
     scene: Scene | Any,
     tnear: float = 0.0,
+    tfar: float = np.inf,
     progress: bool = False,
 ) -> NDArray[np.uint8]:
     """Test which points have an unobstructed view along which vectors.
@@ -108,8 +109,9 @@ def visible(
         A point does not see along vectors behind its normal. Rays begin at a small distance along the normal, as large
         as rounding may have moved a surface there, so a point on a surface does not hit that surface.
     scene : Scene, or a mesh
-    tnear : float
-        Distance, in units of a vector's length, at which hits begin to count. For points on the scene without normals.
+    tnear, tfar : float
+        Only hits between these distances, in units of a vector's length, count; `tnear` is for points on the scene
+        without normals.
     progress : bool
         Show a progress bar of tqdm.
 
@@ -124,13 +126,14 @@ def visible(
     if normals is not None and len(sides) != len(rows):
         raise ValueError(f"normals: {len(sides)} rows, of points {len(rows)}")
     scene = _scene_of(scene)
-    near = number_of(tnear, "tnear", 0)
+    near, far = number_of(tnear, "tnear", 0), number_of(tfar, "tfar")
     rows = scene._frame.moved(rows, scene.origin)
     seen = np.empty((len(rows), len(across)), np.uint8)
 
     def fill(first, last):
         part = slice(first, last)
-        seen[part] = _core.visible(scene._core, rows[part], across, sides[part], near).reshape(seen[part].shape)
+        found = _core.visible(scene._core, rows[part], across, sides[part], near, far)
+        seen[part] = found.reshape(seen[part].shape)
 
     in_blocks(len(rows), 1 + _RAYS_OF_BLOCK // max(1, len(across)), "visible" if progress else None, fill)
     if normals is None and near == 0:

@@ -112,6 +112,7 @@ def visible(
     normals: Any | None = None,
     *,
     tnear: float = 0.0,
+    tfar: float = np.inf,
 ) -> Any:
     """Tell which points see free sky along which vectors: `twinray.visible`, lazily.
 
@@ -122,7 +123,7 @@ def visible(
     vectors : array_like, (V, 3)
         In memory: each chunk asks for all.
     normals : the same as points, optional
-    tnear : float
+    tnear, tfar : float
 
     Returns
     -------
@@ -130,15 +131,16 @@ def visible(
     """
     across = np.ascontiguousarray(array_of(vectors, "vectors"), np.float32).reshape(-1, 3)
     array, labels = _sensors(points, normals)
-    options = {"vectors": across, "tnear": number_of(tnear, "tnear", 0)}
+    options = {"vectors": across, "tnear": number_of(tnear, "tnear", 0), "tfar": number_of(tfar, "tfar")}
     found = _mapped(_visible, scene, array, np.dtype(np.uint8), (len(across),), options)
     return labels.array(found, "visible", ("vector",)) if labels else found
 
 
-def _visible(scene, sensors, dtype, vectors, tnear):
+def _visible(scene, sensors, dtype, vectors, tnear, tfar=np.inf):
     flat = sensors.reshape(-1, sensors.shape[-1])
     normals = flat[:, 3:] if flat.shape[1] == 6 else None
-    return analysis.visible(flat[:, :3], vectors, normals, scene=scene, tnear=tnear).reshape(*sensors.shape[:-1], -1)
+    seen = analysis.visible(flat[:, :3], vectors, normals, scene=scene, tnear=tnear, tfar=tfar)
+    return seen.reshape(*sensors.shape[:-1], -1)
 
 
 def sky_view(

@@ -10,6 +10,7 @@ One file of more than 400 lines, since all its questions share how tiles and hal
 
 from __future__ import annotations
 
+import logging
 import math
 import os
 from typing import Any, Literal
@@ -35,6 +36,8 @@ _SIDE_OF_CURVED_BLOCK = 64  # which has one vertical
 _FINE = 13  # heights are whole numbers of 2^-13 of a cell, so that tiles round them alike,
 _WHOLE = 22  # or of larger parts: float32 holds those of the whole relief
 _LIFT = 2.0**-10  # of a cell: where sensors on the ground begin, so that rays uphill meet the slope ahead
+_MANY_CELLS = 1 << 24  # of a tile with its halo
+_log = logging.getLogger("twinray")
 
 
 def sky_view(
@@ -73,6 +76,8 @@ def sky_view(
     curvature : float
         Curvature of the earth: 0 is a plane, 1 a sphere, 0.857 a sphere with the refraction of air. Heights must be in
         metres. For rays 64 x 64 cells share the vertical of their middle.
+    reach : float
+        Ground that is farther away hides nothing; without limit by default. It bounds what a tile needs in memory.
     tile : int
         Cells along a side of a tile; 1024 by default.
     accel, device : optional
@@ -127,7 +132,7 @@ def sun_hours(
 
     Parameters
     ----------
-    heights, spacing, relief, height, curvature, tile, accel, device
+    heights, spacing, relief, height, curvature, reach, tile, accel, device
         The parameters of `sky_view`. The lowest sun decides how wide halos are.
     suns : array_like, (S, 3)
         Towards the sun: x east, y north, z up; those that are not above the horizon bring nothing.
@@ -152,7 +157,7 @@ def visible(
 
 
 class _OfRays:
-    """Answers of rays: `of(scene, points, across)` tells them for cells that have a height."""
+    """Answers of rays: `of(scene, points, across, t_far)` tells them for cells that have a height."""
 
     def of_tile(self, z, plan, inside):
         """The answers of the cells inside, of a tile with its halo."""
@@ -171,7 +176,7 @@ class _OfRays:
                 if is_asked[block].any():
                     asked = points[block][is_asked[block]]
                     across = plan.directions_at(points[block].reshape(-1, 3).mean(axis=0))
-                    result[block][is_asked[block]] = self.of(scene, asked, across)
+                    result[block][is_asked[block]] = self.of(scene, asked, across, plan.t_far)
         return result
 
 
@@ -183,8 +188,8 @@ class _Sum(_OfRays):
     def __init__(self, weights, name, units):
         self.weights, self.name, self.units = weights, name, units
 
-    def of(self, scene, points, across):
-        return weighted(_seen(scene, points, across), self.weights)
+    def of(self, scene, points, across, t_far):
+        return weighted(_seen(scene, points, across, t_far), self.weights)
 
 
 class _Each(_OfRays):
@@ -195,8 +200,8 @@ class _Each(_OfRays):
     def __init__(self, count):
         self.more, self.axis = (count,), "vector"
 
-    def of(self, scene, points, across):
-        return _seen(scene, points, across)
+    def of(self, scene, points, across, t_far):
+        return _seen(scene, points, across, t_far)
 
 
 class _Horizon:
@@ -267,7 +272,7 @@ def _over_tiles(
     answer,
     options,
     *,
-    _names=("relief", "height", "curvature", "tile", "accel", "device"),
+    _names=("relief", "height", "curvature", "reach", "tile", "accel", "device"),
 ):
     unknown = sorted(set(options) - set(_names))
     if unknown:
@@ -279,13 +284,30 @@ def _over_tiles(
     curvature, lifted = (_finite(options.get(name, 0.0), name) for name in ("curvature", "height"))
     relief = options.get("relief")
     relief = _relief_of(array) if relief is None else _finite(relief, "relief")
-    way = _way(relief, directions, curvature)
+    reach = number_of(options.get("reach", math.inf), "reach")
+    if reach <= 0:
+        raise ValueError(f"reach: {reach}; wanted is a number above 0")
+    way = min(reach, _way(relief, directions, curvature))
     halo = grid.halo(way)
+    _tell_if_large(array.shape, tile, halo, way)
     spec = SceneSpec(accel=options.get("accel", "auto"), device=options.get("device"))
-    plan = delayed(_Plan(spec, grid, directions, answer, lifted, curvature, way, relief), pure=True)
+    plan = delayed(_Plan(spec, grid, directions, answer, lifted, curvature, reach, way, relief), pure=True)
     rows = [_tile_row(array, first, tile, halo, plan, answer) for first in range(0, array.shape[0], tile)]
     found = da.concatenate(rows) if rows else da.zeros((*array.shape, *answer.more), dtype=answer.dtype)
     return found if source is None else _labelled(found, source, answer)
+
+
+def _tell_if_large(shape, tile, halo, way):
+    seen = [min(tile + 2 * around, size) for around, size in zip(halo, shape, strict=True)]
+    if seen[0] * seen[1] > max(_MANY_CELLS, 4 * tile * tile):
+        _log.warning(
+            "terrain: a tile of %d x %d cells needs %d x %d, since the lowest direction may meet ground %.6g away; "
+            "leave low ones out, or give reach",
+            tile,
+            tile,
+            *seen,
+            way,
+        )
 
 
 def _finite(value, name):
@@ -326,8 +348,13 @@ def _tile_row(array, first, tile, halo, plan, answer):
 class _Plan:
     """The settings that all tiles share."""
 
-    def __init__(self, spec, grid, directions, answer, lifted, curvature, way, relief):
+    def __init__(self, spec, grid, directions, answer, lifted, curvature, reach, way, relief):
         self.spec, self.grid, self.directions, self.answer = spec, grid, directions, answer
+        self.t_far = math.inf
+        if reach < math.inf:  # the directions get the length of the rays
+            across = np.hypot(directions[:, 0], directions[:, 1])
+            across = np.maximum(across, 1e-6 * np.linalg.norm(directions, axis=1))  # all but vertical
+            self.t_far, self.directions = 1.0, directions * (reach / across)[:, None]
         self.fine = 2.0 ** min(_FINE, _WHOLE - math.ceil(math.log2(max(1.0, relief / grid.unit))))
         self.lift = np.round(lifted / grid.unit * self.fine) / self.fine
         self.curvature, self.way, self.relief = curvature, way, relief
@@ -342,7 +369,7 @@ class _Plan:
 
     def __dask_tokenize__(self):
         weights = getattr(self.answer, "weights", np.zeros(0))
-        grid = (self.grid.dx, self.grid.dy, self.fine, self.lift, self.curvature, self.way)
+        grid = (self.grid.dx, self.grid.dy, self.fine, self.lift, self.curvature, self.way, self.t_far)
         return (type(self.answer).__name__, self.spec.key, grid, self.directions.tobytes(), weights.tobytes())
 
 
@@ -363,9 +390,9 @@ def _answered(heights, plan, inside):
     return np.full((*(part.stop - part.start for part in inside), *answer.more), answer.fill, answer.dtype)
 
 
-def _seen(scene, points, across):
+def _seen(scene, points, across, t_far):
     moved = scene._frame.moved(points, scene.origin)
-    seen = _core.visible(scene._core, moved, across, np.zeros((0, 3), np.float32), 0.0)
+    seen = _core.visible(scene._core, moved, across, np.zeros((0, 3), np.float32), 0.0, t_far)
     return seen.reshape(len(points), len(across))
 
 
