@@ -39,12 +39,13 @@ TEST_P(Accel, FindsTheClosestHitAndFillsEveryField) {
 
 TEST_P(Accel, AMissHasNoOtherField) {
     accel().push(square(0));
-    const Hit hit = closest(down(2, 2));
-    EXPECT_EQ(hit.hit, 0u);
-    EXPECT_EQ(hit.t, -1.0f);
-    EXPECT_EQ(hit.primitive_index | hit.custom_index | hit.instance_index | hit.flags, 0u);
-    EXPECT_EQ(hit.u, 0.0f);
-    EXPECT_EQ(hit.v, 0.0f);
+    for (const Hit& hit : {closest(down(2, 2)), any(down(2, 2))}) {
+        EXPECT_EQ(hit.hit, 0u);
+        EXPECT_EQ(hit.t, -1.0f);
+        EXPECT_EQ(hit.primitive_index | hit.custom_index | hit.instance_index | hit.flags, 0u);
+        EXPECT_EQ(hit.u, 0.0f);
+        EXPECT_EQ(hit.v, 0.0f);
+    }
 }
 
 TEST_P(Accel, TheIntervalIsOpenAtBothEnds) {
@@ -63,6 +64,15 @@ TEST_P(Accel, TheIntervalIsOpenAtBothEnds) {
     EXPECT_EQ(closest(ray).hit, 1u);
 }
 
+TEST_P(Accel, ANegativeStartIsZero) {
+    accel().push(square(0));
+    Ray ray = down(0.3f, 0.6f);
+    ray.t_min = -100;
+    EXPECT_EQ(closest(ray).t, 10.0f);
+    ray.origin.z = -1;
+    EXPECT_EQ(closest(ray).hit, 0u);
+}
+
 TEST_P(Accel, DistancesAreInUnitsOfTheGivenDirection) {
     accel().push(square(0));
     Ray ray = down(0.3f, 0.6f);
@@ -78,10 +88,13 @@ TEST_P(Accel, TrianglesAreSeenFromBothSides) {
 TEST_P(Accel, InvalidRaysMiss) {
     accel().push(square(0));
     const float inf = INFINITY;
-    const Ray rays[] = {{vec3(NAN, 0.5f, 10), 0, vec3(0, 0, -1), inf}, {vec3(0.5f, 0.5f, inf), 0, vec3(0, 0, -1), inf},
-                        {vec3(0.5f, 0.5f, 10), 0, vec3(0), inf},       {vec3(0.5f, 0.5f, 10), 0, vec3(0, NAN, -1), inf},
-                        {vec3(0.5f, 0.5f, 10), 5, vec3(0, 0, -1), 5},  {vec3(0.5f, 0.5f, 10), NAN, vec3(0, 0, -1), inf},
-                        {vec3(0.5f, 0.5f, 10), 0, vec3(0, 0, -1), -1}, {vec3(0.5f, 0.5f, 10), 0, vec3(0, 0, -1), NAN}};
+    const Ray rays[] = {
+        {vec3(NAN, 0.5f, 10), 0, vec3(0, 0, -1), inf},    {vec3(0.5f, 0.5f, inf), 0, vec3(0, 0, -1), inf},
+        {vec3(0.5f, 0.5f, 10), 0, vec3(0), inf},          {vec3(0.5f, 0.5f, 10), 0, vec3(0, NAN, -1), inf},
+        {vec3(0.5f, 0.5f, 10), 5, vec3(0, 0, -1), 5},     {vec3(0.5f, 0.5f, 10), NAN, vec3(0, 0, -1), inf},
+        {vec3(0.5f, 0.5f, 10), 0, vec3(0, 0, -1), -1},    {vec3(0.5f, 0.5f, 10), 0, vec3(0, 0, -1), NAN},
+        {vec3(0.5f, 0.5f, 10), 0, vec3(0, 0, -inf), inf}, {vec3(0.5f, 0.5f, 10), -2, vec3(0, 0, -1), -1},
+        {vec3(0.5f, 0.5f, 10), inf, vec3(0, 0, -1), inf}};
     for (const Hit& hit : accel().closest_hits(rays)) EXPECT_EQ(hit.hit, 0u);
     for (const Hit& hit : accel().any_hits(rays)) EXPECT_EQ(hit.hit, 0u);
 }

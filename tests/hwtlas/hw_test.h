@@ -41,8 +41,6 @@ class HwTlasTest : public VulkanTest, public ::testing::WithParamInterface<Way> 
         return desc;
     }
     HwTlas& accel() { return *accel_; }
-    Hit closest(const Ray& ray) { return accel_->closest_hits(std::span(&ray, 1)).front(); }
-    Hit any(const Ray& ray) { return accel_->any_hits(std::span(&ray, 1)).front(); }
 
   private:
     std::unique_ptr<HwTlas> accel_;
