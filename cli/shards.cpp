@@ -135,7 +135,7 @@ Shards::~Shards() {
 std::string Shards::name() const { return text("shard ", index_, " of ", count_); }
 
 std::filesystem::path Shards::file(uint part) const {
-    return output_.string() + ".shard" + std::to_string(part) + "of" + std::to_string(count_);
+    return std::filesystem::path(output_) += text(".shard", part, "of", count_);
 }
 
 Rows Shards::rows(uint part, std::uint64_t count) const {

@@ -60,7 +60,9 @@ PairExchanges compute_pairs(const Options& options, AbstractAccel& accel, const 
                               [&](std::uint64_t groups) { progress.advance(groups); });
 }
 
-std::filesystem::path rows_file(const std::filesystem::path& output) { return output.string() + ".rows"; }
+std::filesystem::path rows_file(const std::filesystem::path& output) {
+    return std::filesystem::path(output) += ".rows";
+}
 
 ComputedRows compute_to(const Options& options, ViewFactors& factors, Rows rows, RowFile* file) {
     ComputedRows computed = begin_rows(file, options.shards.resumes);
