@@ -1,10 +1,16 @@
-# twinray_add_shaders(<target> <file>...): compiles each GLSL file under shaders/ to SPIR-V at build time and gives
-# <target> a header per file, "<folder>_<stem>.spv.h" with `const uint32_t <folder>_<stem>_spirv[]` (ray tracing
-# stages keep their suffix: <folder>_<stem>_rgen).
+# twinray_add_shaders(<target> <pattern>... [EXCEPT <file>...]): compiles each GLSL file under shaders/ that a pattern
+# names to SPIR-V at build time and gives <target> a header per file, "<folder>_<stem>.spv.h" with
+# `const uint32_t <folder>_<stem>_spirv[]` (ray tracing stages keep their suffix: <folder>_<stem>_rgen).
 include(${CMAKE_CURRENT_LIST_DIR}/TwinrayShaders.cmake)
 
 function(twinray_add_shaders target)
-    foreach(source ${ARGN})
+    cmake_parse_arguments(arg "" "" "EXCEPT" ${ARGN})
+    list(TRANSFORM arg_UNPARSED_ARGUMENTS PREPEND ${PROJECT_SOURCE_DIR}/shaders/ OUTPUT_VARIABLE patterns)
+    file(GLOB sources CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/shaders ${patterns})
+    foreach(source ${sources})
+        if(source IN_LIST arg_EXCEPT)
+            continue()
+        endif()
         get_filename_component(folder ${source} DIRECTORY)
         get_filename_component(stem ${source} NAME_WE)
         get_filename_component(extension ${source} LAST_EXT)
