@@ -12,7 +12,7 @@
 #include <twinray/scene.h>
 
 #include "engine/accel/trace_desc.h"
-#include "engine/core/buffer.h"
+#include "engine/core/commands.h"
 
 namespace twinray::bench {
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "bench/tiles.h"
-#include "engine/core/cpu_threads.h"
+#include "engine/core/cpu_vectors.h"
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
 #include "engine/core/stopwatch.h"

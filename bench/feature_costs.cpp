@@ -10,7 +10,6 @@
 
 #include "bench/accel_backend.h"
 #include "bench/figures.h"
-#include "bench/hits_hash.h"
 #include "bench/report.h"
 #include "bench/table.h"
 #include "engine/accel/feature_additions.h"

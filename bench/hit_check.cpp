@@ -31,12 +31,10 @@ std::vector<RayResult> results_of(const ReferenceScene& reference, const Sample&
     if (query == Query::closest)
         return is_ours ? classify_all(reference, rays, hits, none) : classify_all(reference, rays, none, hits);
     std::vector<RayResult> ray_results(rays.size());
-    parallel_for(ray_results.size(), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const bool is_hit = sample.hits[i].hit != 0;
-            ray_results[i] = sample.is_ours ? classify_any(reference, sample.rays[i], is_hit, {})
-                                            : classify_any(reference, sample.rays[i], {}, is_hit);
-        }
+    parallel_for(ray_results.size(), [&](std::size_t i) {
+        const bool is_hit = sample.hits[i].hit != 0;
+        ray_results[i] = sample.is_ours ? classify_any(reference, sample.rays[i], is_hit, {})
+                                        : classify_any(reference, sample.rays[i], {}, is_hit);
     });
     return ray_results;
 }

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "bench/hits_hash.h"
 #include "bench/tiles.h"
+#include "engine/core/fnv1a.h"
 
 namespace twinray::bench {
 namespace {
@@ -72,6 +72,17 @@ std::vector<TraceRounds> measure_traces(LineUp& line_up, const RayBatch& rays, c
             step();
         }
     return results;
+}
+
+std::uint64_t hash_of(std::span<const Hit> hits, Query query) {
+    Fnv1a hash;
+    for (const Hit& hit : hits) {
+        hash.add_bytes(std::span(&hit.hit, 1));
+        if (query == Query::any) continue;
+        for (const uint index : {hit.primitive_index, hit.instance_index}) hash.add_bytes(std::span(&index, 1));
+        for (const float value : {hit.t, hit.u, hit.v}) hash.add_bytes(std::span(&value, 1));
+    }
+    return hash.value();
 }
 
 std::size_t affordable_tiles(Backend& backend, const RayBatch& rays, double max_ms) {

@@ -39,6 +39,11 @@ struct TraceSettings {
 std::vector<TraceRounds> measure_traces(LineUp& line_up, const RayBatch& rays, const TraceSettings& settings,
                                         const Step& step);
 
+// FNV-1a of 64 bits (Fowler, Noll and Vo) over the hits in their order, to see at once whether two traces answered
+// alike. Of closest hits hit, primitive_index, instance_index and the bits of t, u and v count; of any hits `hit`
+// alone, as which one is found is free.
+std::uint64_t hash_of(std::span<const Hit> hits, Query query);
+
 // How many of all tiles a backend traces within max_ms, at least 4: from traces of growing numbers of tiles, the
 // first of which compiles kernels and does not count.
 std::size_t affordable_tiles(Backend& backend, const RayBatch& rays, double max_ms);

@@ -10,6 +10,7 @@
 
 #include "bench/report.h"
 #include "engine/core/statistics.h"
+#include "engine/core/uploaded.h"
 #include "twinray/glsl/cpp.h"
 #include "validation/records/recorded_device.h"
 
@@ -33,17 +34,6 @@ std::vector<Transform> placed(std::size_t count, float phase) {
     return transforms;
 }
 
-Buffer upload(Context& context, const std::vector<Transform>& transforms) {
-    Buffer buffer(context, {.name = "moves", .bytes = transforms.size() * sizeof(Transform)});
-    Commands commands(context, "moves");
-    {
-        const auto pass = commands.pass("moves");
-        commands.upload(buffer, std::span(transforms));
-    }
-    commands.submit();
-    return buffer;
-}
-
 double sync_ms(AbstractAccel& accel) {
     accel.sync();
     double sum = 0;
@@ -59,7 +49,8 @@ MoveTimes measure_moves(AbstractAccel& accel, std::size_t count, std::size_t rou
     accel.set_rebuild_ratio(INFINITY);  // each is asked for by itself
     std::vector<double> refits, rebuilds;
     for (std::size_t round = 0; round < rounds + 2; ++round) {
-        const Buffer moves = upload(accel.context(), placed(count, 0.1f * static_cast<float>(round)));
+        const std::vector<Transform> transforms = placed(count, 0.1f * static_cast<float>(round));
+        const Buffer moves = uploaded(accel.context(), "moves", std::span<const Transform>(transforms));
         accel.update_transforms(handle, moves.ref<Transform>(), count);
         const double refit = sync_ms(accel);
         accel.update_transforms(handle, moves.ref<Transform>(), count);

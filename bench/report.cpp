@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "bench/hits_hash.h"
 #include "bench/table.h"
 #include "engine/core/error.h"
 #include "engine/core/fnv1a.h"

@@ -134,10 +134,7 @@ Command bench_command() {
             .alternatives = {{.names = {"--scene", "--moves", "--growth"}, .is_required = true}},
             .examples = {{"twinray bench --scene sphere:100000 --levels watertight,certified",
                           "cost of certified hits on a sphere of a hundred thousand triangles"}},
-            .run = [options] {
-                run(*options);
-                return 0;
-            }};
+            .run = done_after([options] { run(*options); })};
 }
 
 }  // namespace twinray::cli

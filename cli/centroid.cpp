@@ -114,10 +114,7 @@ Command centroid_command() {
                          common_options(options->analysis.common)},
             .examples = {{"twinray centroid statue.ply --direction 0 0 -1",
                           "the mean visible point for a viewer who looks along -z"}},
-            .run = [options] {
-                run(*options);
-                return 0;
-            }};
+            .run = done_after([options] { run(*options); })};
 }
 
 }  // namespace twinray::cli

@@ -213,10 +213,7 @@ Command collide_command() {
                      "the worst contact of each face, or with --broad how many boxes the box of its instance overlaps"),
                  common_options(options->common)},
             .examples = {{"twinray collide machine.gltf -o pairs.csv", "the parts of a machine that collide"}},
-            .run = [options] {
-                run(*options);
-                return 0;
-            }};
+            .run = done_after([options] { run(*options); })};
 }
 
 }  // namespace twinray::cli

@@ -167,13 +167,12 @@ Command devices_command() {
                        json_option(options->json)}}},
         .examples = {{"twinray devices", "the devices of this machine"},
                      {"twinray devices --requirements", "the requirements of each part, and which devices meet them"}},
-        .run = [options] {
+        .run = done_after([options] {
             if (options->requirements)
                 print_requirements(usable_devices(), options->json);
             else
                 print_devices(options->json);
-            return 0;
-        }};
+        })};
 }
 
 }  // namespace twinray::cli

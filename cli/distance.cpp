@@ -370,10 +370,7 @@ Command distance_command() {
             .alternatives = {{.names = {"--points", "--random", "--grid"}}},
             .examples = {{"twinray distance part.stl --points probes.csv --signed -o distances.csv",
                           "depth of each probe inside a part, or its distance outside"}},
-            .run = [options] {
-                run(*options);
-                return 0;
-            }};
+            .run = done_after([options] { run(*options); })};
 }
 
 }  // namespace twinray::cli

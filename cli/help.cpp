@@ -82,10 +82,7 @@ Command help_command(const std::vector<std::string>& names) {
                             .needs = {"--man"},
                             .excludes = {"COMMAND"}}}}},
             .examples = {{"twinray help --man trace | man -l -", "show a man page without installing it"}},
-            .run = [options] {
-                run(*options);
-                return 0;
-            }};
+            .run = done_after([options] { run(*options); })};
 }
 
 Command completion_command() {
@@ -106,10 +103,7 @@ Command completion_command() {
                             .value = file(options->file),
                             .help = "write the script to this file instead of standard output"}}}},
             .examples = {{"source <(twinray completion bash)", "complete in this shell; in ~/.bashrc, in all shells"}},
-            .run = [options] {
-                run(*options);
-                return 0;
-            }};
+            .run = done_after([options] { run(*options); })};
 }
 
 }  // namespace twinray::cli

@@ -308,12 +308,11 @@ Command illumination_command() {
             .alternatives = {{.names = {"--direction", "--sky", "--sun"}, .is_required = true}},
             .examples = {{"twinray illumination house.glb --direction 0.3 -1 0.2 -o lit.csv --picture lit.png",
                           "the faces that the sun reaches, as a table and as a picture"}},
-            .run = [options] {
+            .run = done_after([options] {
                 options->grid.direction.empty()
                     ? run_sky(options->analysis, options->shards, options->sky, options->sides)
                     : run(*options);
-                return 0;
-            }};
+            })};
 }
 
 }  // namespace twinray::cli

@@ -262,10 +262,7 @@ Command trace_command() {
                          common_options(options->common)},
             .examples = {{"twinray trace bunny.ply --rays rays.bin --hits hits.bin",
                           "closest hits of all rays, at a level that loses no ray at edges"}},
-            .run = [options] {
-                run(*options);
-                return 0;
-            }};
+            .run = done_after([options] { run(*options); })};
 }
 
 }  // namespace twinray::cli

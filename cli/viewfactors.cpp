@@ -341,14 +341,13 @@ Command viewfactors_command() {
                          common_options(options->common)},
             .examples = {{"twinray viewfactors room.obj --by instance -o room.npz",
                           "view factors between the objects of a room, as a matrix for SciPy"}},
-            .run = [options] {
+            .run = done_after([options] {
                 if (options->common.seed > UINT32_MAX)
                     throw UsageError(text("--seed is ", options->common.seed, ", but must be at most ", UINT32_MAX));
                 options->factors.seed = static_cast<uint>(options->common.seed);
                 options->factors.grouping = options->groups.by;
                 run(*options);
-                return 0;
-            }};
+            })};
 }
 
 }  // namespace twinray::cli

@@ -179,10 +179,7 @@ Command visible_command() {
                          shard_options(options->shards, {}), common_options(options->analysis.common)},
             .examples = {{"twinray visible street.glb --sensors windows.pts --patches reinhart577 -o windows.npz",
                           "visibility of 577 patches from each window"}},
-            .run = [options] {
-                run(*options);
-                return 0;
-            }};
+            .run = done_after([options] { run(*options); })};
 }
 
 }  // namespace twinray::cli

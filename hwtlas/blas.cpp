@@ -6,7 +6,7 @@
 
 #include "engine/accel/batches.h"
 #include "engine/accel/morton_order.h"
-#include "engine/core/triangle.h"
+#include "engine/core/ray.h"
 
 namespace twinray {
 namespace {

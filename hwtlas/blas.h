@@ -1,16 +1,26 @@
 // SPDX-License-Identifier: MIT
-// Bottom levels of HwTlas over meshes in host memory.
+// Bottom levels of HwTlas over meshes in host memory, and the structs that its kernels share with C++.
 #pragma once
 
 #include <memory>
 #include <vector>
 
-#include "engine/accel/geometry.h"
 #include <twinray/abstract_accel.h>
+
+#include "engine/accel/geometry.h"
+#include "engine/accel/surface_area.h"
+#include "engine/accel/world_bound.h"
 #include "hwtlas/acceleration_structure.h"
-#include "hwtlas/hw_tlas_header.h"
 
 namespace twinray {
+using std::uint64_t;
+#include "twinray/glsl/cpp_begin.h"
+#include "shaders/shared/hw_tlas_header.h"
+#include "shaders/shared/hw_build.h"
+#include "twinray/glsl/cpp_end.h"
+
+static_assert(sizeof(HwGeometry) == 48 && sizeof(HwInstance) == 16 && sizeof(HwTlasHeader) == 32 &&
+              sizeof(HwTrianglesArgs) == 80 && sizeof(HwGatherArgs) == 40 && sizeof(HwAreasArgs) == 32);
 
 // The driver's input for a mesh: only finite positions, and one triangle for each triangle of the mesh. An inactive one
 // (a non-finite vertex, no area) keeps its index but is collapsed to a point. Vulkan defines nothing for an infinite

@@ -12,10 +12,6 @@
 namespace twinray {
 namespace {
 
-KernelDesc kernel(const char* name, std::span<const std::uint32_t> spirv) {
-    return {.name = name, .spirv = spirv, .group_size = WORLD_BOUND_GROUP, .compiles_when_used = true};
-}
-
 // Each triangle has three vertices of its own.
 StructureBuild build_of(const std::string& name, std::uint64_t vertices, uint triangle_count) {
     StructureBuild build = triangle_build(name, vertices, 3 * triangle_count, triangle_count);
@@ -24,17 +20,12 @@ StructureBuild build_of(const std::string& name, std::uint64_t vertices, uint tr
     return build;
 }
 
-constexpr std::uint64_t aligned(std::uint64_t bytes) { return (bytes + 15) / 16 * 16; }
+constexpr std::uint64_t part_alignment = 16;  // of all parts of scratch memory
+constexpr std::uint64_t aligned(std::uint64_t bytes) {
+    return (bytes + part_alignment - 1) / part_alignment * part_alignment;
+}
 
-struct SortScratch {
-    std::uint64_t address;
-    uint count;
-    const KernelTuning& tuning;
-
-    std::uint64_t part_bytes() const { return aligned(std::uint64_t{count} * sizeof(uint)); }
-    std::uint64_t bytes() const { return 4 * part_bytes() + aligned(RadixSort::counter_bytes(count, tuning)); }
-    Uints part(std::uint64_t i) const { return {address + i * part_bytes()}; }
-};
+RadixSort::Scratch sort_at(std::uint64_t address, uint count) { return {address, count, part_alignment}; }
 
 std::uint64_t vertex_bytes(uint triangle_count) { return aligned(std::uint64_t{triangle_count} * 3 * sizeof(vec3)); }
 
@@ -50,7 +41,7 @@ StructureWork work_of(const MovingMesh& mesh, BuildMode mode, Floats vertices) {
 
 struct MovingBlasBuilder::Batch {
     std::vector<HwTrianglesArgs> args;
-    std::vector<SortScratch> sorts;
+    std::vector<RadixSort::Scratch> sorts;
     std::vector<AreaWork> areas;
     std::vector<StructureWork> work;
     std::uint64_t build_scratch = 0;
@@ -66,9 +57,9 @@ MovingBlasBuilder::MovingBlasBuilder(Context& context, bool reorder)
       reorder_(reorder),
       sort_(context),
       areas_(context),
-      bound_(context, kernel("hwtlas_triangle_bound", hwtlas_triangle_bound_spirv)),
-      codes_(context, kernel("hwtlas_triangle_codes", hwtlas_triangle_codes_spirv)),
-      gather_(context, kernel("hwtlas_gather_triangles", hwtlas_gather_triangles_spirv)) {}
+      bound_(context, lazy_kernel("hwtlas_triangle_bound", hwtlas_triangle_bound_spirv, WORLD_BOUND_GROUP)),
+      codes_(context, lazy_kernel("hwtlas_triangle_codes", hwtlas_triangle_codes_spirv, WORLD_BOUND_GROUP)),
+      gather_(context, lazy_kernel("hwtlas_gather_triangles", hwtlas_gather_triangles_spirv, WORLD_BOUND_GROUP)) {}
 
 Blas MovingBlasBuilder::make(const std::string& name, uint triangle_count) const {
     Blas blas;
@@ -100,7 +91,7 @@ BuildBytes MovingBlasBuilder::bytes(std::span<const GeometrySize> meshes, std::u
 std::uint64_t MovingBlasBuilder::scratch_bytes(uint n, BuildMode mode) const {
     return scratch_bytes_of(context_, {build_of("", 0, n), mode, nullptr}) + vertex_bytes(n) + sizeof(WorldBoundBits) +
            aligned(AreaWork{n, {}, {}, mode == BuildMode::build}.bytes()) +
-           (reorder_ && mode == BuildMode::build ? SortScratch{0, n, context_.state().tuning()}.bytes() : 0);
+           (reorder_ && mode == BuildMode::build ? aligned(sort_at(0, n).bytes(context_.state().tuning())) : 0);
 }
 
 MovingBlasBuilder::Batch MovingBlasBuilder::begin(Commands& commands, std::span<const MovingMesh> meshes,
@@ -115,10 +106,8 @@ MovingBlasBuilder::Batch MovingBlasBuilder::begin(Commands& commands, std::span<
         const uint n = mesh.triangle_count;
         batch.areas.push_back(area_of(mesh, mode));
         SurfaceArea::place(take(aligned(batch.areas.back().bytes())), std::span(&batch.areas.back(), 1));
-        if (reorder_ && mode == BuildMode::build) {
-            const SortScratch sort{0, n, context_.state().tuning()};
-            batch.sorts.push_back({take(sort.bytes()), n, context_.state().tuning()});
-        }
+        if (reorder_ && mode == BuildMode::build)
+            batch.sorts.push_back(sort_at(take(aligned(sort_at(0, n).bytes(context_.state().tuning()))), n));
         const Floats vertices{take(vertex_bytes(n))};
         batch.work.push_back(work_of(mesh, mode, vertices));
         batch.args.push_back({mesh.mesh.positions,
@@ -142,14 +131,11 @@ MovingBlasBuilder::Batch MovingBlasBuilder::begin(Commands& commands, std::span<
 
 void MovingBlasBuilder::record_order(Commands& commands, Batch& batch) const {
     for (std::size_t i = 0; i < batch.sorts.size(); ++i) {
-        const SortScratch& sort = batch.sorts[i];
+        const RadixSort::Scratch& sort = batch.sorts[i];
         HwTrianglesArgs& args = batch.args[i];
-        args.keys = sort.part(0);
+        args.keys = sort.pairs().keys;
         codes_.dispatch(commands, args, args.count);
-        const RadixSort::Pairs sorted =
-            sort_.record_iota(commands, args.keys, {sort.part(0), sort.part(1)}, {sort.part(2), sort.part(3)},
-                              sort.part(4), args.count, morton_bits);
-        args.order = sorted.values;
+        args.order = sort_.record_iota(commands, sort, morton_bits).values;
     }
 }
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/accel/trace_args.h"
+#include "engine/accel/trace_desc.h"
 #include "engine/core/kernel.h"
 
 namespace twinray {

@@ -45,9 +45,7 @@ void write_sole(Commands& commands, const Tlas& tlas, const SoleInstance& sole) 
     if (tlas.instances.bytes()) commands.write(tlas.instances, HwInstance{sole.geometry.triangles, 0, 0});
 }
 
-KernelDesc stage(const char* name, std::span<const std::uint32_t> spirv) {
-    return {.name = name, .spirv = spirv, .group_size = group_size, .compiles_when_used = true};
-}
+RadixSort::Scratch order_scratch(std::uint64_t address, std::size_t count) { return {address, count, 16}; }
 
 }  // namespace
 
@@ -56,9 +54,9 @@ TlasBuilder::TlasBuilder(Context& context, bool reorder)
       reorder_(reorder),
       sort_(context),
       areas_(context),
-      codes_(context, stage("hwtlas_instance_codes", hwtlas_instance_codes_spirv)),
-      gather_(context, stage("hwtlas_gather_instances", hwtlas_gather_instances_spirv)),
-      boxes_(context, stage("hwtlas_instance_areas", hwtlas_instance_areas_spirv)) {}
+      codes_(context, lazy_kernel("hwtlas_instance_codes", hwtlas_instance_codes_spirv, group_size)),
+      gather_(context, lazy_kernel("hwtlas_gather_instances", hwtlas_gather_instances_spirv, group_size)),
+      boxes_(context, lazy_kernel("hwtlas_instance_areas", hwtlas_instance_areas_spirv, group_size)) {}
 
 // Room for either kind of build keeps the structure's address at the first move.
 TlasBuilder::Sizes TlasBuilder::sizes(std::size_t capacity) const {
@@ -70,9 +68,7 @@ TlasBuilder::Sizes TlasBuilder::sizes(std::size_t capacity) const {
 
 BuildBytes TlasBuilder::bytes(std::size_t count, std::size_t capacity) const {
     const Sizes sizes = this->sizes(capacity);
-    const std::uint64_t sort = reorder_ && count > 1 ? 4 * ((count * sizeof(uint) + 15) / 16 * 16) +
-                                                           RadixSort::counter_bytes(count, context_.state().tuning())
-                                                     : 0;
+    const std::uint64_t sort = reorder_ && count > 1 ? order_scratch(0, count).bytes(context_.state().tuning()) : 0;
     const AreaWork areas{count, {}, {}, false};
     return {sizes.structure + (reorder_ ? capacity * sizeof(HwInstance) : 0) + sizeof(HwTlasHeader),
             sizes.scratch + capacity * sizeof(InstanceRecord) + sort + areas.bytes()};
@@ -99,13 +95,12 @@ Tlas TlasBuilder::make(Commands& commands, std::size_t capacity, const AccelHead
 
 Uints TlasBuilder::record_order(Commands& commands, const TlasInput& input) const {
     if (!reorder_ || input.count < 2) return {};
-    const std::uint64_t bytes = (std::uint64_t{input.count} * sizeof(uint) + 15) / 16 * 16;
     Buffer scratch(context_, {.name = "tlas sort scratch",
-                              .bytes = 4 * bytes + RadixSort::counter_bytes(input.count, context_.state().tuning())});
-    const auto part = [&](std::uint64_t i) { return scratch.ref<uint>(i * bytes); };
-    codes_.dispatch(commands, {input.records, input.bound->on_device(), part(0), input.count, 0}, input.count);
-    const RadixSort::Pairs sorted =
-        sort_.record_iota(commands, part(0), {part(0), part(1)}, {part(2), part(3)}, part(4), input.count, morton_bits);
+                              .bytes = order_scratch(0, input.count).bytes(context_.state().tuning())});
+    const RadixSort::Scratch sort = order_scratch(scratch.address(), input.count);
+    codes_.dispatch(commands, {input.records, input.bound->on_device(), sort.pairs().keys, input.count, 0},
+                    input.count);
+    const RadixSort::Pairs sorted = sort_.record_iota(commands, sort, morton_bits);
     commands.retain(std::move(scratch));
     return sorted.values;
 }

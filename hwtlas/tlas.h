@@ -5,11 +5,12 @@
 #include <optional>
 
 #include <twinray/abstract_accel.h>
+
+#include "engine/accel/refinement.h"
 #include "engine/core/kernel.h"
 #include "engine/core/radix_sort.h"
-#include "engine/accel/refinement.h"
 #include "hwtlas/acceleration_structure.h"
-#include "hwtlas/hw_tlas_header.h"
+#include "hwtlas/blas.h"
 
 namespace twinray {
 

@@ -31,10 +31,10 @@ bool emits(const Scene& scene, uint mesh) {
     return std::ranges::any_of(scene.meshes[mesh].materials, glows);
 }
 
-// push_scene makes one handle for each mesh that has instances, in their order.
-std::vector<AccelHandle> handles_by_mesh(const Scene& scene, const AbstractAccel& accel) {
+}  // namespace
+
+std::vector<AccelHandle> handles_by_mesh(const Scene& scene, const std::vector<AccelHandle>& handles) {
     std::vector<AccelHandle> by_mesh(scene.meshes.size());
-    const std::vector<AccelHandle> handles = accel.handles();
     std::size_t next = 0;
     for (std::size_t i = 0; i < scene.instances.size(); ++i)
         if (i == 0 || scene.instances[i].mesh != scene.instances[i - 1].mesh)
@@ -42,14 +42,12 @@ std::vector<AccelHandle> handles_by_mesh(const Scene& scene, const AbstractAccel
     return by_mesh;
 }
 
-}  // namespace
-
 MovingScene::MovingScene(Context& context, Scene& scene, DeviceScene& device_scene, AbstractAccel& accel)
     : context_(context),
       scene_(scene),
       device_scene_(device_scene),
       accel_(accel),
-      handles_(handles_by_mesh(scene, accel)),
+      handles_(handles_by_mesh(scene, accel.handles())),
       deformed_(deformed_meshes(*scene.rig)),
       deformer_(context, scene.rig),
       move_vertices_(context, {.name = "path_tracer_move_vertices", .spirv = path_tracer_move_vertices_spirv}),

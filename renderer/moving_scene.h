@@ -9,6 +9,9 @@
 
 namespace twinray::path_tracer {
 
+// By mesh: push_scene makes one handle for each mesh that has instances, in their order.
+std::vector<AccelHandle> handles_by_mesh(const Scene& scene, const std::vector<AccelHandle>& handles);
+
 // The times of one pose, in milliseconds.
 struct MotionTimes {
     double host = 0;          // lights, records

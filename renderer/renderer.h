@@ -179,9 +179,9 @@ class Renderer {
     WaveBuffers waves_;
     Buffer counters_readback_;
     Kernel<GenerateArgs> generate_;
-    Kernel<SortArgs> sort_;
+    Kernel<WaveArgs> sort_;
     std::deque<Kernel<ShadeArgs>> shade_;
-    Kernel<ShadowArgs> shadow_;
+    Kernel<WaveArgs> shadow_;
     Kernel<AccumulateArgs> accumulate_;
     Pace pace_;
     uint pixel_count_ = 0;  // in pixels_

@@ -107,15 +107,15 @@ void DeviceScene::upload_lights(Commands& commands, const LocalLights& lights) {
         if (!lights_) lights_.emplace(context_);
         const std::vector<SetKey> keys = lights_->put(lights);
         record_.lights = lights_->view();
-        record_.light_keys = upload_moving(commands, "keys of lights", some_of(keys));
-        record_.light_table = upload_moving(commands, "light table", some_of(lights.table));
+        record_.light_keys = upload(commands, "keys of lights", some_of(keys), &moving_);
+        record_.light_table = upload(commands, "light table", some_of(lights.table), &moving_);
         record_.table_first = lights.empty() ? 0 : lights.table_first;
         record_.table_count = std::max(lights.table_count, 1u);
         record_.table_chance = lights.table_chance;
     }
     if (features_.light_tree)
-        record_.light_tree = upload_moving(commands, "light tree",
-                                           lights.tree.nodes.empty() ? std::vector{dark_leaf()} : lights.tree.nodes);
+        record_.light_tree = upload(commands, "light tree",
+                                    lights.tree.nodes.empty() ? std::vector{dark_leaf()} : lights.tree.nodes, &moving_);
     const bool has_sky = record_.environment.density_per_luminance > 0;
     record_.environment.chance = has_sky ? 1.0f / static_cast<float>(1 + lights.kind_count()) : 0;
 }
@@ -130,19 +130,13 @@ std::uint64_t DeviceScene::device_bytes() const {
 }
 
 template <class T>
-Ref<T> DeviceScene::upload(Commands& commands, const std::string& name, const std::vector<T>& values) {
+Ref<T> DeviceScene::upload(Commands& commands, const std::string& name, const std::vector<T>& values,
+                           std::vector<Buffer>* kept) {
     Buffer buffer(context_, {.name = name, .bytes = values.size() * sizeof(T)});
     commands.upload(buffer, std::span(values));
-    buffers_.push_back(std::move(buffer));
-    return buffers_.back().ref<T>();
-}
-
-template <class T>
-Ref<T> DeviceScene::upload_moving(Commands& commands, const std::string& name, const std::vector<T>& values) {
-    Buffer buffer(context_, {.name = name, .bytes = values.size() * sizeof(T)});
-    commands.upload(buffer, std::span(values));
-    moving_.push_back(std::move(buffer));
-    return moving_.back().ref<T>();
+    std::vector<Buffer>& buffers = kept ? *kept : buffers_;
+    buffers.push_back(std::move(buffer));
+    return buffers.back().ref<T>();
 }
 
 void DeviceScene::upload_meshes(Commands& commands, const Scene& scene) {
@@ -173,12 +167,12 @@ Ref<SurfaceInstance> DeviceScene::upload_instances(Commands& commands, const Sce
         SurfaceInstance record = instance_record(scene.instances[i].transform);
         record.vertices = meshes_[scene.instances[i].mesh].vertices;
         record.triangles = meshes_[scene.instances[i].mesh].triangles;
-        record.emitter_density = upload_moving(commands, "emitter densities", lights.densities[i]);
-        if (features_.light_tree) record.emitter_ways = upload_moving(commands, "ways to emitters", lights.ways[i]);
+        record.emitter_density = upload(commands, "emitter densities", lights.densities[i], &moving_);
+        if (features_.light_tree) record.emitter_ways = upload(commands, "ways to emitters", lights.ways[i], &moving_);
         context_.fill_absent(record.vertices, record.triangles, record.emitter_density, record.emitter_ways);
         records.push_back(record);
     }
-    return upload_moving(commands, "surface instances", records);
+    return upload(commands, "surface instances", records, &moving_);
 }
 
 // Uses buffers, which are filtered in float32 everywhere: a picture does not depend on the device's samplers.

@@ -60,10 +60,10 @@ class DeviceScene {
     std::uint64_t device_bytes() const;
 
   private:
+    // The buffer goes into `kept`; null: into buffers_.
     template <class T>
-    Ref<T> upload(Commands& commands, const std::string& name, const std::vector<T>& values);
-    template <class T>
-    Ref<T> upload_moving(Commands& commands, const std::string& name, const std::vector<T>& values);
+    Ref<T> upload(Commands& commands, const std::string& name, const std::vector<T>& values,
+                  std::vector<Buffer>* kept = nullptr);
     void upload_meshes(Commands& commands, const Scene& scene);
     void upload_extras(Commands& commands, const Scene& scene);
     Ref<SurfaceInstance> upload_instances(Commands& commands, const Scene& scene, const LocalLights& lights);

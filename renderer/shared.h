@@ -20,7 +20,6 @@ constexpr uint LAYERS = ~0u;  // in kernels specialisation constants
 
 #include "twinray/glsl/cpp_begin.h"
 #include "shaders/path_tracer/scene.h"
-#include "shaders/path_tracer/move_vertices.h"
 #include "shaders/path_tracer/wave.h"
 #include "shaders/path_tracer/camera.h"
 #include "shaders/path_tracer/film.h"

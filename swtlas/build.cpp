@@ -29,10 +29,6 @@
 namespace twinray {
 namespace {
 
-KernelDesc stage(const char* name, std::span<const std::uint32_t> spirv, uint group_size = BUILD_GROUP) {
-    return {.name = name, .spirv = spirv, .group_size = group_size, .compiles_when_used = true};
-}
-
 KernelDesc specialized(KernelDesc desc, uint value) {
     desc.constants.push_back({0, value});
     return desc;
@@ -54,11 +50,11 @@ KernelDesc of_width(KernelDesc desc, Layout layout) {
 }
 
 KernelDesc leaves_stage(const Context& context, const char* name, std::span<const std::uint32_t> spirv) {
-    return grouped(context, stage(name, spirv), LEAVES_GROUP);
+    return grouped(context, lazy_kernel(name, spirv), LEAVES_GROUP);
 }
 
 KernelDesc build_stage(const Context& context, const char* name, std::span<const std::uint32_t> spirv) {
-    return grouped(context, stage(name, spirv), BUILD_GROUP);
+    return grouped(context, lazy_kernel(name, spirv), BUILD_GROUP);
 }
 
 KernelDesc hierarchy_stage(const Context& context, BuildQuality quality) {
@@ -67,12 +63,13 @@ KernelDesc hierarchy_stage(const Context& context, BuildQuality quality) {
 }
 
 KernelDesc collapse_stage(uint step, Layout layout) {
-    return of_width(specialized(stage("swtlas_collapse", swtlas_collapse_spirv, COLLAPSE_GROUP), step), layout);
+    return of_width(specialized(lazy_kernel("swtlas_collapse", swtlas_collapse_spirv, COLLAPSE_GROUP), step), layout);
 }
 
 KernelDesc subtrees_stage(const Context& context, Layout layout) {
-    return of_width(grouped(context, stage("swtlas_collapse_subtrees", swtlas_collapse_subtrees_spirv), COLLAPSE_GROUP),
-                    layout);
+    return of_width(
+        grouped(context, lazy_kernel("swtlas_collapse_subtrees", swtlas_collapse_subtrees_spirv), COLLAPSE_GROUP),
+        layout);
 }
 
 }  // namespace
@@ -85,27 +82,28 @@ Builder::Builder(Context& context, const AccelOptions& options)
       areas_(context),
       leaves_triangles_(context, leaves_stage(context, "swtlas_leaves_triangles", swtlas_leaves_triangles_spirv)),
       leaves_instances_(context, leaves_stage(context, "swtlas_leaves_instances", swtlas_leaves_instances_spirv)),
-      lone_instance_(context, of_width(stage("swtlas_lone_instance", swtlas_lone_instance_spirv, 32), layout_)),
+      lone_instance_(context, of_width(lazy_kernel("swtlas_lone_instance", swtlas_lone_instance_spirv, 32), layout_)),
       morton_(context, build_stage(context, "swtlas_morton", swtlas_morton_spirv)),
-      node_areas_(context, grouped(context, stage("swtlas_node_areas", swtlas_node_areas_spirv), AREA_GROUP)),
+      node_areas_(context, grouped(context, lazy_kernel("swtlas_node_areas", swtlas_node_areas_spirv), AREA_GROUP)),
       duplicate_codes_(context, build_stage(context, "swtlas_duplicate_codes", swtlas_duplicate_codes_spirv)),
-      low_codes_(context, stage("swtlas_low_codes", swtlas_low_codes_spirv)),
-      gather_keys_(context, stage("swtlas_gather_keys", swtlas_gather_keys_spirv)),
+      low_codes_(context, lazy_kernel("swtlas_low_codes", swtlas_low_codes_spirv, BUILD_GROUP)),
+      gather_keys_(context, lazy_kernel("swtlas_gather_keys", swtlas_gather_keys_spirv, BUILD_GROUP)),
       hierarchy_(context, hierarchy_stage(context, options.build_quality)),
-      ploc_(context, grouped(context, stage("swtlas_ploc", swtlas_ploc_spirv), PLOC_GROUP, PLOC_GROUP)),
-      encode_triangles_(context, stage("swtlas_encode_triangles", swtlas_encode_triangles_spirv)),
+      ploc_(context, grouped(context, lazy_kernel("swtlas_ploc", swtlas_ploc_spirv), PLOC_GROUP, PLOC_GROUP)),
+      encode_triangles_(context, lazy_kernel("swtlas_encode_triangles", swtlas_encode_triangles_spirv, BUILD_GROUP)),
       collapse_roots_(context, collapse_stage(COLLAPSE_ROOTS, layout_)),
       collapse_level_(context, collapse_stage(COLLAPSE_LEVEL, layout_)),
       collapse_subtrees_(context, subtrees_stage(context, layout_)),
       encode_records_(context, build_stage(context, "swtlas_encode_records", swtlas_encode_records_spirv)),
-      record_parents_(context, of_width(stage("swtlas_record_parents", swtlas_record_parents_spirv), layout_)),
+      record_parents_(
+          context, of_width(lazy_kernel("swtlas_record_parents", swtlas_record_parents_spirv, BUILD_GROUP), layout_)),
       refit_records_(context,
                      of_width(build_stage(context, "swtlas_refit_records", swtlas_refit_records_spirv), layout_)),
-      lone_leaves_(context, of_width(stage("swtlas_lone_leaves", swtlas_lone_leaves_spirv, 64), layout_)),
-      link_nodes_(context, stage("swtlas_link_nodes", swtlas_link_nodes_spirv)),
-      leaf_edges_(context, stage("swtlas_leaf_edges", swtlas_leaf_edges_spirv)),
-      refit_(context, stage("swtlas_refit", swtlas_refit_spirv)),
-      refit_triangles_(context, stage("swtlas_refit_triangles", swtlas_refit_triangles_spirv)) {}
+      lone_leaves_(context, of_width(lazy_kernel("swtlas_lone_leaves", swtlas_lone_leaves_spirv), layout_)),
+      link_nodes_(context, lazy_kernel("swtlas_link_nodes", swtlas_link_nodes_spirv, BUILD_GROUP)),
+      leaf_edges_(context, lazy_kernel("swtlas_leaf_edges", swtlas_leaf_edges_spirv, BUILD_GROUP)),
+      refit_(context, lazy_kernel("swtlas_refit", swtlas_refit_spirv, BUILD_GROUP)),
+      refit_triangles_(context, lazy_kernel("swtlas_refit_triangles", swtlas_refit_triangles_spirv, BUILD_GROUP)) {}
 
 Builder::Batch Builder::begin(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,
                               const Buffer& scratch) const {
@@ -208,6 +206,43 @@ void Builder::record_60_bit_order(Commands& commands, const BuildPlan& plan, con
     if (plan.tree_bits == 0) return;
     gather(batch.args.tree_of, by_both);
     gather(batch.args.codes, sort(by_both, plan.tree_bits));
+}
+
+// The codes and boxes are no longer needed: indices of leaves replace the codes, lists of items the boxes.
+void Builder::record_collapse(Commands& commands, const BuildPlan& plan, const Batch& batch,
+                              const BuildArgs& args) const {
+    const Uints leaf_indices = batch.args.codes;
+    {
+        const CollapseLists lists = collapse_lists(plan.leaf_count);
+        const auto pass = commands.pass(collapse_level_.name());
+        const auto list = [&](std::uint64_t first) {
+            return Ref<CollapseItem>{args.boxes.address + first * sizeof(CollapseItem)};
+        };
+        const auto level_at = [&](uint level) { return plan.scratch.levels + level * sizeof(CollapseLevel); };
+        const std::uint64_t subtree_level = level_at(plan.collapse_levels + 1);
+        const auto args_at = [&](uint level) {
+            return CollapseArgs{args.trees,
+                                list(lists.level[level % 2]),
+                                list(lists.level[(level + 1) % 2]),
+                                list(lists.subtrees),
+                                list(lists.queues),
+                                {batch.scratch.address() + level_at(level)},
+                                {batch.scratch.address() + subtree_level},
+                                leaf_indices,
+                                static_cast<uint>(plan.first.size()),
+                                level < plan.collapse_levels ? plan.subtree_leaves : NOTHING};
+        };
+        collapse_roots_.dispatch(commands, args_at(0), plan.first.size());
+        for (uint level = 1; level <= plan.collapse_levels; ++level) {
+            commands.barrier();
+            collapse_level_.dispatch_indirect(commands, args_at(level), batch.scratch, level_at(level));
+        }
+        commands.barrier();
+        collapse_subtrees_.dispatch_indirect(commands, args_at(0), batch.scratch, subtree_level);
+    }
+    BuildArgs encode = args;
+    encode.codes = leaf_indices;
+    encode_records_.dispatch_groups(commands, encode, encode.chunk_count);
 }
 
 // Makes a tree in its layout from leaves in the order of their codes.

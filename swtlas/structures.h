@@ -6,19 +6,15 @@
 
 #include "engine/accel/instance_record.h"
 #include "engine/accel/surface_area.h"
-#include "engine/accel/trace_args.h"
+#include "engine/accel/trace_desc.h"
+#include "engine/core/radix_sort.h"
 #include "engine/core/ray.h"
-#include "engine/core/sort_args.h"
 
 namespace twinray {
 using glm::bitCount;
 using glm::findMSB;
 struct BvhChild;
 using BvhChildren = Ref<BvhChild>;
-
-#include "twinray/glsl/cpp_begin.h"
-#include "shaders/shared/short_stack_size.h"
-#include "twinray/glsl/cpp_end.h"
 
 // The slots of a traversal's stack, of the thread that traces.
 inline std::array<uint, STACK_SIZE>& stack_slots() {

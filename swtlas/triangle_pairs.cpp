@@ -166,11 +166,9 @@ class Partners {
         const std::size_t windows = (order.size() + window_size - 1) / window_size;
         parallel_for(
             windows,
-            [&](std::size_t begin, std::size_t end) {
-                for (std::size_t w = begin; w < end; ++w) {
-                    const std::size_t first = w * window_size;
-                    pair_window(order.subspan(first, std::min<std::size_t>(window_size, order.size() - first)));
-                }
+            [&](std::size_t w) {
+                const std::size_t first = w * window_size;
+                pair_window(order.subspan(first, std::min<std::size_t>(window_size, order.size() - first)));
             },
             windows < windows_worth_threads ? 1 : 0);
     }

@@ -41,9 +41,7 @@ Rgb color_of_classes(HitClass software, HitClass hardware) {
 
 Raster by_pixel(const Traced& traced, const std::function<Rgb(std::size_t)>& color) {
     Raster raster(traced.width, traced.height);
-    parallel_for(raster.pixels.size(), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) raster.pixels[i] = color(i);
-    });
+    parallel_for(raster.pixels.size(), [&](std::size_t i) { raster.pixels[i] = color(i); });
     return raster;
 }
 
@@ -244,12 +242,10 @@ Raster Viewer::difference(const Traced& software, const Traced& hardware, uint g
     if (unlike.empty()) return raster;
     const Reference& reference = stage_->reference();
     std::vector<Rgb> colors(unlike.size());
-    parallel_for(unlike.size(), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) {
-            const std::size_t i = unlike[k];
-            colors[k] = color_of_classes(reference.classify(software.rays[i], software.hits[i], TracedBy::software),
-                                         reference.classify(hardware.rays[i], hardware.hits[i], TracedBy::hardware));
-        }
+    parallel_for(unlike.size(), [&](std::size_t k) {
+        const std::size_t i = unlike[k];
+        colors[k] = color_of_classes(reference.classify(software.rays[i], software.hits[i], TracedBy::software),
+                                     reference.classify(hardware.rays[i], hardware.hits[i], TracedBy::hardware));
     });
     for (std::size_t k = 0; k < unlike.size(); ++k) {
         const auto x = static_cast<int>(unlike[k] % software.width), y = static_cast<int>(unlike[k] / software.width);

@@ -45,9 +45,8 @@ Rgb depth_color(const Ray& ray, const Hit& hit, const Bounds& bounds) {
 std::vector<Ray> rays_of(const Orbit& orbit, uint width, uint height) {
     const ImagePlane plane = image_plane(camera_of(orbit), static_cast<float>(width) / static_cast<float>(height));
     std::vector<Ray> rays(std::size_t{width} * height);
-    parallel_for(rays.size(), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            rays[i] = ray_through(plane, in_plane(width, height, uvec2(i % width, i / width)));
+    parallel_for(rays.size(), [&](std::size_t i) {
+        rays[i] = ray_through(plane, in_plane(width, height, uvec2(i % width, i / width)));
     });
     return rays;
 }

@@ -62,9 +62,7 @@ Raster PathPicture::picture(float exposure) const {
     const HdrImage mean = film_.mean();
     Raster raster(mean.width, mean.height);
     const float factor = std::exp2(exposure);
-    parallel_for(raster.pixels.size(), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) raster.pixels[i] = rgb_of_linear(mean.rgb[i] * factor);
-    });
+    parallel_for(raster.pixels.size(), [&](std::size_t i) { raster.pixels[i] = rgb_of_linear(mean.rgb[i] * factor); });
     return raster;
 }
 

@@ -3,6 +3,8 @@
 
 #include "engine/core/error.h"
 #include "engine/core/stopwatch.h"
+#include "engine/core/uploaded.h"
+#include "renderer/moving_scene.h"
 
 namespace twinray::viewer {
 namespace {
@@ -17,28 +19,11 @@ std::string lacking_for(const DeviceProperties& device) {
     return missing.empty() ? "" : missing.front();
 }
 
-// Indexed by mesh: push_scene makes one handle for each that has instances, in their order.
-std::vector<AccelHandle> by_mesh(const Scene& scene, const std::vector<AccelHandle>& handles) {
-    std::vector<AccelHandle> found(scene.meshes.size());
-    std::size_t next = 0;
-    for (std::size_t i = 0; i < scene.instances.size(); ++i)
-        if (i == 0 || scene.instances[i].mesh != scene.instances[i - 1].mesh)
-            found[scene.instances[i].mesh] = handles[next++];
-    return found;
-}
-
 // From device memory, where a transform may be singular: its instance is then not seen.
 Buffer upload_transforms(Context& context, const Scene& scene) {
     std::vector<Transform> transforms;
     for (const Instance& instance : scene.instances) transforms.push_back(instance.transform);
-    Buffer buffer(context, {.name = "viewer transforms", .bytes = transforms.size() * sizeof(Transform)});
-    Commands commands(context, "viewer transforms");
-    {
-        const auto pass = commands.pass("viewer transforms");
-        commands.upload(buffer, std::span<const Transform>(transforms));
-    }
-    commands.submit();
-    return buffer;
+    return uploaded(context, "viewer transforms", std::span<const Transform>(transforms));
 }
 
 void move(AbstractAccel& accel, const Scene& scene, const std::vector<AccelHandle>& handles, const Buffer& transforms) {
@@ -74,10 +59,10 @@ Stage::Stage(Context& context, const std::filesystem::path& file)
 }
 
 void Stage::push() {
-    software_handles_ = by_mesh(scene_, push_scene(software_, scene_));
+    software_handles_ = path_tracer::handles_by_mesh(scene_, push_scene(software_, scene_));
     software_.sync();
     if (hardware_) {
-        hardware_handles_ = by_mesh(scene_, push_scene(*hardware_, scene_));
+        hardware_handles_ = path_tracer::handles_by_mesh(scene_, push_scene(*hardware_, scene_));
         hardware_->sync();
     }
     context_.wait_for_gpu();

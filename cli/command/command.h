@@ -8,6 +8,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace twinray::cli {
@@ -72,6 +73,15 @@ struct Command {
     std::string fault = {};  // "SwTlas shows a fault": ends with exit status 1; empty: there is none to find
     std::function<int()> run = {};
 };
+
+// Command::run of work that ends with exit status 0 unless it throws.
+template <class Work>
+std::function<int()> done_after(Work work) {
+    return [work = std::move(work)] {
+        work();
+        return 0;
+    };
+}
 
 // -h, --help, which each command has.
 const Option& help_option();

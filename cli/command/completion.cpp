@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "cli/command/completion.h"
 
+#include "engine/core/error.h"
+
 namespace twinray::cli {
 namespace {
 
 using Kind = Value::Kind;
-
-std::string joined(const std::vector<std::string>& words, const std::string& separator) {
-    std::string all;
-    for (const std::string& word : words) all += (all.empty() ? "" : separator) + word;
-    return all;
-}
 
 std::vector<std::string> names_of(std::span<const Command> commands) {
     std::vector<std::string> names;

@@ -65,12 +65,6 @@ Value choice_value(std::vector<std::string> names, const std::string& initial,
     return value;
 }
 
-std::string joined_by_commas(const std::vector<std::string>& words) {
-    std::string all;
-    for (const std::string& each : words) all += (all.empty() ? "" : ",") + each;
-    return all;
-}
-
 void take_paths(std::vector<std::filesystem::path>& target, Words words) {
     target.clear();
     for (const std::string& word : words) target.push_back(platform::path_of(word));
@@ -100,7 +94,7 @@ Value word(std::string& target, const std::string& metavar) {
 }
 
 Value words(std::vector<std::string>& target, const std::string& metavar) {
-    Value value = text_value(Value::Kind::word, metavar, joined_by_commas(target),
+    Value value = text_value(Value::Kind::word, metavar, joined(target, ","),
                              [&target](Words given) { target.assign(given.begin(), given.end()); });
     value.is_list = true;
     return value;
@@ -154,7 +148,7 @@ Value choices(std::vector<std::string> names, const std::string& initial,
 }
 
 Value choices(std::vector<std::string>& target, std::vector<std::string> names) {
-    return choices(names, joined_by_commas(target), [&target, names](const std::vector<std::size_t>& chosen) {
+    return choices(names, joined(target, ","), [&target, names](const std::vector<std::size_t>& chosen) {
         target.clear();
         for (const std::size_t index : chosen) target.push_back(names[index]);
     });

@@ -109,14 +109,12 @@ bool fits(const ListedKernel& kernel, const std::string& filter) {
 // Each pipeline goes before its thread compiles the next one.
 std::vector<KernelRow> compile_all(const KernelList& list, const std::string& device, const std::string& filter) {
     std::vector<KernelRow> rows(list.kernels.size());
-    parallel_for(rows.size(), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const ListedKernel& kernel = list.kernels[i];
-            if (!fits(kernel, filter)) continue;
-            const KernelStatistics statistics = compile_for_statistics(*list.context, kernel.desc, kernel.args_bytes);
-            rows[i] = {device,         list.context->properties().driver, kernel.name,
-                       kernel.variant, figures_of(statistics.told),       statistics.subgroup_size};
-        }
+    parallel_for(rows.size(), [&](std::size_t i) {
+        const ListedKernel& kernel = list.kernels[i];
+        if (!fits(kernel, filter)) return;
+        const KernelStatistics statistics = compile_for_statistics(*list.context, kernel.desc, kernel.args_bytes);
+        rows[i] = {device,         list.context->properties().driver, kernel.name,
+                   kernel.variant, figures_of(statistics.told),       statistics.subgroup_size};
     });
     std::erase_if(rows, [](const KernelRow& row) { return row.kernel.empty(); });
     return rows;

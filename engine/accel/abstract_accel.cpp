@@ -8,21 +8,21 @@ namespace twinray {
 AbstractAccel::AbstractAccel(std::unique_ptr<AccelBackend> backend) : backend_(std::move(backend)) {}
 AbstractAccel::~AbstractAccel() = default;
 AccelHandle AbstractAccel::push(const MeshView& mesh, const Transform& transform, const InstanceOptions& options) {
-    return backend_->push(mesh, transform, options);
+    return push(mesh, std::span(&transform, 1), std::span(&options, 1));
 }
 AccelHandle AbstractAccel::push(const MeshView& mesh, std::span<const Transform> transforms,
                                 std::span<const InstanceOptions> options) {
     return backend_->push(mesh, transforms, options);
 }
 AccelHandle AbstractAccel::push(const BoxesView& boxes, const Transform& transform, const InstanceOptions& options) {
-    return backend_->push(boxes, transform, options);
+    return push(boxes, std::span(&transform, 1), std::span(&options, 1));
 }
 AccelHandle AbstractAccel::push(const BoxesView& boxes, std::span<const Transform> transforms,
                                 std::span<const InstanceOptions> options) {
     return backend_->push(boxes, transforms, options);
 }
 AccelHandle AbstractAccel::push(const DeviceMesh& mesh, const Transform& transform, const InstanceOptions& options) {
-    return backend_->push(mesh, transform, options);
+    return push(mesh, std::span(&transform, 1), std::span(&options, 1));
 }
 AccelHandle AbstractAccel::push(const DeviceMesh& mesh, std::span<const Transform> transforms,
                                 std::span<const InstanceOptions> options) {

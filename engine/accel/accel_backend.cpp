@@ -13,6 +13,7 @@
 #include "engine/accel/surface_kernels.h"
 #include "engine/accel/world_bound.h"
 #include "engine/core/error.h"
+#include "engine/scene/mesh.h"
 
 namespace twinray {
 namespace {
@@ -50,22 +51,13 @@ AccelBackend::AccelBackend(Context& context, std::string name, const AccelOption
 
 AccelBackend::~AccelBackend() = default;
 
-AccelHandle AccelBackend::push(const MeshView& mesh, const Transform& transform, const InstanceOptions& options) {
-    return push(mesh, std::span(&transform, 1), std::span(&options, 1));
-}
 AccelHandle AccelBackend::push(const MeshView& mesh, std::span<const Transform> transforms,
                                std::span<const InstanceOptions> options) {
     return place(geometry_of(mesh), surface_of(mesh), transforms, options);
 }
-AccelHandle AccelBackend::push(const BoxesView& boxes, const Transform& transform, const InstanceOptions& options) {
-    return push(boxes, std::span(&transform, 1), std::span(&options, 1));
-}
 AccelHandle AccelBackend::push(const BoxesView& boxes, std::span<const Transform> transforms,
                                std::span<const InstanceOptions> options) {
     return place(Geometry(boxes), {}, transforms, options);
-}
-AccelHandle AccelBackend::push(const DeviceMesh& mesh, const Transform& transform, const InstanceOptions& options) {
-    return push(mesh, std::span(&transform, 1), std::span(&options, 1));
 }
 AccelHandle AccelBackend::push(const DeviceMesh& mesh, std::span<const Transform> transforms,
                                std::span<const InstanceOptions> options) {

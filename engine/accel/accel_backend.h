@@ -12,8 +12,8 @@
 
 #include <twinray/abstract_accel.h>
 
+#include "engine/accel/geometry.h"
 #include "engine/accel/instance_array.h"
-#include "engine/accel/packed_mesh.h"
 #include "engine/accel/surface_area.h"
 #include "engine/core/commands.h"
 
@@ -21,7 +21,6 @@ namespace twinray {
 
 struct AccelTraits;
 class BoundOfSync;
-struct Geometry;
 class PipelineVariants;
 class RaySort;
 class Refinement;
@@ -38,13 +37,10 @@ class AccelBackend {
     virtual ~AccelBackend();
     AccelBackend(const AccelBackend&) = delete;
     AccelBackend& operator=(const AccelBackend&) = delete;
-    AccelHandle push(const MeshView& mesh, const Transform& transform = {}, const InstanceOptions& options = {});
     AccelHandle push(const MeshView& mesh, std::span<const Transform> transforms,
                      std::span<const InstanceOptions> options = {});
-    AccelHandle push(const BoxesView& boxes, const Transform& transform = {}, const InstanceOptions& options = {});
     AccelHandle push(const BoxesView& boxes, std::span<const Transform> transforms,
                      std::span<const InstanceOptions> options = {});
-    AccelHandle push(const DeviceMesh& mesh, const Transform& transform = {}, const InstanceOptions& options = {});
     AccelHandle push(const DeviceMesh& mesh, std::span<const Transform> transforms,
                      std::span<const InstanceOptions> options = {});
     AccelHandle push_instances_of(AccelHandle handle, std::span<const Transform> transforms,

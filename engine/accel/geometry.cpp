@@ -6,6 +6,7 @@
 
 #include "engine/accel/mesh_gather.h"
 #include "engine/core/error.h"
+#include "engine/scene/mesh.h"
 
 namespace twinray {
 namespace {

@@ -7,16 +7,22 @@
 #include <vector>
 
 #include <twinray/device_mesh.h>
+#include <twinray/geometry.h>
 #include <twinray/trace.h>
 
 #include "engine/accel/instance_record.h"
-#include "engine/scene/mesh.h"
 
 namespace twinray {
 
 #include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/leaf.h"
 #include "twinray/glsl/cpp_end.h"
+
+// A mesh in device memory: 3 floats per vertex, 3 indices per triangle. Null: it is only on the host.
+struct PackedMesh {
+    Floats positions;
+    Uints indices;
+};
 
 // A mesh with other vertices and the same triangles.
 struct Welded {

@@ -62,9 +62,7 @@ void InstanceSlice::append(std::span<const InstanceRecord> more) {
 
 InstanceArray::InstanceArray(Context& context)
     : context_(context),
-      copy_transforms_(
-          context,
-          {.name = "engine_copy_transforms", .spirv = engine_copy_transforms_spirv, .compiles_when_used = true}) {}
+      copy_transforms_(context, lazy_kernel("engine_copy_transforms", engine_copy_transforms_spirv)) {}
 
 bool InstanceArray::must_replace(const Staged& staged, std::span<InstanceSlice* const> slices) const {
     if (capacity_for(staged.count, capacity()) != capacity()) return true;

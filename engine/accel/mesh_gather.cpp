@@ -57,8 +57,7 @@ bool is_packed(const DeviceMesh& mesh) {
 }
 
 MeshGather::MeshGather(Context& context)
-    : context_(context),
-      kernel_(context, {.name = "engine_gather_mesh", .spirv = engine_gather_mesh_spirv, .compiles_when_used = true}) {}
+    : context_(context), kernel_(context, lazy_kernel("engine_gather_mesh", engine_gather_mesh_spirv)) {}
 
 MeshGather::Faults MeshGather::record(Commands& commands, std::span<const Item> items) const {
     Faults faults;

@@ -9,7 +9,7 @@
 
 #include <twinray/device_mesh.h>
 
-#include "engine/accel/packed_mesh.h"
+#include "engine/accel/geometry.h"
 #include "engine/core/kernel.h"
 
 namespace twinray {

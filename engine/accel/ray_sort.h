@@ -2,7 +2,7 @@
 // The order of rays for C++, and its computation on the GPU.
 #pragma once
 
-#include "engine/accel/trace_args.h"
+#include "engine/accel/trace_desc.h"
 #include "engine/accel/world_bound.h"
 #include "engine/core/radix_sort.h"
 

@@ -11,11 +11,8 @@ namespace twinray {
 
 Refinement::Refinement(Context& context)
     : context_(context),
-      gather_(context, {.name = "engine_refine_gather",
-                        .spirv = engine_refine_gather_spirv,
-                        .group_size = 256,
-                        .compiles_when_used = true}),
-      exact_hits_(context, {.name = "engine_exact_hits", .spirv = engine_exact_hits_spirv, .compiles_when_used = true}),
+      gather_(context, lazy_kernel("engine_refine_gather", engine_refine_gather_spirv, 256)),
+      exact_hits_(context, lazy_kernel("engine_exact_hits", engine_exact_hits_spirv)),
       scene_(context, {.name = "refinement", .bytes = sizeof(RefineScene)}) {}
 
 std::optional<Buffer> Refinement::stage(Commands& commands, Ref<InstanceRecord> records, std::size_t count,

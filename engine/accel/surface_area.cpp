@@ -40,10 +40,7 @@ std::optional<TreeCost> CostLog::newest(const Context& context) const {
 }
 
 SurfaceArea::SurfaceArea(Context& context)
-    : join_(context, {.name = "engine_join_areas",
-                      .spirv = engine_join_areas_spirv,
-                      .group_size = AREA_GROUP,
-                      .compiles_when_used = true}) {}
+    : join_(context, lazy_kernel("engine_join_areas", engine_join_areas_spirv, AREA_GROUP)) {}
 
 std::uint64_t AreaWork::bytes() const { return (item_count + groups_of(item_count)) * sizeof(AreaItem); }
 

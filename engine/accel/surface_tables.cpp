@@ -175,7 +175,7 @@ SurfaceSlice surface_slice(const DeviceMesh& mesh, AttributeNames& names) {
 
 SurfaceTables::SurfaceTables(Context& context)
     : context_(context),
-      copy_words_(context, {.name = "engine_copy_words", .spirv = engine_copy_words_spirv, .compiles_when_used = true}),
+      copy_words_(context, lazy_kernel("engine_copy_words", engine_copy_words_spirv)),
       table_(context, {.name = "surface table", .bytes = sizeof(SurfaceTable)}) {}
 
 // Returns where its arrays are.

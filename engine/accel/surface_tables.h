@@ -12,7 +12,7 @@
 
 #include <twinray/device_mesh.h>
 
-#include "engine/core/buffer.h"
+#include "engine/core/commands.h"
 #include "engine/core/kernel.h"
 #include "twinray/glsl/cpp_spawn.h"
 

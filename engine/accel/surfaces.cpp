@@ -17,9 +17,8 @@
 namespace twinray {
 
 SurfaceKernels::SurfaceKernels(Context& context)
-    : surfaces(context, {.name = "engine_surfaces", .spirv = engine_surfaces_spirv, .compiles_when_used = true}),
-      interpolate(context,
-                  {.name = "engine_interpolate", .spirv = engine_interpolate_spirv, .compiles_when_used = true}) {}
+    : surfaces(context, lazy_kernel("engine_surfaces", engine_surfaces_spirv)),
+      interpolate(context, lazy_kernel("engine_interpolate", engine_interpolate_spirv)) {}
 
 const AccelBackend::InstanceOwners& AccelBackend::instance_owners(const char* action) const {
     check_synced(action);

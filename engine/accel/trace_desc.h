@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: MIT
-// The arguments that kernels get from a TraceDesc.
+// TraceArgs, the features and the levels for C++, and what kernels get from a TraceDesc.
 #pragma once
 
 #include <twinray/trace.h>
 
-#include "engine/accel/trace_args.h"
+#include "engine/core/ray.h"
 
 namespace twinray {
+#include "twinray/glsl/cpp_begin.h"
+#include "shaders/shared/trace.h"
+#include "twinray/glsl/cpp_end.h"
+
+static_assert(sizeof(TraceArgs) == 64);
 
 // Returns whether trees consist of records (shaders/shared/compressed.h).
 constexpr bool has_records(Layout layout) { return layout != Layout::bvh2; }

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "engine/core/device_list.h"
+#include "engine/scene/mesh.h"
 #include "engine_copy_floats.spv.h"
 
 namespace twinray {
@@ -33,8 +34,7 @@ MeshGather::Item gather_item(const Geometry& geometry, const PackedMesh& target)
 VertexArrays::VertexArrays(Context& context)
     : context_(context),
       gather_(context),
-      copy_floats_(context,
-                   {.name = "engine_copy_floats", .spirv = engine_copy_floats_spirv, .compiles_when_used = true}) {}
+      copy_floats_(context, lazy_kernel("engine_copy_floats", engine_copy_floats_spirv)) {}
 
 VertexArrays::Staged VertexArrays::stage(Commands& commands, std::vector<Item> items) const {
     Staged staged;

@@ -9,10 +9,7 @@
 namespace twinray {
 
 WorldBoundKernel::WorldBoundKernel(Context& context)
-    : kernel_(context, {.name = "engine_world_bound",
-                        .spirv = engine_world_bound_spirv,
-                        .group_size = WORLD_BOUND_GROUP,
-                        .compiles_when_used = true}),
+    : kernel_(context, lazy_kernel("engine_world_bound", engine_world_bound_spirv, WORLD_BOUND_GROUP)),
       result_(context, {.name = "world bound", .bytes = sizeof(WorldBound)}),
       bits_(context, {.name = "world bound bits", .bytes = sizeof(WorldBoundBits)}),
       readback_(context, {.name = "world bound readback", .bytes = sizeof(WorldBound), .memory = Memory::readback}) {}

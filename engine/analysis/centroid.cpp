@@ -57,12 +57,10 @@ Sums sum_of(Points points, dvec3 center) {
 // Returns one for each run of rays_of_sum rays; these are added up in order, so that no thread influences a bit.
 std::vector<Sums> sums_of(const Scene& scene, std::span<const Hit> hits, dvec3 center, Points points) {
     std::vector<Sums> sums((hits.size() + rays_of_sum - 1) / rays_of_sum);
-    parallel_for(sums.size(), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t run = begin; run < end; ++run) {
-            const std::size_t first = run * rays_of_sum, count = std::min(rays_of_sum, hits.size() - first);
-            for (std::size_t i = first; i < first + count; ++i) points[i] = point_of(scene, hits[i]);
-            sums[run] = sum_of(points.subspan(first, count), center);
-        }
+    parallel_for(sums.size(), [&](std::size_t run) {
+        const std::size_t first = run * rays_of_sum, count = std::min(rays_of_sum, hits.size() - first);
+        for (std::size_t i = first; i < first + count; ++i) points[i] = point_of(scene, hits[i]);
+        sums[run] = sum_of(points.subspan(first, count), center);
     });
     return sums;
 }

@@ -9,8 +9,8 @@
 #include "engine/core/commands.h"
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
+#include "engine/core/ray.h"
 #include "engine/scene/bytes.h"
-#include "engine/core/triangle.h"
 
 namespace twinray {
 namespace {
@@ -71,14 +71,12 @@ void upload_instances(Context& context, Commands& commands, const Scene& scene, 
 
 std::vector<double> areas_of_faces(const Scene& scene, std::span<const Face> faces) {
     std::vector<double> areas(faces.size());
-    parallel_for(faces.size(), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t face = begin; face < end; ++face) {
-            areas[face] = length(area_vector(scene, faces[face]));
-            const double largest = areas[face] > 0 ? largest_coordinate_of(scene, faces[face]) : 0;
-            if (!(largest <= Faces::State::largest_coordinate))
-                fail("faces: triangle ", faces[face].primitive, " of instance ", faces[face].instance,
-                     " has a coordinate of ", largest, " in world space; at most 2^124, about 2.1e37");
-        }
+    parallel_for(faces.size(), [&](std::size_t face) {
+        areas[face] = length(area_vector(scene, faces[face]));
+        const double largest = areas[face] > 0 ? largest_coordinate_of(scene, faces[face]) : 0;
+        if (!(largest <= Faces::State::largest_coordinate))
+            fail("faces: triangle ", faces[face].primitive, " of instance ", faces[face].instance,
+                 " has a coordinate of ", largest, " in world space; at most 2^124, about 2.1e37");
     });
     return areas;
 }

@@ -8,7 +8,7 @@
 
 #include <twinray/abstract_accel.h>
 #include "twinray/glsl/cpp_spawn.h"
-#include "engine/core/buffer.h"
+#include "engine/core/commands.h"
 
 namespace twinray {
 #include "twinray/glsl/cpp_begin.h"

@@ -14,11 +14,9 @@ std::vector<double> unobstructed_areas(const Scene& scene, const Faces& faces, c
     std::vector<double> areas(faces.count());
     if (plan.ray_count == 0) return areas;
     const dvec3 along = normalize(dvec3(plan.grid.direction));
-    parallel_for(areas.size(), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t face = begin; face < end; ++face) {
-            const double towards = -dot(area_vector(scene, faces[face]), along);
-            areas[face] = sides == Sides::both ? std::abs(towards) : std::max(towards, 0.0);
-        }
+    parallel_for(areas.size(), [&](std::size_t face) {
+        const double towards = -dot(area_vector(scene, faces[face]), along);
+        areas[face] = sides == Sides::both ? std::abs(towards) : std::max(towards, 0.0);
     });
     return areas;
 }

@@ -257,9 +257,7 @@ PairPlan plan_pairs(const FacePolygons& polygons, std::span<const std::vector<ui
     constexpr std::size_t batch = 64;  // groups between two calls of `progress`
     for (std::size_t first = 0; first < rows.size(); first += batch) {
         const std::size_t count = std::min(batch, rows.size() - first);
-        parallel_for(count, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = first + begin; i < first + end; ++i) rows[i] = planner.row(static_cast<uint>(i));
-        });
+        parallel_for(count, [&](std::size_t i) { rows[first + i] = planner.row(static_cast<uint>(first + i)); });
         if (progress) progress(count);
     }
     PairPlan plan;

@@ -36,11 +36,9 @@ void add_position(std::vector<HoursOfFace>& sums, std::span<const GroupCount> co
 void add_possible(std::vector<HoursOfFace>& sums, const Scene& scene, const Faces& faces, const SunPosition& position,
                   Sides sides) {
     const dvec3 towards = -unit_direction(position.direction);
-    parallel_for(sums.size(), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t face = begin; face < end; ++face) {
-            const double turned = dot(area_vector(scene, faces[face]), towards);
-            if (sides == Sides::both ? turned != 0 : turned > 0) sums[face].possible += position.hours;
-        }
+    parallel_for(sums.size(), [&](std::size_t face) {
+        const double turned = dot(area_vector(scene, faces[face]), towards);
+        if (sides == Sides::both ? turned != 0 : turned > 0) sums[face].possible += position.hours;
     });
 }
 

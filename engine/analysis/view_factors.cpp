@@ -12,6 +12,7 @@
 #include "engine/core/kernel.h"
 #include "engine/core/pace.h"
 #include "engine/core/parallel.h"
+#include "engine/core/uploaded.h"
 
 namespace twinray {
 namespace {
@@ -89,14 +90,7 @@ std::vector<std::vector<ViewFactor>> factors_of(std::span<const KnownExchange> k
 Buffer groups_on_device(Context& context, const Faces& faces, FaceGrouping grouping) {
     if (grouping == FaceGrouping::face) return {};
     const std::vector<uint> groups = faces.groups(grouping);
-    Buffer buffer(context, {.name = "groups of faces", .bytes = groups.size() * sizeof(uint)});
-    Commands commands(context, "groups of faces");
-    {
-        const auto pass = commands.pass("groups of faces");
-        commands.upload(buffer, std::span<const uint>(groups));
-    }
-    commands.submit();
-    return buffer;
+    return uploaded(context, "groups of faces", std::span<const uint>(groups));
 }
 
 }  // namespace
@@ -218,9 +212,7 @@ void ViewFactors::State::trace(std::vector<Row*>& rows) {
         std::vector<Row*> touched;
         for (const Owner& owner : owners)
             if (touched.empty() || touched.back() != owner.row) touched.push_back(owner.row);
-        parallel_for(touched.size(), [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) touched[i]->sums.settle();
-        });
+        parallel_for(touched.size(), [&](std::size_t i) { touched[i]->sums.settle(); });
         batch.clear();
         owners.clear();
     };

@@ -8,6 +8,7 @@
 #include "analysis_visible_rays.spv.h"
 #include "engine/core/error.h"
 #include "engine/core/kernel.h"
+#include "engine/core/uploaded.h"
 
 namespace twinray {
 #include "twinray/glsl/cpp_begin.h"
@@ -34,8 +35,6 @@ class Tiles {
     std::size_t points_of_tile() const { return rays_.bytes() / sizeof(Ray) / directions_; }
 
   private:
-    Buffer uploaded(const char* name, std::span<const vec3> rows);
-
     AbstractAccel& accel_;
     std::size_t directions_;
     Kernel<VisibleArgs> make_rays_, tell_;
@@ -50,9 +49,9 @@ Tiles::Tiles(AbstractAccel& accel, std::span<const vec3> points, std::span<const
       directions_(directions.size()),
       make_rays_(accel.context(), {.name = "analysis_visible_rays", .spirv = analysis_visible_rays_spirv}),
       tell_(accel.context(), {.name = "analysis_visible_answers", .spirv = analysis_visible_answers_spirv}),
-      points_(uploaded("points", points)),
-      vectors_(uploaded("directions", directions)),
-      normals_(uploaded("normals of points", normals)),
+      points_(uploaded(accel.context(), "points", points)),
+      vectors_(uploaded(accel.context(), "directions", directions)),
+      normals_(uploaded(accel.context(), "normals of points", normals)),
       t_near_(desc.t_near),
       t_far_(desc.t_far),
       reach_(normals.empty() ? 0 : reach_of(accel.world_bound())),
@@ -62,18 +61,6 @@ Tiles::Tiles(AbstractAccel& accel, std::span<const vec3> points, std::span<const
     rays_ = Buffer(accel.context(), {.name = "rays of points", .bytes = rays * sizeof(Ray)});
     hits_ = Buffer(accel.context(), {.name = "hits of points", .bytes = rays * sizeof(Hit)});
     answers_ = Buffer(accel.context(), {.name = "what points see", .bytes = (rays + 3) / 4 * sizeof(uint)});
-}
-
-Buffer Tiles::uploaded(const char* name, std::span<const vec3> rows) {
-    Buffer buffer(accel_.context(), {.name = name, .bytes = rows.size_bytes()});
-    if (rows.empty()) return buffer;
-    Commands commands(accel_.context(), name);
-    {
-        const auto pass = commands.pass(name);
-        commands.upload(buffer, rows);
-    }
-    commands.submit();
-    return buffer;
 }
 
 void Tiles::find(std::size_t first, std::size_t count, std::uint8_t* answers) {

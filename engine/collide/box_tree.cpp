@@ -16,10 +16,6 @@ namespace {
 
 constexpr uint code_bits = 30;
 
-Uints column(const Buffer& scratch, std::uint64_t count, std::uint64_t index) {
-    return scratch.ref<uint>(index * count * sizeof(uint));
-}
-
 }  // namespace
 
 HilbertOrder::HilbertOrder(Context& context)
@@ -30,8 +26,7 @@ HilbertOrder::HilbertOrder(Context& context)
       bits_(context, {.name = "collide centers", .bytes = sizeof(WorldBoundBits)}) {}
 
 void HilbertOrder::prepare(std::size_t count) {
-    grow(context_, scratch_, "collide sort",
-         4 * count * sizeof(uint) + RadixSort::counter_bytes(count, context_.state().tuning()));
+    grow(context_, scratch_, "collide sort", RadixSort::Scratch{0, count}.bytes(context_.state().tuning()));
 }
 
 // Two stable sorts make the order by 60 bits.
@@ -50,18 +45,17 @@ Uints HilbertOrder::record(Commands& commands, Ref<TreeBox> boxes, uint count) c
                           .is_coarse = 0,
                           .reserved = 0};
     centers_.dispatch_groups(commands, args, args.group_count);
-    RadixSort::Pairs pairs{column(scratch_, count, 0), column(scratch_, count, 1)};
-    RadixSort::Pairs spare{column(scratch_, count, 2), column(scratch_, count, 3)};
-    const Uints counters = column(scratch_, count, 4);
+    const RadixSort::Scratch scratch{scratch_.address(), count};
+    RadixSort::Pairs pairs = scratch.pairs(), spare = scratch.spare();
     args.keys = pairs.keys;
     codes_.dispatch(commands, args, count);
-    const RadixSort::Pairs fine = sort_.record_iota(commands, pairs.keys, pairs, spare, counters, count, code_bits);
+    const RadixSort::Pairs fine = sort_.record_iota(commands, scratch, code_bits);
     if (fine.values.address != pairs.values.address) std::swap(pairs, spare);
     args.is_coarse = 1;
     args.keys = pairs.keys;
     args.order = pairs.values;
     codes_.dispatch(commands, args, count);
-    return sort_.record(commands, pairs, spare, counters, count, code_bits).values;
+    return sort_.record(commands, pairs, spare, scratch.counters(), count, code_bits).values;
 }
 
 BoxTree::BoxTree(Context& context)

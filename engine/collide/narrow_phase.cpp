@@ -10,7 +10,6 @@
 #include "engine/core/stopwatch.h"
 
 namespace twinray {
-namespace {}  // namespace
 
 std::size_t Contacts::count(PairClass pair_class) const {
     return static_cast<std::size_t>(std::count_if(

@@ -49,8 +49,7 @@ std::vector<ClassifiedPair> PairClassifier::classify(const DevicePairs& pairs, c
 }
 
 std::uint64_t PairClassifier::run(const DevicePairs& pairs, std::uint64_t begin, uint count, const Items& items) {
-    if (contacts_.bytes() < count * sizeof(PairContact))
-        contacts_ = Buffer(context_, {.name = "collide contacts", .bytes = count * sizeof(PairContact)});
+    grow(context_, contacts_, "collide contacts", count * sizeof(PairContact));
     Commands commands(context_, "collide classify");
     {
         const auto pass = commands.pass("collide classify start");

@@ -33,11 +33,7 @@ RadixSort::Pairs PairSearch::columns(const Buffer& buffer, std::uint64_t count) 
     return {buffer.ref<uint>(), buffer.ref<uint>(count * sizeof(uint))};
 }
 
-void PairSearch::reserve(std::uint64_t count) {
-    if (capacity() >= count) return;
-    pairs_ = {};  // both at once might not fit
-    pairs_ = Buffer(context_, {.name = "collide pairs", .bytes = count * 2 * sizeof(uint)});
-}
+void PairSearch::reserve(std::uint64_t count) { grow(context_, pairs_, "collide pairs", count * 2 * sizeof(uint)); }
 
 std::uint64_t PairSearch::run(const Query& query, std::uint64_t capacity, uint flags) {
     const bool is_within = query.boxes.address == 0;
@@ -96,13 +92,8 @@ DevicePairs PairSearch::find(const Query& query, const std::string& action) {
 DevicePairs PairSearch::find_sorted(const Query& query, uint largest_item, const std::string& action) {
     const DevicePairs found = find(query, action);
     if (found.count < 2) return found;
-    if (spare_.bytes() < found.count * 2 * sizeof(uint)) {
-        spare_ = {};
-        spare_ = Buffer(context_, {.name = "collide pairs sorting", .bytes = found.count * 2 * sizeof(uint)});
-    }
-    const std::uint64_t counter_bytes = RadixSort::counter_bytes(found.count, context_.state().tuning());
-    if (counters_.bytes() < counter_bytes)
-        counters_ = Buffer(context_, {.name = "collide counters", .bytes = counter_bytes});
+    grow(context_, spare_, "collide pairs sorting", found.count * 2 * sizeof(uint));
+    grow(context_, counters_, "collide counters", RadixSort::counter_bytes(found.count, context_.state().tuning()));
     const auto bits = static_cast<uint>(std::bit_width(largest_item));
     Commands commands(context_, "collide sort");
     // The sort is stable: it sorts by the second items, then by the first ones.

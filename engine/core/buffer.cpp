@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/core/buffer.h"
+#include "engine/core/commands.h"
 
 #include <utility>
 

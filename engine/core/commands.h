@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: MIT
-// The command buffers that Commands consists of.
+// The command buffers that Commands consists of, and the alignment that the library itself uses for buffers.
 #pragma once
 
-#include "engine/core/buffer.h"
+#include <twinray/commands.h>
+
+#include "engine/core/context.h"
+#include "twinray/glsl/cpp.h"
 
 namespace twinray {
+
+// The alignment of data that is read a whole line at a time, on all CPUs that matter and most GPUs.
+inline constexpr std::uint64_t cache_line_bytes = 64;
 
 struct Commands::State {
     struct Part {

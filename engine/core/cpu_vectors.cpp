@@ -1,9 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "engine/core/cpu_vectors.h"
 
+#include <algorithm>
 #include <cstdlib>
+#include <thread>
 
 namespace twinray {
+
+unsigned count_cpu_threads() {
+    const char* text = std::getenv("LP_NUM_THREADS");
+    const long wanted = text ? std::strtol(text, nullptr, 10) : 0;
+    if (wanted > 0) return static_cast<unsigned>(std::min(wanted, 1024L));
+    return std::max(1u, std::thread::hardware_concurrency());
+}
 
 bool has_512_bit_vectors() {
 #if defined(__x86_64__)

@@ -6,6 +6,10 @@
 
 namespace twinray {
 
+// Returns the number of threads on which a CPU driver runs groups: LP_NUM_THREADS (of Mesa) if that is a number above
+// 0, else one per core.
+unsigned count_cpu_threads();
+
 // Returns whether this is a CPU with AVX-512 (F, BW, DQ, VL) that the system lets programs use.
 bool has_512_bit_vectors();
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "engine/core/cpu_threads.h"
+#include "engine/core/cpu_vectors.h"
 #include "engine/core/error.h"
 #include "engine/core/platform.h"
 #include "engine/core/requirement.h"

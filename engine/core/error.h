@@ -19,9 +19,9 @@ std::string text(const Parts&... parts) {
 }
 
 // "a, b, c".
-inline std::string joined(const std::vector<std::string>& parts) {
+inline std::string joined(const std::vector<std::string>& parts, const std::string& separator = ", ") {
     std::string all;
-    for (const std::string& part : parts) all += (all.empty() ? "" : ", ") + part;
+    for (const std::string& part : parts) all += (all.empty() ? "" : separator) + part;
     return all;
 }
 

@@ -4,7 +4,7 @@
 
 #include <cstring>
 
-#include "engine/core/buffer.h"
+#include "engine/core/commands.h"
 
 namespace twinray {
 #include "twinray/glsl/cpp_begin.h"

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "engine/core/frozen_spirv.h"
+#include "engine/core/spirv_words.h"
 
 #include <map>
 #include <set>
-
-#include "engine/core/spirv_words.h"
 
 namespace twinray {
 namespace {

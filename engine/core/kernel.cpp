@@ -5,9 +5,7 @@
 #include <optional>
 
 #include "engine/core/error.h"
-#include "engine/core/frozen_spirv.h"
 #include "engine/core/kernel_addresses.h"
-#include "engine/core/pruned_spirv.h"
 #include "engine/core/spirv_words.h"
 #include "engine/core/vulkan.h"
 

@@ -16,4 +16,9 @@ VkShaderModule create_shader_module(Context& context, std::span<const std::uint3
 VkPipelineLayout create_push_constant_layout(Context& context, VkShaderStageFlags stages, std::uint32_t bytes,
                                              VkDescriptorSetLayout images = VK_NULL_HANDLE);
 
+// Describes a kernel that its first dispatch compiles.
+inline KernelDesc lazy_kernel(const char* name, std::span<const std::uint32_t> spirv, std::uint32_t group_size = 64) {
+    return {.name = name, .spirv = spirv, .group_size = group_size, .compiles_when_used = true};
+}
+
 }  // namespace twinray

@@ -8,7 +8,7 @@
 
 #include <twinray/context.h>
 #include "engine/core/error.h"
-#include "engine/core/sort_args.h"
+#include "engine/core/radix_sort.h"
 
 namespace twinray {
 namespace {

@@ -8,15 +8,17 @@
 #include <exception>
 #include <mutex>
 #include <thread>
+#include <type_traits>
 #include <vector>
 
 #include "engine/core/interruption.h"
 
 namespace twinray {
 
-// Calls body(begin, end) for disjoint ranges that cover [0, count), on `threads` threads (0: one per core). Ranges are
-// handed out in any order, so a body must write only within its range: results then do not depend on the thread count.
-// If bodies throw, the exception of the first range that fails is thrown here, after all threads have ended.
+// Calls body(begin, end) for disjoint ranges that cover [0, count), or body(i) for each i of them where the body takes
+// one number, on `threads` threads (0: one per core). Ranges are handed out in any order, so a body must write only
+// within its range: results then do not depend on the thread count. If bodies throw, the exception of the first range
+// that fails is thrown here, after all threads have ended.
 template <class Body>
 void parallel_for(std::size_t count, const Body& body, unsigned threads = 0) {
     if (count == 0) return;
@@ -30,8 +32,14 @@ void parallel_for(std::size_t count, const Body& body, unsigned threads = 0) {
     const auto work = [&] {
         std::size_t begin = 0;
         try {
-            for (begin = next.fetch_add(grain); begin < count; begin = next.fetch_add(grain))
-                body(begin, std::min(begin + grain, count)), look_for_interruption();
+            for (begin = next.fetch_add(grain); begin < count; begin = next.fetch_add(grain)) {
+                const std::size_t end = std::min(begin + grain, count);
+                if constexpr (std::is_invocable_v<const Body&, std::size_t, std::size_t>)
+                    body(begin, end);
+                else
+                    for (std::size_t i = begin; i < end; ++i) body(i);
+                look_for_interruption();
+            }
         } catch (...) {
             next = count;  // the other threads stop at their next range; all before this one have been begun
             const std::lock_guard lock(failure_mutex);

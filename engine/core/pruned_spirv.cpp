@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "engine/core/pruned_spirv.h"
+#include "engine/core/spirv_words.h"
 
 #include <algorithm>
 #include <numeric>
 #include <optional>
 #include <string_view>
-
-#include "engine/core/spirv_words.h"
 
 namespace twinray {
 namespace {

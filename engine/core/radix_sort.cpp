@@ -93,6 +93,11 @@ RadixSort::Pairs RadixSort::record_iota(Commands& commands, Uints keys, Pairs pa
                          if_counts);
 }
 
+RadixSort::Pairs RadixSort::record_iota(Commands& commands, const Scratch& scratch, std::uint32_t bits) const {
+    return record_iota(commands, scratch.pairs().keys, scratch.pairs(), scratch.spare(), scratch.counters(),
+                       static_cast<std::uint32_t>(scratch.count), bits);
+}
+
 RadixSort::Pairs RadixSort::record_passes(Commands& commands, const Kernel<SortArgs>& first_scatter, Uints keys,
                                           Pairs pairs, Pairs spare, Uints counters, std::uint32_t count,
                                           std::uint32_t bits, const Counts* if_counts) const {

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
-// A radix sort of pairs of words.
+// A radix sort of pairs of words, and its kernels' arguments for C++.
 #pragma once
 
 #include "engine/core/kernel.h"
 #include "engine/core/kernel_tuning.h"
-#include "engine/core/sort_args.h"
 
 namespace twinray {
+#include "twinray/glsl/cpp_begin.h"
+#include "shaders/shared/sort.h"
+#include "twinray/glsl/cpp_end.h"
 
 constexpr std::uint32_t morton_bits = 30;  // of keys that shaders/shared/morton.h makes
 
@@ -27,6 +29,22 @@ class RadixSort {
         return counter_bytes(count, tuning.sort_threads);
     }
 
+    // Memory of a sort, from `address` on: keys and values twice, then the counters.
+    struct Scratch {
+        std::uint64_t address;
+        std::uint64_t count;
+        std::uint64_t alignment = sizeof(uint);  // of each part
+
+        std::uint64_t part_bytes() const { return (count * sizeof(uint) + alignment - 1) / alignment * alignment; }
+        std::uint64_t bytes(const KernelTuning& tuning) const {
+            return 4 * part_bytes() + counter_bytes(count, tuning);
+        }
+        Uints part(std::uint64_t i) const { return {address + i * part_bytes()}; }
+        Pairs pairs() const { return {part(0), part(1)}; }
+        Pairs spare() const { return {part(2), part(3)}; }
+        Uints counters() const { return part(4); }
+    };
+
     // Sorts `pairs` by keys that differ only in their lowest `bits` bits, using `spare` as the other half of the
     // ping-pong; returns the one of the two that holds the result. `if_counts`: dispatches as many groups as it says,
     // see below.
@@ -41,6 +59,8 @@ class RadixSort {
     // unless they are those of `pairs`; they must not be those of `spare`. At least one bit.
     Pairs record_iota(Commands& commands, Uints keys, Pairs pairs, Pairs spare, Uints counters, std::uint32_t count,
                       std::uint32_t bits, const Counts* if_counts = nullptr) const;
+    // The same for keys in the first part of `scratch`.
+    Pairs record_iota(Commands& commands, const Scratch& scratch, std::uint32_t bits) const;
     uint sort_groups(std::uint64_t count) const { return groups_of(count, threads_); }
 
     // The number of items that an invocation sorts: few, so that there are many groups; with `threads`, so many that

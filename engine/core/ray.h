@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Ray and Hit for C++.
+// Ray, Hit and which triangles can be hit, for C++.
 #pragma once
 
 #include <cmath>
@@ -9,6 +9,7 @@
 namespace twinray {
 #include "twinray/glsl/cpp_begin.h"
 #include "twinray/glsl/rays.h"
+#include "twinray/glsl/triangle.h"
 #include "twinray/glsl/cpp_end.h"
 
 static_assert(sizeof(Ray) == 32 && sizeof(Hit) == 32);

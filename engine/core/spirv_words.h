@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
-// The words of a SPIR-V module, with the numbers of its specification.
+// The words of a SPIR-V module, with the numbers of its specification, and what is made of a module for one pipeline.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
+
+#include <twinray/commands.h>
 
 namespace twinray::spirv {
 
@@ -138,3 +141,16 @@ constexpr bool is_module(Words words) {
 }
 
 }  // namespace twinray::spirv
+
+namespace twinray {
+
+// Returns the module with these values, and its own defaults, in place of its specialisation constants and of
+// expressions that depend only on them.
+std::vector<std::uint32_t> freeze_constants(std::span<const std::uint32_t> spirv,
+                                            std::span<const SpecializationConstant> constants);
+
+// Returns the module without the blocks that no invocation can reach, by conditions that are constants, and without
+// functions that are then not called. A module with debug information that names code is returned unchanged.
+std::vector<std::uint32_t> prune_branches(std::span<const std::uint32_t> spirv);
+
+}  // namespace twinray

@@ -7,6 +7,7 @@
 #include <twinray/scene.h>
 
 #include "engine/core/error.h"
+#include "engine/scene/mesh.h"
 #include "engine/scene/rig.h"
 #include "twinray/glsl/vector_math.h"
 

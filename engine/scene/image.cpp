@@ -15,8 +15,7 @@
 
 #include "engine/core/error.h"
 #include "engine/scene/bytes.h"
-#include "engine/scene/image_codecs.h"
-#include "engine/scene/image_exr.h"
+#include "engine/scene/images.h"
 #include "engine/scene/importers/words.h"
 #include "twinray/glsl/vector_math.h"
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "engine/scene/image_codecs.h"
+#include "engine/scene/images.h"
 
 #include <memory>
 #include <string_view>
 
 #include "engine/core/error.h"
-#include "engine/scene/image_exr.h"
 
 #ifdef TWINRAY_HAS_WEBP
 #include <webp/decode.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/scene/image_exr.h"
+#include "engine/scene/images.h"
 
 #include <fstream>
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/scene/png.h"
+#include "engine/scene/images.h"
 
 #include <vector>
 

@@ -149,4 +149,10 @@ void place_camera(Camera& camera, const glm::dmat4& frame);
 // Like pose_scene(scene, pose), by a rig that the scene need not have.
 void pose_scene(Scene& scene, const Rig& rig, const Pose& pose);
 
+// Moves a scene in its rest pose to a local origin, `wanted` or chosen for its contents, and the rig with it:
+// transforms are composed again in float64, relative to the origin, and rounded once. Vertices that are themselves as
+// large as that, or that a node brings back from far away, are also moved, and their instances the other way: rays are
+// rounded in the space of the mesh. Without need, or if 0 is wanted, nothing changes, bit for bit.
+void move_to_origin(const std::optional<dvec3>& wanted, Scene& scene, Rig& rig);
+
 }  // namespace twinray

@@ -100,6 +100,16 @@ Mesh joined(const Scene& scene, std::string name) {
     return mesh;
 }
 
+void apply_variant(Scene& scene, const std::string& name) {
+    const auto variant = std::ranges::find(scene.variants, name, &MaterialVariant::name);
+    if (variant == scene.variants.end()) {
+        std::string names;
+        for (const MaterialVariant& other : scene.variants) names += (names.empty() ? "'" : ", '") + other.name + "'";
+        fail("variant '", name, "' does not exist; the scene has ", names.empty() ? "none" : names);
+    }
+    for (const MaterialVariant::Part& part : variant->parts) scene.meshes[part.mesh].materials = part.materials;
+}
+
 std::size_t count_triangles(const Scene& scene) {
     std::size_t count = 0;
     for (const Instance& instance : scene.instances) count += scene.meshes[instance.mesh].triangles.size();

@@ -11,6 +11,7 @@
 #include <glm/gtc/packing.hpp>
 
 #include "engine/core/error.h"
+#include "engine/scene/images.h"
 #include "twinray/glsl/cpp.h"
 
 namespace twinray {
@@ -146,6 +147,17 @@ Texels Texels::of(const Image& image) {
         return of(image.name, image.width, image.height, 4, TexelFormat::unorm16,
                   std::span<const std::uint16_t>(image.rgba16));
     return of(image.name, image.width, image.height, 4, TexelFormat::unorm8, std::span<const std::uint8_t>(image.rgba));
+}
+
+Image checkerboard_image(const std::string& name) {
+    constexpr uint size = 32, square = 4;
+    Image image{.name = name, .width = size, .height = size, .rgba = {}, .is_placeholder = true};
+    for (uint y = 0; y < size; ++y)
+        for (uint x = 0; x < size; ++x) {
+            const std::uint8_t value = (x / square + y / square) % 2 == 0 ? 255 : 0;
+            image.rgba.insert(image.rgba.end(), {value, 0, value, 255});
+        }
+    return image;
 }
 
 Texels with_mipmaps(Texels texels, bool is_srgb) {

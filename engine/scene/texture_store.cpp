@@ -25,22 +25,13 @@ uint longest_image_side(const Context& context) {
 }
 
 VkSamplerAddressMode address_mode(Wrap wrap) {
-    switch (wrap) {
-        case Wrap::repeat: break;
-        case Wrap::clamp_to_edge: return VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-        case Wrap::mirrored_repeat: return VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT;
-    }
-    return VK_SAMPLER_ADDRESS_MODE_REPEAT;
+    constexpr VkSamplerAddressMode modes[] = {VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                                              VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT};
+    return modes[static_cast<std::size_t>(wrap)];
 }
 
-uint wrap_word(Wrap wrap) {
-    switch (wrap) {
-        case Wrap::repeat: break;
-        case Wrap::clamp_to_edge: return TEXTURE_CLAMP;
-        case Wrap::mirrored_repeat: return TEXTURE_MIRROR;
-    }
-    return TEXTURE_REPEAT;
-}
+static_assert(uint(Wrap::repeat) == TEXTURE_REPEAT && uint(Wrap::clamp_to_edge) == TEXTURE_CLAMP &&
+              uint(Wrap::mirrored_repeat) == TEXTURE_MIRROR);
 
 // Returns whether the reader of the texels decodes them; those in 16 bits are decoded already.
 bool is_decoded(const TextureOptions& options, const Texels& texels) {
@@ -298,7 +289,7 @@ SetUploads::Staged TextureStore::State::stage_records(Commands& commands, const 
         record_values_[one.index] = {one.texels.ref<uint>(),
                                      one.form.width,
                                      one.form.height,
-                                     wrap_word(options.wrap_u) | wrap_word(options.wrap_v) << 2u,
+                                     uint(options.wrap_u) | uint(options.wrap_v) << 2u,
                                      options_word(options, one.form),
                                      static_cast<uint>(one.form.format) | one.form.channels << 2u,
                                      static_cast<uint>(one.form.levels.size())};

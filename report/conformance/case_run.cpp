@@ -11,9 +11,7 @@ namespace {
 template <class Judge>
 void judge_all(Tally& tally, std::span<const Shot> shots, const Judge& judge) {
     std::vector<Finding> findings(shots.size());
-    parallel_for(shots.size(), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) findings[i] = judge(i);
-    });
+    parallel_for(shots.size(), [&](std::size_t i) { findings[i] = judge(i); });
     for (std::size_t i = 0; i < shots.size(); ++i) tally.add(findings[i], shots[i].ray);
 }
 

@@ -30,7 +30,7 @@ void check_bottom(CaseRun& run, const SceneInput& scene, const Bottom& bottom) {
 // The source is destroyed before the copy is used.
 void cloned_bottom(CaseRun& run) {
     const SceneInput scene = copyable(run);
-    const Bottom copy = run.driver().clone(run.driver().build(scene.bottoms[0]));
+    const Bottom copy = run.driver().copied(run.driver().build(scene.bottoms[0]), Driver::Copy::clone);
     run.driver().context().wait_for_gpu();
     check_bottom(run, scene, copy);
 }
@@ -39,7 +39,7 @@ void compacted_bottom(CaseRun& run) {
     const SceneInput scene = copyable(run, can_compact);
     Bottom source = run.driver().build(scene.bottoms[0]);
     const std::uint64_t bytes = source.structure.bytes();
-    const Bottom copy = run.driver().compacted(std::exchange(source, {}));
+    const Bottom copy = run.driver().copied(std::exchange(source, {}), Driver::Copy::compact);
     run.driver().context().wait_for_gpu();
     run.expect(copy.structure.bytes() <= bytes,
                text("the compacted structure takes ", copy.structure.bytes(), " bytes, the source ", bytes));
@@ -50,14 +50,14 @@ void copied_tops(CaseRun& run) {
     const SceneInput scene = copyable(run, can_compact);
     const DriverScene built = run.driver().build(scene);
     const std::vector<Shot> shots = random_shots(run.draws(), run.rays() / 2 + 1);
-    run.check_hits(scene, run.driver().clone(built.top), shots);
-    run.check_hits(scene, run.driver().compacted(built.top), shots);
+    run.check_hits(scene, run.driver().copied(built.top, Driver::Copy::clone), shots);
+    run.check_hits(scene, run.driver().copied(built.top, Driver::Copy::compact), shots);
 }
 
 void updated_clone(CaseRun& run) {
     SceneInput scene = copyable(run, can_update);
     const Bottom source = run.driver().build(scene.bottoms[0]);
-    Bottom copy = run.driver().clone(source);
+    Bottom copy = run.driver().copied(source, Driver::Copy::clone);
     check_bottom(run, scene, copy);
     scene.bottoms[0].geometries[0].positions = random_triangles(run.draws(), usual_triangle_count).positions;
     if (copy.input.geometries[0].triangles.size() < usual_triangle_count) return;  // a control's

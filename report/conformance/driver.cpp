@@ -13,7 +13,7 @@
 #include "conformance_pipeline_rmiss.spv.h"
 #include "conformance_query.spv.h"
 #include "conformance_query_culling.spv.h"
-#include "engine/core/buffer.h"
+#include "engine/core/commands.h"
 #include "engine/core/error.h"
 #include "engine/core/vulkan.h"
 
@@ -70,11 +70,6 @@ std::uint64_t Serialized::word(std::size_t index) const {
 std::span<const std::uint8_t, VK_UUID_SIZE> Serialized::driver_uuid() const {
     return std::span<const std::uint8_t, VK_UUID_SIZE>(reinterpret_cast<const std::uint8_t*>(bytes.data()),
                                                        VK_UUID_SIZE);
-}
-
-std::span<const std::uint8_t, VK_UUID_SIZE> Serialized::compatibility_uuid() const {
-    return std::span<const std::uint8_t, VK_UUID_SIZE>(
-        reinterpret_cast<const std::uint8_t*>(bytes.data() + VK_UUID_SIZE), VK_UUID_SIZE);
 }
 
 std::vector<std::uint64_t> Serialized::handles() const {
@@ -234,7 +229,7 @@ void Driver::update(Top& top, const TopInput& input) {
 }
 
 Bottom Driver::updated(const Bottom& source, const BottomInput& input) {
-    if (misdeed_ == Misdeed::forgets_updates) return clone(source);
+    if (misdeed_ == Misdeed::forgets_updates) return copied(source, Copy::clone);
     Commands commands(context_, "conformance update into another");
     const BuildInput uploaded = upload(commands, spoiled(misdeed_, input));
     Bottom updated{new_structure("conformance updated", uploaded), input};

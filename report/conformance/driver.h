@@ -28,7 +28,6 @@ struct Serialized {
     std::vector<std::byte> bytes;
 
     std::span<const std::uint8_t, VK_UUID_SIZE> driver_uuid() const;
-    std::span<const std::uint8_t, VK_UUID_SIZE> compatibility_uuid() const;
     std::uint64_t serialized_bytes() const { return word(0); }
     std::uint64_t deserialized_bytes() const { return word(1); }
     std::uint64_t handle_count() const { return word(2); }
@@ -73,8 +72,6 @@ struct DriverScene {
     Top top;
 };
 
-// How rays are traced.
-
 class Driver {
   public:
     // Throws Error where the device has no such way.
@@ -84,7 +81,6 @@ class Driver {
     void behave_as(Misdeed misdeed) { misdeed_ = misdeed; }
 
     Context& context() const { return context_; }
-    Backend way() const { return pipeline_ ? Backend::pipeline : Backend::ray_query; }
     bool can_cull_primitives() const { return context_.properties().primitive_culling; }
 
     Bottom build(const BottomInput& input);
@@ -101,12 +97,10 @@ class Driver {
     // Into another structure; the source stays as it was.
     Bottom updated(const Bottom& source, const BottomInput& input);
 
-    Bottom clone(const Bottom& source);
-    Top clone(const Top& source);
-    Bottom compacted(const Bottom& source);
-    Top compacted(const Top& source);
+    enum class Copy : std::uint8_t { clone, compact };
+    Bottom copied(const Bottom& source, Copy mode);
+    Top copied(const Top& source, Copy mode);
 
-    std::uint64_t serialized_bytes(const AccelerationStructure& structure);
     Serialized serialize(const AccelerationStructure& structure);
     bool is_compatible(const Serialized& file);
     Bottom deserialize(const Serialized& file, const BottomInput& input);
@@ -116,15 +110,12 @@ class Driver {
     Traced trace(const Top& top, std::span<const Shot> shots, uint slots = 0);
 
   private:
-    enum class Copy : std::uint8_t { clone, compact };
     // In the form that the driver needs: a pipeline's instances choose their hit record.
     TopInput told(const TopInput& input, const std::vector<BottomRef>& bottoms) const;
     AccelerationStructure new_structure(const char* name, const BuildInput& input);
     void record_build(Commands& commands, std::span<const BuildInput> inputs,
                       std::span<const AccelerationStructure* const> targets,
                       const AccelerationStructure* updated_from = nullptr);
-    Bottom copied(const Bottom& source, Copy mode);
-    Top copied(const Top& source, Copy mode);
     // The result of Misdeed::copies_in_part.
     Bottom shortened(BottomInput input);
     Top shortened(TopInput input, const std::vector<BottomRef>& bottoms);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Copies of structures, and structures as bytes.
-#include "engine/core/buffer.h"
+#include "engine/core/commands.h"
 #include "engine/core/vulkan.h"
 #include "report/conformance/driver.h"
 
@@ -60,11 +60,6 @@ AccelerationStructure Driver::copy(const AccelerationStructure& source, VkAccele
     return made;
 }
 
-Bottom Driver::clone(const Bottom& source) { return copied(source, Copy::clone); }
-Bottom Driver::compacted(const Bottom& source) { return copied(source, Copy::compact); }
-Top Driver::clone(const Top& source) { return copied(source, Copy::clone); }
-Top Driver::compacted(const Top& source) { return copied(source, Copy::compact); }
-
 Bottom Driver::copied(const Bottom& source, Copy mode) {
     if (misdeed_ == Misdeed::copies_in_part) return shortened(source.input);
     return {copy(source.structure, bottom_level, mode), source.input};
@@ -85,14 +80,11 @@ Top Driver::shortened(TopInput input, const std::vector<BottomRef>& bottoms) {
     return build(input, bottoms);
 }
 
-std::uint64_t Driver::serialized_bytes(const AccelerationStructure& structure) {
-    return property(structure, VK_QUERY_TYPE_ACCELERATION_STRUCTURE_SERIALIZATION_SIZE_KHR);
-}
-
 Serialized Driver::serialize(const AccelerationStructure& structure) {
-    const Buffer buffer(
-        context_,
-        {.name = "conformance serialized", .bytes = serialized_bytes(structure), .alignment = serialized_alignment});
+    const Buffer buffer(context_,
+                        {.name = "conformance serialized",
+                         .bytes = property(structure, VK_QUERY_TYPE_ACCELERATION_STRUCTURE_SERIALIZATION_SIZE_KHR),
+                         .alignment = serialized_alignment});
     VkCopyAccelerationStructureToMemoryInfoKHR info{};
     info.sType = VK_STRUCTURE_TYPE_COPY_ACCELERATION_STRUCTURE_TO_MEMORY_INFO_KHR;
     info.src = structure.handle();

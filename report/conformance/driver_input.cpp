@@ -7,7 +7,7 @@
 
 #include <glm/gtc/packing.hpp>
 
-#include "engine/core/buffer.h"
+#include "engine/core/commands.h"
 #include "engine/core/error.h"
 
 namespace twinray::conformance {

@@ -35,11 +35,9 @@ void check(CaseRun& run, const Change& change) {
     Traced second = run.driver().trace(run.driver().build(changed.scene).top, changed.shots);
     const Expectation expectation(scene);
     std::vector<Finding> findings(shots.size());
-    parallel_for(shots.size(), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            changed.bring_back(second.answers[i]);
-            findings[i] = compare_hits(expectation, shots[i], first.answers[i], second.answers[i]);
-        }
+    parallel_for(shots.size(), [&](std::size_t i) {
+        changed.bring_back(second.answers[i]);
+        findings[i] = compare_hits(expectation, shots[i], first.answers[i], second.answers[i]);
     });
     for (std::size_t i = 0; i < shots.size(); ++i) {
         run.tally().add(findings[i], shots[i].ray);

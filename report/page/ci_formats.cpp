@@ -22,17 +22,6 @@ Outcome outcome_of(const Record& record, bool is_strict) {
     return fails ? Outcome::failed : Outcome::tolerated;
 }
 
-// Selects one of two outcomes of a check.
-int rank(Outcome outcome) {
-    switch (outcome) {
-        case Outcome::skipped: return 0;
-        case Outcome::passed: return 1;
-        case Outcome::tolerated: return 2;
-        case Outcome::failed: return 3;
-    }
-    return 0;
-}
-
 std::string message_of(const Record& record) {
     if (!record.was_run) return record.reason;
     if (record.pass.value_or(true)) return record.pass ? "" : "only measured";
@@ -40,9 +29,7 @@ std::string message_of(const Record& record) {
                                       text(record.faults, " of ", record.n)};
     for (const std::string& part : {settings_text(record), record.reason, record.example})
         if (!part.empty()) parts.push_back(part);
-    std::string message = parts.front();
-    for (std::size_t i = 1; i < parts.size(); ++i) message += "; " + parts[i];
-    return message;
+    return joined(parts, "; ");
 }
 
 std::string name_of(const Check& check) { return check.case_id + (check.on.empty() ? "" : ' ' + check.on); }
@@ -79,7 +66,7 @@ std::vector<Check> checks_of(std::span<const Record> records, bool is_strict) {
         Check& check = checks[place->second];
         check.n += record.n;
         check.faults += record.faults;
-        if (rank(outcome) <= rank(check.outcome)) continue;
+        if (outcome <= check.outcome) continue;
         check.outcome = outcome;
         check.message = message_of(record);
     }

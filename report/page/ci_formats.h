@@ -12,11 +12,12 @@ namespace twinray::report {
 
 // A case on one accelerator, level and variant, over all its settings.
 struct Check {
+    // Of two, the later one is the check's.
     enum class Outcome : std::uint8_t {
+        skipped,  // not run, or only measured
         passed,
-        failed,     // a fault of twinray; with --strict also of the driver
         tolerated,  // a fault of the driver
-        skipped     // not run, or only measured
+        failed      // a fault of twinray; with --strict also of the driver
     };
     std::string device;   // "llvmpipe (LLVM 15.0.6, 256 bits)"
     std::string case_id;  // "W04"

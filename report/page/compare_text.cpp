@@ -23,10 +23,6 @@ std::string_view word_of(Change::Kind kind) {
     return "";
 }
 
-std::string listed(const std::set<std::string>& ids) {
-    return text(ids.size(), ids.empty() ? "" : " (" + joined({ids.begin(), ids.end()}) + ')');
-}
-
 // One for SwTlas, one for each way of the driver.
 void print_rows(std::ostream& out, std::span<const Record> records) {
     const std::vector<Finding> findings = findings_of(records);
@@ -48,8 +44,9 @@ void print_rows(std::ostream& out, std::span<const Record> records) {
         const auto speed = std::ranges::find_if(
             speeds, [&](const Speed& one) { return one.backend == backend && one.level == "watertight"; });
         out << ' '
-            << (backend == "sw" || own.run.empty() ? ""
-                                                   : listed(own.failed_by_driver) + "; " + listed(own.not_as_advised))
+            << (backend == "sw" || own.run.empty()
+                    ? ""
+                    : ids_text(own.failed_by_driver) + "; " + ids_text(own.not_as_advised))
             << " | "
             << (speed == speeds.end()
                     ? ""

@@ -67,10 +67,6 @@ std::size_t catalogued(std::string_view sections) {
         std::ranges::count_if(catalogued(), [&](const std::string& id) { return is_of(sections, id); }));
 }
 
-std::string ids_text(const std::set<std::string>& ids) {
-    return text(ids.size(), ids.empty() ? "" : " (" + joined({ids.begin(), ids.end()}) + ')');
-}
-
 Sentence::Kind kind_of(const CaseResults& results, std::size_t cases) {
     if (!results.failed_by_us.empty() || !results.failed_by_driver.empty()) return Sentence::Kind::wrong;
     return results.run.size() < cases ? Sentence::Kind::not_measured : Sentence::Kind::right;
@@ -244,10 +240,7 @@ std::vector<Speed> speeds_of(std::span<const Record> records) {
         std::iota(all.begin(), all.end(), std::size_t{0});
         speed.ratio = geometric_mean(all);
         speed.ratio_95 = bootstrap_interval_95(logs.size(), geometric_mean);
-        if (std::vector<double>& of_t = errors[key]; !of_t.empty()) {
-            speed.worst_p99_ulp = *std::max_element(of_t.begin(), of_t.end());
-            speed.median_p99_ulp = median(std::move(of_t));
-        }
+        if (std::vector<double>& of_t = errors[key]; !of_t.empty()) speed.median_p99_ulp = median(std::move(of_t));
         speeds.push_back(std::move(speed));
     }
     return speeds;

@@ -66,8 +66,8 @@ struct Speed {
     double ratio = 1;
     Interval ratio_95 = {1, 1};
     std::size_t measurements = 0;
-    double median_p99_ulp = 0, worst_p99_ulp = 0;  // of t, over the cases that measured an error; 0: none did
-    bool is_disturbed = false;                     // TimeFigures::is_disturbed() of any
+    double median_p99_ulp = 0;  // of t, over the cases that measured an error; 0: none did
+    bool is_disturbed = false;  // TimeFigures::is_disturbed() of any
 };
 std::vector<Speed> speeds_of(std::span<const Record> records);
 

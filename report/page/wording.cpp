@@ -5,6 +5,7 @@
 #include <iomanip>
 #include <sstream>
 
+#include "engine/core/error.h"
 #include "report/frame/cases.h"
 
 namespace twinray::report {
@@ -71,6 +72,10 @@ std::string rate_text(std::uint64_t count, std::uint64_t n) {
 
 std::string with_interval(double value, const Interval& interval, int digits) {
     return number(value, digits) + " (" + number(interval.low, digits) + " to " + number(interval.high, digits) + ')';
+}
+
+std::string ids_text(const std::set<std::string>& ids) {
+    return text(ids.size(), ids.empty() ? "" : " (" + joined({ids.begin(), ids.end()}) + ')');
 }
 
 std::string answerer(std::string_view backend) {

@@ -2,6 +2,7 @@
 // How a report writes numbers, and names those that answer: pure functions.
 #pragma once
 
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -21,6 +22,9 @@ std::string rate_text(double rate, const Interval& rate_95);
 std::string rate_text(std::uint64_t count, std::uint64_t n);
 // "1.7 (1.2 to 2.4)".
 std::string with_interval(double value, const Interval& interval, int digits = 2);
+
+// "2 (K05, K12)".
+std::string ids_text(const std::set<std::string>& ids);
 
 // "SwTlas", "the driver's ray queries", "the driver's pipelines"; a case's own word for anything else.
 std::string answerer(std::string_view backend);

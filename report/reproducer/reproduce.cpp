@@ -178,7 +178,6 @@ Reproduction reproduce(frame::Devices& devices, frame::Backend backend, const Sc
             found.was_cut_short |= !smaller.triangles.empty();
             return false;
         }
-        ++found.questions;
         const Scene small = scene_of(smaller);
         const Hit answer = driver.answer(small, smaller.ray);
         const ReferenceScene reference = ReferenceScene::of(small);

@@ -18,7 +18,6 @@ struct Reproduction {
     Hit answer{};  // of the driver
     RightAnswers right;
     std::size_t triangles_before = 0;
-    std::size_t questions = 0;   // to the driver
     bool was_cut_short = false;  // by the limit of time: it may be smaller yet
 };
 

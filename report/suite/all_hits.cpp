@@ -55,9 +55,7 @@ ErrorFigures t_error_of(const HitsOfRays& found, std::span<const float> heights)
         errors.push_back(std::abs(double{hit.t} - double{t}) / double{std::nextafter(t, INFINITY) - t});
     }
     if (errors.empty()) return {"t_ulp", 0, 0, {0, 0}, 0, 0};
-    std::sort(errors.begin(), errors.end());
-    return {"t_ulp", quantile(errors, 0.5), quantile(errors, 0.99), quantile_interval_95(errors, 0.99), errors.back(),
-            0};
+    return error_figures("t_ulp", std::move(errors), 0);
 }
 
 void measure_layers(CaseRun& run, std::span<const float> heights, std::size_t ray_count, const Values& params) {
@@ -70,23 +68,18 @@ void measure_layers(CaseRun& run, std::span<const float> heights, std::size_t ra
         HitsOfRays found = all(rays);
         std::vector<double> times;
         for (int rep = 0; rep < 3; ++rep) {
-            const auto start = Clock::now();
+            const Stopwatch start;
             found = all(rays);
-            times.push_back(ms_since(start) * 1e6 / static_cast<double>(std::max<std::size_t>(found.hits.size(), 1)));
+            times.push_back(start.ms() * 1e6 / static_cast<double>(std::max<std::size_t>(found.hits.size(), 1)));
         }
         Record record = run.record(configuration);
         record.params = params;
         record.reference = "analytic";
-        record.n = rays.size();
-        record.faults = wrong_rays(found, rays.size(), heights.size());
-        record.bound95 = upper_bound_95(record.faults, record.n);
+        set_faults(record, wrong_rays(found, rays.size(), heights.size()), rays.size());
         record.error = t_error_of(found, heights);
         record.time = time_figures("ns_per_hit", times);
-        record.pass = record.faults == 0;
-        if (!*record.pass) {
-            record.reason = "not every layer is met once, in order";
-            record.fault_of = is_ours(configuration.backend) ? "twinray" : "driver";
-        }
+        frame::decide(record, is_ours(configuration.backend) ? "twinray" : "driver");
+        if (!*record.pass) record.reason = "not every layer is met once, in order";
         run.add(record);
     }
 }

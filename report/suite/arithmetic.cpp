@@ -12,6 +12,7 @@
 #include "report/suite/demands.h"
 #include "validation/cpu_reference/flush_denormals.h"
 #include "report/suite/pictures.h"
+#include "report/suite/scenes.h"
 #include "report/suite/shapes.h"
 #include "report/suite/spawning.h"
 #include "validation/reference/aimed_rays.h"
@@ -21,13 +22,6 @@ namespace twinray::suite {
 namespace {
 
 constexpr std::size_t batch_size = 1 << 20;
-
-Scene scene_with(const Mesh& mesh, std::vector<Transform> transforms = {Transform{}}) {
-    Scene scene;
-    scene.meshes = {mesh};
-    for (const Transform& transform : transforms) scene.instances.push_back({"", 0, transform});
-    return scene;
-}
 
 // The answers of a configuration and of the CPU reference, batch by batch.
 Difference compared(CaseRun& run, const Configuration& configuration, const Scene& scene, std::span<const Ray> rays,
@@ -63,9 +57,7 @@ void record_contraction(CaseRun& run, const Configuration& configuration, const 
                         const std::optional<Control>& control) {
     Record record = run.record(configuration);
     record.reference = "invariance";
-    record.n = count;
-    record.faults = found.decisions;
-    record.bound95 = upper_bound_95(found.decisions, count);
+    set_faults(record, found.decisions, count);
     record.results = {{"other_decisions", found.decisions}, {"other_bits", found.bits}};
     record.example = found.example;
     const std::string excuse = why_bits_may_differ(run, configuration);
@@ -75,8 +67,7 @@ void record_contraction(CaseRun& run, const Configuration& configuration, const 
     } else if (!excuse.empty()) {
         record.criterion = "none: " + excuse;
     } else {
-        record.pass = found.decisions == 0;
-        record.fault_of = *record.pass ? "" : "twinray";
+        frame::decide(record, "twinray");
     }
     run.add(record);
 }
@@ -94,18 +85,10 @@ struct NamedScene {
 };
 
 std::vector<NamedScene> scenes_for_both() {
-    return {{"soup", scene_with(make_soup(2000, 5, 0.2f))},
-            {"sphere", scene_with(make_icosphere(5))},
-            {"height field", scene_with(make_grid(64, 64, 0.2f, 3))},
-            {"instances", scene_with(make_soup(500, 6, 0.3f), uneven_transforms())}};
-}
-
-std::vector<Ray> random_and_aimed(const Scene& scene, std::size_t random, std::size_t aimed, std::uint64_t seed) {
-    const ReferenceScene reference = ReferenceScene::of(scene);
-    std::vector<Ray> rays = random_rays(bounds_of(scene), random, seed);
-    for (const auto& more : {vertex_aimed_rays(reference, aimed, seed), edge_aimed_rays(reference, aimed, seed)})
-        rays.insert(rays.end(), more.begin(), more.end());
-    return rays;
+    return {{"soup", instances_of(make_soup(2000, 5, 0.2f))},
+            {"sphere", instances_of(make_icosphere(5))},
+            {"height field", instances_of(make_grid(64, 64, 0.2f, 3))},
+            {"instances", instances_of(make_soup(500, 6, 0.3f), uneven_transforms())}};
 }
 
 // Each coordinate of origins and directions is a denormal, half of the time; the rest is as it was.
@@ -127,7 +110,7 @@ std::vector<Ray> with_denormals(std::vector<Ray> rays, std::uint64_t seed) {
 }
 
 void contraction(CaseRun& run) {
-    const Scene scene = scene_with(far_grid());
+    const Scene scene = instances_of(far_grid());
     const ReferenceScene reference = ReferenceScene::of(scene);
     const std::vector<Ray> rays = edge_aimed_rays(reference, run.amount(1'024, 1'000'000), run.seed());
     for (const Configuration& configuration : precise_configurations(run)) {
@@ -167,8 +150,8 @@ void denormals(CaseRun& run) {
         for (const auto& [name, scene] : scenes_for_both()) {
             const World world = world_of(scene);
             const std::size_t count = run.amount(2'000, 1'000'000);
-            const std::vector<Ray> rays =
-                with_denormals(random_and_aimed(scene, count, count / 4, run.seed()), run.seed());
+            const std::vector<Ray> rays = with_denormals(
+                random_and_aimed(world.reference, bounds_of(scene), count, count / 4, run.seed()), run.seed());
             const std::unique_ptr<reference::Scene> on_cpu = cpu_reference_of(scene, run.devices().trees());
             const std::vector<Hit> flushed =
                 trace_cpu_reference(*on_cpu, rays, configuration.level, Denormals::flushed);
@@ -192,23 +175,20 @@ void device_against_cpu(CaseRun& run) {
         const std::string excuse = why_bits_may_differ(run, configuration);
         for (const auto& [name, scene] : scenes_for_both()) {
             const std::vector<Ray> rays =
-                random_and_aimed(scene, run.amount(25'000, 2'500'000), run.amount(2'500, 250'000), run.seed());
+                random_and_aimed(ReferenceScene::of(scene), bounds_of(scene), run.amount(25'000, 2'500'000),
+                                 run.amount(2'500, 250'000), run.seed());
             const Difference found = compared(run, configuration, scene, rays);
             Record record = run.record(configuration);
             record.params = {{"scene", name}};
             record.reference = "invariance";
-            record.n = rays.size();
             record.results = {
                 {"other_decisions", found.decisions}, {"other_bits", found.bits}, {"worst_t_ulp", found.worst_ulp}};
-            record.faults = found.total();
-            record.bound95 = upper_bound_95(found.total(), rays.size());
+            set_faults(record, found.total(), rays.size());
             record.example = found.example;
-            if (excuse.empty()) {
-                record.pass = found.total() == 0;
-                record.fault_of = *record.pass ? "" : "twinray";
-            } else {
+            if (excuse.empty())
+                frame::decide(record, "twinray");
+            else
                 record.criterion = "none: " + excuse;
-            }
             run.add(record);
         }
     }

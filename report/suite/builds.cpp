@@ -32,19 +32,6 @@ TreeCheck check_tree(const BuiltTree& tree, const Mesh& mesh) {
     return check_tree(tree.bvh, tree.nodes, boxes);
 }
 
-template <class T>
-void append_bytes(std::vector<std::byte>& bytes, const std::vector<T>& values) {
-    const std::span<const std::byte> more = std::as_bytes(std::span(values));
-    bytes.insert(bytes.end(), more.begin(), more.end());
-}
-
-std::vector<std::byte> bytes_of(const BuiltTree& tree) {
-    std::vector<std::byte> bytes;
-    append_bytes(bytes, tree.nodes);
-    append_bytes(bytes, tree.records);
-    return bytes;
-}
-
 }  // namespace
 
 void expect_sound_tree(CaseRun& run, const Mesh& mesh, Values params) {
@@ -172,7 +159,7 @@ void repeated_builds(CaseRun& run) {
     const Mesh mesh = make_soup(static_cast<uint>(run.amount(5'000, 500'000)), 21);
     const std::vector<Ray> rays = random_rays(bounds_of(mesh), run.amount(1'024, 100'000), run.seed());
     for (const Configuration& configuration : run.one_configuration_each()) {
-        std::vector<std::byte> nodes;
+        BuiltTree first{};
         std::vector<Hit> hits;
         CaseRun::Outcome outcome{.params = {{"compared", is_ours(configuration.backend) ? "nodes and hits" : "hits"}},
                                  .n = builds,
@@ -183,9 +170,11 @@ void repeated_builds(CaseRun& run) {
             const AccelHandle handle = accel.push(mesh);
             const std::vector<Hit> now = accel.closest_hits(rays, {.level = configuration.level});
             const auto* software = dynamic_cast<SwTlas*>(&accel);
-            const auto tree = software ? bytes_of(download_geometry(*software, handle)) : std::vector<std::byte>();
-            if (i == 0) nodes = tree, hits = now;
-            if (!same_bytes(nodes, tree) || !same_bytes(hits, now)) ++outcome.faults;
+            const BuiltTree tree = software ? download_geometry(*software, handle) : BuiltTree{};
+            if (i == 0) first = tree, hits = now;
+            if (!same_bytes(first.nodes, tree.nodes) || !same_bytes(first.records, tree.records) ||
+                !same_bytes(hits, now))
+                ++outcome.faults;
         }
         run.expect(configuration, outcome);
     }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "engine/core/parallel.h"
 
@@ -43,12 +44,10 @@ std::optional<double> t_of_plane(const ReferenceScene& reference, const Ray& ray
 
 std::vector<ReferenceHit> references_of(const ReferenceScene& reference, std::span<const Ray> rays) {
     std::vector<ReferenceHit> references(rays.size());
-    parallel_for(rays.size(), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            references[i] = reference.closest_hit(rays[i]);
-            if (references[i].hit)
-                references[i].t = t_of_plane(reference, rays[i], references[i]).value_or(references[i].t);
-        }
+    parallel_for(rays.size(), [&](std::size_t i) {
+        references[i] = reference.closest_hit(rays[i]);
+        if (references[i].hit)
+            references[i].t = t_of_plane(reference, rays[i], references[i]).value_or(references[i].t);
     });
     return references;
 }
@@ -60,14 +59,18 @@ std::optional<double> t_ulps(const ReferenceHit& reference, const Hit& hit) {
     return std::abs(double{hit.t} - reference.t) / ulp_of(reference.t);
 }
 
+ErrorFigures error_figures(const std::string& metric, std::vector<double> errors, double floor) {
+    std::sort(errors.begin(), errors.end());
+    return {metric, quantile(errors, 0.5), quantile(errors, 0.99), quantile_interval_95(errors, 0.99), errors.back(),
+            floor};
+}
+
 std::optional<ErrorFigures> t_error(std::span<const ReferenceHit> references, std::span<const Hit> hits) {
     std::vector<double> errors;
     for (std::size_t i = 0; i < hits.size(); ++i)
         if (const auto ulps = t_ulps(references[i], hits[i])) errors.push_back(*ulps);
     if (errors.empty()) return std::nullopt;
-    std::sort(errors.begin(), errors.end());
-    return ErrorFigures{
-        "t_ulp", quantile(errors, 0.5), quantile(errors, 0.99), quantile_interval_95(errors, 0.99), errors.back(), 0.5};
+    return error_figures("t_ulp", std::move(errors), 0.5);
 }
 
 CheckResult check(const ReferenceScene& reference, std::span<const Ray> rays, std::span<const Hit> hits,

@@ -14,6 +14,10 @@ std::vector<ReferenceHit> references_of(const ReferenceScene& reference, std::sp
 // primitive.
 std::optional<double> t_ulps(const ReferenceHit& reference, const Hit& hit);
 
+// Of errors that are not negative, at least one. The usual floor is half a unit in the last place of float32, in which
+// view factors are kept.
+ErrorFigures error_figures(const std::string& metric, std::vector<double> errors, double floor = 0x1p-25);
+
 // The figures of t_ulps; nothing where there is none. The floor is the half unit of rounding t itself.
 std::optional<ErrorFigures> t_error(std::span<const ReferenceHit> references, std::span<const Hit> hits);
 

@@ -188,11 +188,9 @@ void colliding_identical_boxes(CaseRun& run) {
         accel.push(box, std::vector<Transform>(n));
         BroadPhase broad_phase(accel.context());
         const std::uint64_t expected = n * (n - 1) / 2;
-        std::vector<double> times;
         std::uint64_t wrong = 0;
-        for (int rep = 0; rep < 5; ++rep)
-            times.push_back(seconds_of([&] { wrong += broad_phase.instance_pairs(accel).size() != expected; }) * 1e9 /
-                            static_cast<double>(expected));
+        const std::vector<double> times =
+            ns_each(5, expected, [&] { wrong += broad_phase.instance_pairs(accel).size() != expected; });
         wrong += broad_phase.count(accel) != expected;
         run.expect(configuration, {.params = {{"boxes", n}},
                                    .results = {{"pairs", expected}},

@@ -15,21 +15,15 @@ namespace {
 template <class ClassOf>
 void measure_host(CaseRun& run, const std::string& lattice, std::span<const TrianglePair> pairs,
                   const std::vector<PairClass>& known, const std::string& variant, const ClassOf& class_of) {
-    std::vector<double> times;
     std::uint64_t wrong = 0;
-    for (int rep = 0; rep < 5; ++rep)
-        times.push_back(seconds_of([&] {
-                            wrong = 0;
-                            for (std::size_t i = 0; i < pairs.size(); ++i)
-                                wrong += class_of(pairs[i].a, pairs[i].b) != known[i];
-                        }) *
-                        1e9 / static_cast<double>(pairs.size()));
+    const std::vector<double> times = ns_each(5, pairs.size(), [&] {
+        wrong = 0;
+        for (std::size_t i = 0; i < pairs.size(); ++i) wrong += class_of(pairs[i].a, pairs[i].b) != known[i];
+    });
     Record record = query_record(run, "exact", variant);
     record.params = {{"lattice", lattice}, {"pairs", pairs.size()}};
     record.backend = "cpu";
-    record.n = pairs.size();
-    record.faults = wrong;
-    record.bound95 = upper_bound_95(wrong, pairs.size());
+    set_faults(record, wrong, pairs.size());
     record.time = time_figures("ns_per_pair", times);
     record.criterion = "none: for comparison";
     run.add(record);
@@ -85,11 +79,8 @@ void measure_lattice(CaseRun& run, const std::string& lattice, std::span<const T
     std::vector<PairClass> known;
     for (const TrianglePair& pair : pairs) known.push_back(exact_class(pair.a, pair.b));
     NarrowPhase narrow_phase(query_context(run));
-    std::vector<double> times;
     std::vector<PairClass> found;
-    for (int rep = 0; rep < 5; ++rep)
-        times.push_back(seconds_of([&] { found = narrow_phase.classify(pairs); }) * 1e9 /
-                        static_cast<double>(pairs.size()));
+    const std::vector<double> times = ns_each(5, pairs.size(), [&] { found = narrow_phase.classify(pairs); });
     std::uint64_t wrong = 0;
     for (std::size_t i = 0; i < pairs.size(); ++i) wrong += found[i] != known[i];
     Record record = query_record(run, "exact");

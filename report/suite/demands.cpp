@@ -23,20 +23,24 @@ std::string why_bits_may_differ(CaseRun& run, const Configuration& configuration
     return error <= 0.5 ? "" : "this device's division is not correctly rounded";
 }
 
-CaseRun::Outcome ask_each(const Configuration& configuration, std::span<const Ray> rays,
-                          const std::function<std::string(std::size_t)>& complaint) {
-    CaseRun::Outcome outcome{.n = rays.size()};
-    if (!is_robust(configuration)) outcome.only_measured = "fast promises nothing at edges";
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-        const std::string wrong = complaint(i);
-        if (!wrong.empty() && outcome.faults++ == 0) outcome.what = text(wrong, ": ", hexadecimal(rays[i]));
+std::string refusal(const std::function<void()>& use) {
+    try {
+        use();
+    } catch (const Error& error) {
+        return error.what();
     }
-    return outcome;
+    return "";
 }
 
 CaseRun::Outcome ask_each(const Traced& traced, std::span<const Ray> rays,
                           const std::function<std::string(std::size_t, const Hit&)>& complaint) {
-    return ask_each(traced.configuration, rays, [&](std::size_t i) { return complaint(i, traced.hits[i]); });
+    CaseRun::Outcome outcome{.n = rays.size()};
+    if (!is_robust(traced.configuration)) outcome.only_measured = "fast promises nothing at edges";
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const std::string wrong = complaint(i, traced.hits[i]);
+        if (!wrong.empty() && outcome.faults++ == 0) outcome.what = text(wrong, ": ", hexadecimal(rays[i]));
+    }
+    return outcome;
 }
 
 void expect_refined_t(CaseRun& run, const Measured& measured, std::span<const Ray> rays, double ulps, Values params) {

@@ -6,13 +6,13 @@
 
 namespace twinray::suite {
 
-// How many rays something is wrong with, as `complaint` says of ray i ("" = nothing); the first one is told with its
-// ray. Nothing is demanded of Level::fast.
-CaseRun::Outcome ask_each(const Configuration& configuration, std::span<const Ray> rays,
-                          const std::function<std::string(std::size_t i)>& complaint);
-// The same of the hit of ray i.
+// How many rays something is wrong with, as `complaint` says of ray i and its hit ("" = nothing); the first one is told
+// with its ray. Nothing is demanded of Level::fast.
 CaseRun::Outcome ask_each(const Traced& traced, std::span<const Ray> rays,
                           const std::function<std::string(std::size_t i, const Hit& hit)>& complaint);
+
+// The Error that a use gives; "" where there is none.
+std::string refusal(const std::function<void()>& use);
 
 // Why SwTlas's hits may differ in their last bits from those of other devices; "" where they may not.
 std::string why_bits_may_differ(CaseRun& run, const Configuration& configuration);

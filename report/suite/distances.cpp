@@ -7,7 +7,6 @@
 #include <numbers>
 #include <random>
 
-#include "report/suite/estimators.h"
 #include "report/suite/queries.h"
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
@@ -43,30 +42,25 @@ void measure_nearest(CaseRun& run, const Mesh& mesh, const std::vector<dvec3>& p
     PointQuery query(query_context(run));
     query.set(std::vector<MeshView>{mesh}, std::vector<MeshInstance>{{0, {}}});
     std::vector<ClosestPoint> found;
-    std::vector<double> times;
-    for (int rep = 0; rep < 5; ++rep)
-        times.push_back(seconds_of([&] { found = query.closest(points); }) * 1e9 / static_cast<double>(points.size()));
+    const std::vector<double> times = ns_each(5, points.size(), [&] { found = query.closest(points); });
     const std::size_t step =
         std::max<std::size_t>(1, points.size() * mesh.triangles.size() / run.amount(5'000'000, 2'000'000'000));
     std::vector<double> errors((points.size() + step - 1) / step), slack(errors.size());
-    parallel_for(errors.size(), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const dvec3& point = points[i * step];
-            const ClosestPoint& of = found[i * step];
-            const double known = nearest_of_all(mesh, point);
-            const double of_named =
-                of.is_found ? distance_to(mesh, mesh.triangles[of.triangle], point) : static_cast<double>(INFINITY);
-            errors[i] = std::max(std::abs(of.distance - known), of_named - known) / known;
-            slack[i] = 0x1p-49 * (1 + length(point)) / known;
-        }
+    parallel_for(errors.size(), [&](std::size_t i) {
+        const dvec3& point = points[i * step];
+        const ClosestPoint& of = found[i * step];
+        const double known = nearest_of_all(mesh, point);
+        const double of_named =
+            of.is_found ? distance_to(mesh, mesh.triangles[of.triangle], point) : static_cast<double>(INFINITY);
+        errors[i] = std::max(std::abs(of.distance - known), of_named - known) / known;
+        slack[i] = 0x1p-49 * (1 + length(point)) / known;
     });
     std::uint64_t wrong = 0;
     for (std::size_t i = 0; i < errors.size(); ++i) wrong += !(errors[i] <= slack[i]);
     Record record = query_record(run, "f64");
     record.params = params;
     record.n = errors.size();
-    record.error = error_figures("relative", errors);
-    record.error->floor = 0x1p-53;
+    record.error = error_figures("relative", errors, 0x1p-53);
     record.time = time_figures("ns_per_point", times);
     add_checked(run, record, wrong, "another triangle is nearer");
 }
@@ -186,8 +180,7 @@ void add_errors(CaseRun& run, const Values& params, const std::string& metric, s
     Record record = query_record(run, "f64");
     record.params = params;
     record.n = errors.size();
-    record.error = error_figures(metric, std::move(errors));
-    record.error->floor = 0x1p-53;
+    record.error = error_figures(metric, std::move(errors), 0x1p-53);
     record.time = time_figures("ns_per_point", std::move(times));
     add_checked(run, record, wrong, what);
 }
@@ -199,10 +192,8 @@ void signed_by_spheres(CaseRun& run) {
         const Mesh ball = make_icosphere(subdivisions);
         PointQuery query(query_context(run));
         query.set(std::vector<MeshView>{ball}, std::vector<MeshInstance>{{0, {}}});
-        std::vector<double> found, times, errors;
-        for (int rep = 0; rep < 5; ++rep)
-            times.push_back(seconds_of([&] { found = query.signed_distances(points); }) * 1e9 /
-                            static_cast<double>(points.size()));
+        std::vector<double> found, errors;
+        const std::vector<double> times = ns_each(5, points.size(), [&] { found = query.signed_distances(points); });
         std::uint64_t wrong = 0;
         for (std::size_t i = 0; i < points.size(); ++i) {
             const double size = nearest_of_all(ball, points[i]), known = length(points[i]) < 1 ? -size : size;
@@ -252,13 +243,11 @@ void winding_of_open_meshes(CaseRun& run) {
         const std::vector<dvec3> points = points_about(half, run);
         PointQuery query(query_context(run));
         query.set(std::vector<MeshView>{half}, std::vector<MeshInstance>{{0, {}}});
-        std::vector<double> found, times, errors(points.size());
-        for (int rep = 0; rep < 3; ++rep)
-            times.push_back(seconds_of([&] { found = query.generalized_winding_numbers(points); }) * 1e9 /
-                            static_cast<double>(points.size()));
-        parallel_for(points.size(), [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) errors[i] = std::abs(found[i] - winding_number(half, points[i]));
-        });
+        std::vector<double> found, errors(points.size());
+        const std::vector<double> times =
+            ns_each(3, points.size(), [&] { found = query.generalized_winding_numbers(points); });
+        parallel_for(points.size(),
+                     [&](std::size_t i) { errors[i] = std::abs(found[i] - winding_number(half, points[i])); });
         const double border =
             8 * std::ldexp(1.0, static_cast<int>(subdivisions));  // edges without a neighbour, or more
         std::uint64_t wrong = 0;

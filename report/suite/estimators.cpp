@@ -26,9 +26,9 @@ class Estimators {
         const ViewFactorOptions options{
             .grouping = FaceGrouping::mesh, .sequence = sequence, .rays = rays, .seed = seed};
         ViewFactors factors(accel_, faces_, options);
-        const auto start = Clock::now();
+        const Stopwatch start;
         const ViewFactorRow row = factors.rows(question_.from, question_.from + 1).front();
-        const double ms = ms_since(start);
+        const double ms = start.ms();
         if (question_.of_open)
             return {row.open.value, row.open.interval_95.low, row.open.interval_95.high, ms, row.rays};
         for (const ViewFactor& factor : row.factors)
@@ -45,18 +45,18 @@ class Estimators {
         const std::uint64_t rounds = std::max<std::uint64_t>(1, rays / (CHUNK * pair.sampled.size()));
         for (const SampledPair& faces : pair.sampled)
             pairs.push_back({&faces, static_cast<double>(pair.sampled.size()), 0, rounds, &sums});
-        const auto start = Clock::now();
+        const Stopwatch start;
         sampler.sample(pairs);
-        const double ms = ms_since(start);
+        const double ms = start.ms();
         const auto [value, interval] = sums.exchange(false);
         const double area = area_of(question_);
         return {value / area, interval.low / area, interval.high / area, ms, sums.rays()};
     }
 
     static Estimate contour(const FactorQuestion& question) {
-        const auto start = Clock::now();
+        const Stopwatch start;
         const ContourExchange exchange = planned(question, PairEstimator::automatic).contour;
-        const double ms = ms_since(start), area = area_of(question);
+        const double ms = start.ms(), area = area_of(question);
         const double value = question.of_open ? 1 - exchange.flow / area : exchange.flow / area;
         // The truth may be known to no more than float64 holds.
         const double half = exchange.error / area + rounding_of(1);
@@ -121,10 +121,8 @@ bool covers_enough(std::uint64_t inside, std::uint64_t n) {
 
 void set_series(Record& record, const Series& series) {
     record.reference = "analytic";
-    record.n = series.errors.size();
+    set_faults(record, series.faults, series.errors.size());
     record.counts = {{"INSIDE", series.inside}, {"OUTSIDE", record.n - series.inside}};
-    record.faults = series.faults;
-    record.bound95 = upper_bound_95(series.faults, record.n);
     record.error = error_figures("relative", series.errors);
     record.time = time_figures("ms_per_estimate", series.ms);
     record.results.emplace("rms", series.rms());
@@ -241,13 +239,6 @@ void measure_factor(CaseRun& run, const FactorQuestion& question, std::span<cons
 
 double contour_value(const Scene& scene, uint from, uint to) {
     return Estimators::contour({.scene = scene, .value = 0, .from = from, .to = to}).value;
-}
-
-ErrorFigures error_figures(const std::string& metric, std::vector<double> errors) {
-    constexpr double rounding = 0x1p-25;  // to float32, in which factors are kept: half a unit in the last place
-    std::sort(errors.begin(), errors.end());
-    return {metric,  quantile(errors, 0.5), quantile(errors, 0.99), quantile_interval_95(errors, 0.99), errors.back(),
-            rounding};
 }
 
 }  // namespace twinray::suite

@@ -53,7 +53,4 @@ std::vector<Configuration> analysis_configurations(CaseRun& run);
 // In float64, where nothing is between the meshes.
 double contour_value(const Scene& scene, uint from, uint to);
 
-// Of errors that are not negative, at least one.
-ErrorFigures error_figures(const std::string& metric, std::vector<double> errors);
-
 }  // namespace twinray::suite

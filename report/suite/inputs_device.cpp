@@ -8,6 +8,7 @@
 
 #include <glm/gtc/packing.hpp>
 
+#include "engine/core/uploaded.h"
 #include "report/suite/inputs.h"
 #include "report/suite/scenes.h"
 

@@ -5,6 +5,7 @@
 
 #include "report/suite/inputs.h"
 #include "engine/core/vulkan.h"
+#include "report/suite/demands.h"
 #include "report/suite/scenes.h"
 #include "engine/core/context.h"
 #include <twinray/geometry.h>
@@ -32,22 +33,12 @@ Seen look_at(AbstractAccel& accel) {
     return {accel.context().allocated_bytes(), accel.revision(), hit};
 }
 
-// The error; "" where there is none.
-std::string refusal(Context& context, std::uint64_t bytes) {
-    try {
-        const Buffer buffer(context, {.name = "huge", .bytes = bytes});
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return "";
-}
-
 void refuse_what_no_device_has(CaseRun& run, const Configuration& configuration) {
     constexpr std::uint64_t bytes = std::uint64_t{1} << 44;
     AbstractAccel& accel = run.devices().empty_accel(configuration);
     accel.push(make_box(vec3(0), vec3(1)));
     const Seen before = look_at(accel);
-    const std::string error = refusal(accel.context(), bytes);
+    const std::string error = refusal([&] { const Buffer buffer(accel.context(), {.name = "huge", .bytes = bytes}); });
     CaseRun::Outcome outcome{.params = {{"asked", "a buffer of 2^44 bytes"}}, .fault_of = "twinray"};
     if (error.find(std::to_string(bytes)) == std::string::npos)
         outcome.what = error.empty() ? "not refused" : "refused without its size: " + error;

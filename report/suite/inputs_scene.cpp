@@ -9,6 +9,7 @@
 #include <twinray/scene.h>
 
 #include "engine/core/error.h"
+#include "report/suite/demands.h"
 #include "report/suite/inputs.h"
 #include "report/suite/scenes.h"
 #include <twinray/geometry.h>
@@ -107,16 +108,6 @@ std::vector<WrongUse> wrong_uses() {
     };
 }
 
-// The error that a use gives; "" if none.
-std::string refusal(AbstractAccel& accel, const std::function<void(AbstractAccel&)>& use) {
-    try {
-        use(accel);
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return "";
-}
-
 Hit hit_of_a_box(AbstractAccel& accel) {
     accel.push(make_box(vec3(0), vec3(1)));
     const Ray down{vec3(0.3f, 0.4f, 5), 0, vec3(0, 0, -1), inf};
@@ -128,7 +119,8 @@ void expect_refused(CaseRun& run, const std::vector<WrongUse>& uses) {
         const Hit before = hit_of_a_box(run.devices().empty_accel(configuration));
         CaseRun::Outcome outcome{.n = uses.size(), .fault_of = "twinray"};
         for (const WrongUse& wrong : uses) {
-            const std::string error = refusal(run.devices().empty_accel(configuration), wrong.use);
+            AbstractAccel& accel = run.devices().empty_accel(configuration);
+            const std::string error = refusal([&] { wrong.use(accel); });
             if (error.find(wrong.named) == std::string::npos && outcome.faults++ == 0)
                 outcome.what = text(wrong.what, ": ", error.empty() ? "not refused" : error);
         }

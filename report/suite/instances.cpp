@@ -19,13 +19,6 @@
 namespace twinray::suite {
 namespace {
 
-Scene instances_of(const Mesh& mesh, std::vector<Transform> transforms) {
-    Scene scene;
-    scene.meshes = {mesh};
-    for (const Transform& transform : transforms) scene.instances.push_back({"", 0, transform});
-    return scene;
-}
-
 void measure_instances(CaseRun& run, const Scene& scene, std::size_t rays, const Values& params = {}) {
     const World world = world_of(scene);
     run.measure(world, mixed_rays(world, bounds_of(scene), rays, run.seed()), {.params = params});
@@ -109,12 +102,9 @@ void refused_transforms(CaseRun& run) {
     for (const Configuration& configuration : run.one_configuration_each()) {
         CaseRun::Outcome outcome{.n = bad.size(), .fault_of = "twinray"};
         for (const auto& [what, transform] : bad) {
-            std::string error;
-            try {
-                run.devices().empty_accel(configuration).push(make_box(vec3(0), vec3(1)), transform);
-            } catch (const Error& refusal) {
-                error = refusal.what();
-            }
+            const std::string error = refusal([&, &placed = transform] {
+                run.devices().empty_accel(configuration).push(make_box(vec3(0), vec3(1)), placed);
+            });
             if (error.find("instance") == std::string::npos && outcome.faults++ == 0)
                 outcome.what = text(what, ": ", error.empty() ? "not refused" : error);
         }
@@ -273,9 +263,7 @@ void instances_by_powers_of_two(CaseRun& run) {
             const float scale = std::ldexp(1.0f, exponent);
             AbstractAccel& accel = run.devices().empty_accel(configuration);
             accel.push(sphere, Transform::scaling(vec3(scale)));
-            std::vector<Ray> scaled = rays;
-            for (Ray& ray : scaled) ray.origin *= scale;
-            std::vector<Hit> hits = accel.closest_hits(scaled, {.level = configuration.level});
+            std::vector<Hit> hits = accel.closest_hits(scaled(rays, scale), {.level = configuration.level});
             for (Hit& hit : hits)
                 if (hit.hit) hit.t /= scale;
             return hits;

@@ -34,14 +34,13 @@ struct Stage {
 
 // Area of the first mesh that light reaches, seen along the light.
 Estimate lit_area(Stage& stage, const Scene& scene, const dvec3& direction, std::uint64_t side, std::uint64_t seed) {
-    const auto start = Clock::now();
+    const Stopwatch start;
     const Illumination light = illuminate(
         stage.accel, scene, stage.faces,
         {.grid = {.direction = direction, .side = static_cast<uint>(side), .seed = seed}, .by = FaceGrouping::mesh});
     const LitArea& found = light.groups[0];
     const double rounding = 1 + 0x1p-50;
-    return {found.area, found.interval.low / rounding, found.interval.high * rounding, ms_since(start),
-            light.ray_count};
+    return {found.area, found.interval.low / rounding, found.interval.high * rounding, start.ms(), light.ray_count};
 }
 
 // On all configurations: `estimate` takes the stage, the amount and a seed.
@@ -86,10 +85,10 @@ void light_on_all_sizes(CaseRun& run) {
 // The mean of the first two faces: triangles of one area, which are the square. `light` computes the SkyLight.
 template <class Light>
 Estimate of_square(const Light& light, std::uint64_t samples, std::uint64_t seed) {
-    const auto start = Clock::now();
+    const Stopwatch start;
     const SkyLight found =
         light(SkyRaysDesc{.samples = static_cast<uint>(samples), .sides = Sides::front, .seed = seed});
-    const double ms = ms_since(start);
+    const double ms = start.ms();
     const Received &a = found.faces[0], &b = found.faces[1];
     return {(a.value + b.value) / 2, (a.interval.low + b.interval.low) / 2, (a.interval.high + b.interval.high) / 2, ms,
             found.ray_count};
@@ -126,10 +125,10 @@ void mean_height(CaseRun& run) {
     const Scene scene = shaded_square();
     measure_light(run, scene, {}, 1 - lit, "side", grid_sides,
                   [&](Stage& stage, std::uint64_t side, std::uint64_t seed) {
-                      const auto start = Clock::now();
+                      const Stopwatch start;
                       const Centroid found =
                           centroid(stage.accel, scene, {.grid = {.side = static_cast<uint>(side), .seed = seed}});
-                      const double ms = ms_since(start), half = 1.96 * found.standard_error->z;
+                      const double ms = start.ms(), half = 1.96 * found.standard_error->z;
                       return Estimate{found.mean->z, found.mean->z - half, found.mean->z + half, ms, found.ray_count};
                   });
 }

@@ -7,6 +7,7 @@
 #include "report/suite/estimators.h"
 #include "report/suite/flip.h"
 #include "report/suite/pictures.h"
+#include "report/suite/queries.h"
 #include <twinray/geometry.h>
 #include "renderer/camera.h"
 #include "renderer/cross_check.h"
@@ -56,16 +57,10 @@ void by_both_accelerators(CaseRun& run) {
     record.n = pixels;
     record.counts = {{"DIFFERING", difference.differing}, {"RAYS_DISAGREEING", checker.found()}};
     const std::uint64_t ours = faults_of_ours_in(desc.scene, checker.recorded());
-    record.faults = difference.unexplained + ours;
-    record.bound95 = upper_bound_95(record.faults, record.n);
     software.census().add_to(record);
-    record.pass = record.faults == 0;
-    if (!*record.pass) {
-        record.fault_of = "twinray";
-        record.reason = text(difference.unexplained,
-                             " pixels differ without a ray that does; of the rays, SwTlas is wrong about ", ours);
-    }
-    run.add(record);
+    add_checked(run, record, difference.unexplained + ours,
+                text(difference.unexplained,
+                     " pixels differ without a ray that does; of the rays, SwTlas is wrong about ", ours));
 }
 
 // How pictures are sampled: a curve of the plots.
@@ -158,8 +153,7 @@ void add_figures(CaseRun& run, std::span<const ExposureSeries> all, std::size_t 
             record.criterion = "none: measured";
             record.reference = "other seeds";
             record.n = of_seeds.size();
-            record.error = error_figures(metric, of_seeds);
-            record.error->floor = 0;
+            record.error = error_figures(metric, of_seeds, 0);
             record.time = time_figures("ms_per_picture", ms);
             if (is_first) set_efficiency(record, variances, ms);
             if (is_first && at == 0) series.census.add_to(record);

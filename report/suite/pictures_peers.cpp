@@ -12,6 +12,7 @@
 #include "validation/records/temporary_folder.h"
 #include "report/suite/estimators.h"
 #include "report/suite/pictures.h"
+#include "report/suite/queries.h"
 #include "renderer/camera.h"
 #include "renderer/reference.h"
 #include "engine/core/error.h"
@@ -86,9 +87,7 @@ void by_mitsuba(CaseRun& run) {
                           {"relMSE", scores.relative_mse}};
         record.faults = !(std::abs(scores.mean) < allowed) || !(scores.rms < expected + 1.5 * allowed);
         fixture.census().add_to(record);
-        record.pass = record.faults == 0;
-        if (!*record.pass) record.fault_of = "twinray", record.reason = "more than the noise of both explains";
-        run.add(record);
+        add_judged(run, record, "more than the noise of both explains");
     }
 }
 

@@ -7,6 +7,7 @@
 
 #include "report/suite/estimators.h"
 #include "report/suite/pictures.h"
+#include "report/suite/queries.h"
 #include <twinray/geometry.h>
 #include "renderer/camera.h"
 #include "engine/core/error.h"
@@ -27,11 +28,7 @@ void census(CaseRun& run) {
     record.n = record.counts["PIXELS"];
     if (record.n == 0) return run.add_not_run("counts the pixels of the other pictures, of which none was asked for");
     for (const auto& [kind, count] : record.counts) faults += kind == "PIXELS" ? 0 : count;
-    record.faults = faults;
-    record.bound95 = upper_bound_95(faults, record.n);
-    record.pass = faults == 0;
-    if (!*record.pass) record.fault_of = "twinray", record.reason = "pixels or parts of them are no radiance";
-    run.add(record);
+    add_checked(run, record, faults, "pixels or parts of them are no radiance");
 }
 
 void fireflies(CaseRun& run) {
@@ -124,9 +121,7 @@ void sums_of_films(CaseRun& run) {
     record.error = error_figures("relative", {std::abs(path_tracer::sum_of(film.pixels[0], 0) - sum) / sum});
     record.results = {{"float32_would_be_off_by", std::abs(static_cast<double>(plain) - sum) / sum}};
     record.faults = path_tracer::sum_of(film.pixels[0], 0) != sum;
-    record.pass = record.faults == 0;
-    if (!*record.pass) record.fault_of = "twinray", record.reason = "the sum is not exact";
-    run.add(record);
+    add_judged(run, record, "the sum is not exact");
 }
 
 double correlation(std::span<const double> a, std::span<const double> b) {
@@ -149,9 +144,7 @@ void add_correlation(CaseRun& run, Record record, const char* between, std::span
     record.n = a.size();
     record.results = {{"correlation", found}, {"limit", limit}};
     record.faults = !(std::abs(found) < limit);
-    record.pass = record.faults == 0;
-    if (!*record.pass) record.fault_of = "twinray", record.reason = text("of a correlation of ", found);
-    run.add(record);
+    add_judged(run, std::move(record), text("of a correlation of ", found));
 }
 
 // A floor below a light, which all pixels see alike: what differs is noise.

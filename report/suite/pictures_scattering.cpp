@@ -6,6 +6,7 @@
 
 #include "report/suite/estimators.h"
 #include "report/suite/pictures.h"
+#include "report/suite/queries.h"
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
 
@@ -53,13 +54,11 @@ Record record_of_cpu(CaseRun& run, const Values& params) {
     return record;
 }
 
-void add_checked(CaseRun& run, Record record, double value, double truth, double allowed) {
+void add_value(CaseRun& run, Record record, double value, double truth, double allowed) {
     record.error = error_figures("relative", {std::abs(value - truth) / truth});
     record.results.insert({{"value", value}, {"expected", truth}});
     record.faults = !(std::abs(value - truth) <= allowed);
-    record.pass = record.faults == 0;
-    if (!*record.pass) record.fault_of = "twinray", record.reason = text("off by more than ", allowed);
-    run.add(record);
+    add_judged(run, std::move(record), text("off by more than ", allowed));
 }
 
 // The mean weight of samples, by the midpoint rule over u: 1 - u.x is s^4, for few microfacets stand upright, near 1.
@@ -84,9 +83,8 @@ void microfacet_albedo(CaseRun& run) {
                  {0.25f, 0.1f, 0.891622}, {0.5f, 1, 0.68785},     {0.5f, 0.5f, 0.698251}, {0.5f, 0.1f, 0.860105},
                  {1, 1, 0.306852819440},  {1, 0.5f, 0.450694},    {1, 0.1f, 0.760211}};
     for (const auto& row : table)
-        add_checked(run, record_of_cpu(run, {{"alpha", row.alpha}, {"cosine", row.cosine}}),
-                    albedo_of(mirror(row.alpha), row.cosine, static_cast<uint>(run.amount(256, 512))), row.albedo,
-                    1e-4);
+        add_value(run, record_of_cpu(run, {{"alpha", row.alpha}, {"cosine", row.cosine}}),
+                  albedo_of(mirror(row.alpha), row.cosine, static_cast<uint>(run.amount(256, 512))), row.albedo, 1e-4);
 }
 
 // Cosine-weighted mean of Fresnel's reflectance, by the midpoint rule over the squared cosine.
@@ -100,10 +98,10 @@ double mean_fresnel(float eta) {
 }
 
 void glass_energy(CaseRun& run) {
-    add_checked(run, record_of_cpu(run, {{"mean of Fresnel", "from outside"}}), mean_fresnel(1.5f), 0.09177795934235121,
-                1e-6);
-    add_checked(run, record_of_cpu(run, {{"mean of Fresnel", "from inside"}}), mean_fresnel(1 / 1.5f),
-                0.59634575970771165, 1e-6);
+    add_value(run, record_of_cpu(run, {{"mean of Fresnel", "from outside"}}), mean_fresnel(1.5f), 0.09177795934235121,
+              1e-6);
+    add_value(run, record_of_cpu(run, {{"mean of Fresnel", "from inside"}}), mean_fresnel(1 / 1.5f),
+              0.59634575970771165, 1e-6);
     for (const Configuration& configuration : analysis_configurations(run)) {
         FlatQuestion question{.value = 1, .params = {{"sphere", "glass under a white sky"}}, .is_swept = false};
         add(question.desc.scene, make_icosphere(4),
@@ -133,11 +131,7 @@ void nearly_smooth(CaseRun& run) {
                                      !(path_tracer::largest(sample.weight) <= 1 + 1e-3f);
                 }
         record.results = {{"largest_weight", largest}};
-        record.bound95 = upper_bound_95(record.faults, record.n);
-        record.pass = record.faults == 0;
-        if (!*record.pass)
-            record.fault_of = "twinray", record.reason = "samples are not finite, or weigh more than 1.001";
-        run.add(record);
+        add_checked(run, record, record.faults, "samples are not finite, or weigh more than 1.001");
     }
 }
 
@@ -219,9 +213,7 @@ void samplers(CaseRun& run) {
                                                     static_cast<uint>(run.seed()));
             record.results = {{"p", chance}, {"least_p", least}};
             record.faults = !(chance > least);
-            record.pass = record.faults == 0;
-            if (!*record.pass) record.fault_of = "twinray", record.reason = "samples do not have their density";
-            run.add(record);
+            add_judged(run, record, "samples do not have their density");
         }
 }
 
@@ -240,10 +232,7 @@ void bsdf_reciprocity(CaseRun& run) {
             record.faults += !(errors.back() <= 1e-4);
         }
         record.error = error_figures("relative", errors);
-        record.bound95 = upper_bound_95(record.faults, record.n);
-        record.pass = record.faults == 0;
-        if (!*record.pass) record.fault_of = "twinray", record.reason = "the two ways differ by more than 1e-4";
-        run.add(record);
+        add_checked(run, record, record.faults, "the two ways differ by more than 1e-4");
     }
 }
 

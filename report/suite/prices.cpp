@@ -11,6 +11,7 @@
 #include <twinray/tlas.h>
 #include "engine/accel/feature_additions.h"
 #include "engine/core/error.h"
+#include "engine/core/uploaded.h"
 #include "feature_costs_program.trace_program.h"
 #include "report/suite/shapes.h"
 #include "validation/reference/aimed_rays.h"
@@ -40,23 +41,12 @@ std::vector<Step> steps_of(const AbstractAccel& accel, Query query) {
     return steps;
 }
 
-void upload_now(Context& context, const Buffer& buffer, std::span<const Ray> rays) {
-    Commands commands(context, "rays of features");
-    {
-        const auto pass = commands.pass("upload rays");
-        commands.upload(buffer, rays);
-    }
-    commands.submit();
-    context.wait_for_gpu();
-}
-
 // All steps in turn, each round.
 void trace_rounds(AbstractAccel& accel, std::span<const Ray> rays, Query query, std::size_t rounds,
                   std::vector<Step>& steps) {
     Context& context = accel.context();
-    const Buffer on_device(context, {.name = "rays of features", .bytes = rays.size_bytes()});
+    const Buffer on_device = uploaded(context, "rays of features", rays);
     const Buffer hits(context, {.name = "hits of features", .bytes = rays.size() * sizeof(Hit)});
-    upload_now(context, on_device, rays);
     for (std::size_t round = 0; round <= rounds; ++round)  // the first compiles
         for (Step& step : steps) {
             Commands commands(context, "features");

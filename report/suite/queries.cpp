@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "report/suite/queries.h"
+
+#include <utility>
+
 #include "engine/core/stopwatch.h"
 
 namespace twinray::suite {
@@ -25,15 +28,23 @@ Record query_record(CaseRun& run, const std::string& reference, const std::strin
 
 void add_checked(CaseRun& run, Record record, std::uint64_t faults, const std::string& what) {
     set_faults(record, faults, record.n);
-    decide(record, "twinray");
-    if (faults > 0) record.reason = what;
-    run.add(record);
+    add_judged(run, std::move(record), what);
 }
 
-double seconds_of(const std::function<void()>& work) {
-    const Stopwatch start;
-    work();
-    return start.seconds();
+void add_judged(CaseRun& run, Record record, const std::string& what) {
+    frame::decide(record, "twinray");
+    if (record.faults > 0) record.reason = what;
+    run.add(std::move(record));
+}
+
+std::vector<double> ns_each(int reps, std::size_t count, const std::function<void()>& work) {
+    std::vector<double> times;
+    for (int rep = 0; rep < reps; ++rep) {
+        const Stopwatch start;
+        work();
+        times.push_back(start.seconds() * 1e9 / static_cast<double>(count));
+    }
+    return times;
 }
 
 }  // namespace twinray::suite

@@ -15,7 +15,10 @@ Context& query_context(CaseRun& run);
 Record query_record(CaseRun& run, const std::string& reference, const std::string& variant = {});
 // With the ray_result: any fault is twinray's, and `what` it was.
 void add_checked(CaseRun& run, Record record, std::uint64_t faults, const std::string& what);
+// The same for a record whose faults are set; the bound of their rate stays as it is.
+void add_judged(CaseRun& run, Record record, const std::string& what);
 
-double seconds_of(const std::function<void()>& work);
+// Wall time of each repetition, in nanoseconds a thing of `count`.
+std::vector<double> ns_each(int reps, std::size_t count, const std::function<void()>& work);
 
 }  // namespace twinray::suite

@@ -41,9 +41,9 @@ struct Solution {
 
 Solution solve(const std::vector<ViewFactorRow>& rows, double rho) {
     const std::vector<double> emission = {1, 0, 0, 0, 0, 0}, reflectance(6, rho);
-    const auto start = Clock::now();
+    const Stopwatch start;
     Solution solution{solve_radiosity(rows, emission, reflectance), 0, 0};
-    solution.ms = ms_since(start);
+    solution.ms = start.ms();
     const std::array<double, 3> known = known_radiosities(rho);
     for (std::size_t i = 0; i < 6; ++i)
         solution.error = std::max(solution.error,
@@ -84,9 +84,9 @@ void by_rays(CaseRun& run) {
             for (std::uint64_t seed = 0; seed < run.amount(4, 40); ++seed) {
                 const ViewFactorOptions options{
                     .grouping = FaceGrouping::mesh, .rays = rays, .seed = static_cast<uint>(run.seed() + seed)};
-                const auto start = Clock::now();
+                const Stopwatch start;
                 last = solve(factors_of(accel, faces, scene, options, PairEstimator::hits), rho);
-                ms.push_back(ms_since(start));
+                ms.push_back(start.ms());
                 errors.push_back(last->error);
                 double sampling = 0;
                 for (const double half : last->light.sampling) sampling = std::max(sampling, half);
@@ -129,8 +129,7 @@ void by_reflectance(CaseRun& run) {
         set_solution(record, *last, errors, std::move(ms));
         record.faults = static_cast<std::uint64_t>(
             std::count_if(errors.begin(), errors.end(), [](double error) { return !(error <= 1e-6); }));
-        record.pass = record.faults == 0;
-        if (!*record.pass) record.fault_of = "twinray";
+        frame::decide(record, "twinray");
         run.add(record);
     }
 }

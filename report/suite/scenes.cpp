@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "report/suite/scenes.h"
 
+#include <twinray/scene.h>
+
 #include "validation/reference/aimed_rays.h"
 
 namespace twinray::suite {
@@ -78,6 +80,13 @@ Mesh moved(Mesh mesh, vec3 offset) {
     return mesh;
 }
 
+Scene instances_of(const Mesh& mesh, const std::vector<Transform>& transforms) {
+    Scene scene;
+    scene.meshes = {mesh};
+    for (const Transform& transform : transforms) scene.instances.push_back({"", 0, transform});
+    return scene;
+}
+
 vec3 turned(vec3 v, int times) {
     for (; times > 0; --times) v = vec3(v.z, v.x, v.y);
     return v;
@@ -103,12 +112,16 @@ Ray ray_to(const dvec3& target, const dvec3& origin) {
     return {rounded, 0, vec3(normalize(target - dvec3(rounded))), inf};
 }
 
-std::vector<Ray> mixed_rays(const World& world, const Bounds& bounds, std::size_t count, std::uint64_t seed) {
-    std::vector<Ray> rays = random_rays(bounds, count / 2, seed);
-    for (const auto& aimed :
-         {vertex_aimed_rays(world.reference, count / 4, seed), edge_aimed_rays(world.reference, count / 4, seed)})
-        rays.insert(rays.end(), aimed.begin(), aimed.end());
+std::vector<Ray> random_and_aimed(const ReferenceScene& reference, const Bounds& bounds, std::size_t random,
+                                  std::size_t aimed, std::uint64_t seed) {
+    std::vector<Ray> rays = random_rays(bounds, random, seed);
+    for (const auto& more : {vertex_aimed_rays(reference, aimed, seed), edge_aimed_rays(reference, aimed, seed)})
+        rays.insert(rays.end(), more.begin(), more.end());
     return rays;
+}
+
+std::vector<Ray> mixed_rays(const World& world, const Bounds& bounds, std::size_t count, std::uint64_t seed) {
+    return random_and_aimed(world.reference, bounds, count / 2, count / 4, seed);
 }
 
 }  // namespace twinray::suite

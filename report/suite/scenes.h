@@ -33,6 +33,8 @@ void add_triangle(Mesh& mesh, vec3 a, vec3 b, vec3 c);
 void append(Mesh& mesh, const Mesh& part);
 Mesh scaled(Mesh mesh, float factor);
 Mesh moved(Mesh mesh, vec3 offset);
+// An instance of the mesh for each transform.
+Scene instances_of(const Mesh& mesh, const std::vector<Transform>& transforms = {Transform{}});
 // Turns axes: x becomes y, y becomes z, z becomes x, `times` times.
 vec3 turned(vec3 v, int times);
 // Moves the origins only; t changes by the factor.
@@ -48,6 +50,9 @@ ScaledPlace scaled_place(Random& random, float most);
 
 // From an origin, which is rounded first, to the target: passes it within float32 rounding. |direction| = 1.
 Ray ray_to(const dvec3& target, const dvec3& origin);
+// `random` of them spread over the bounds, and `aimed` at vertices and as many at edges.
+std::vector<Ray> random_and_aimed(const ReferenceScene& reference, const Bounds& bounds, std::size_t random,
+                                  std::size_t aimed, std::uint64_t seed);
 // Half of them spread over the bounds, a quarter each aimed at vertices and at edges.
 std::vector<Ray> mixed_rays(const World& world, const Bounds& bounds, std::size_t count, std::uint64_t seed);
 

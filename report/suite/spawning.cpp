@@ -6,6 +6,7 @@
 #include <map>
 
 #include <twinray/geometry.h>
+#include "engine/core/uploaded.h"
 #include "report/suite/scenes.h"
 #include "suite_spawn.spv.h"
 
@@ -66,8 +67,7 @@ Tallies tallies_of(const Departures& departures, const SpawnedRays& spawned, std
 void set_tallies(Record& record, const Tallies& tallies) {
     const Tally& bound = tallies[SPAWN_BOUND];
     record.reference = "analytic";
-    record.faults = bound.faults();
-    record.bound95 = upper_bound_95(record.faults, record.n);
+    set_faults(record, bound.faults(), record.n);
     record.example = bound.example;
     record.results.emplace("flagged", bound.count(SpawnOutcome::flagged));
     // These tell no offset, so that nothing of theirs is flagged.

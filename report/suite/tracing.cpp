@@ -35,10 +35,10 @@ Stage make_stage(Devices& devices, const Configuration& configuration, const Wor
         const auto pass = commands.pass("upload rays");
         commands.upload(stage.rays, rays);
     }
-    const auto start = Clock::now();
+    const Stopwatch start;
     commands.submit();
     context.wait_for_gpu();
-    stage.upload_ms = ms_since(start);
+    stage.upload_ms = start.ms();
     return stage;
 }
 
@@ -49,7 +49,7 @@ struct Timing {
 };
 
 Timing trace_once(const Stage& stage, const Configuration& configuration, const Tracing& tracing, const Buffer& hits) {
-    const auto start = Clock::now();
+    const Stopwatch start;
     Commands commands(stage.accel.context(), "suite trace");
     stage.accel.trace(commands, stage.accel.view(),
                       {.rays = stage.rays.ref<Ray>(),
@@ -61,7 +61,7 @@ Timing trace_once(const Stage& stage, const Configuration& configuration, const 
     commands.submit();
     const std::vector<PassTiming> timings = commands.timings();
     stage.accel.context().wait_for_gpu();
-    return {total_ms(timings), ms_since(start), !timings.empty()};
+    return {total_ms(timings), start.ms(), !timings.empty()};
 }
 
 // The first trace, which compiles; the hits are its.
@@ -69,9 +69,9 @@ Traced trace_first(const Stage& stage, const Configuration& configuration, const
     Traced traced{.configuration = configuration, .hits = {}, .ns_per_ray = {}, .phases_ms = {}};
     traced.phases_ms["build"] = stage.build_ms;
     traced.phases_ms["first_trace"] = trace_once(stage, configuration, tracing, hits).wall_ms;
-    const auto start = Clock::now();
+    const Stopwatch start;
     traced.hits = download<Hit>(stage.accel.context(), hits, tracing.rays.size());
-    traced.phases_ms["copy"] = stage.upload_ms + ms_since(start);
+    traced.phases_ms["copy"] = stage.upload_ms + start.ms();
     return traced;
 }
 
@@ -134,10 +134,6 @@ std::vector<Traced> trace(Devices& devices, std::span<const Configuration> confi
                                         static_cast<double>(tracing.rays.size()));
         }
     return all;
-}
-
-double ms_since(Clock::time_point start) {
-    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
 double total_ms(const std::vector<PassTiming>& timings) {

@@ -2,12 +2,12 @@
 // Tracing the same rays on several configurations, timed side by side, and by negative controls.
 #pragma once
 
-#include <chrono>
 #include <map>
 #include <optional>
 
 #include "engine/accel/trace_desc.h"
 #include "engine/accel/trace_program.h"
+#include "engine/core/stopwatch.h"
 #include "report/suite/suite.h"
 #include "validation/reference/reference_scene.h"
 
@@ -67,22 +67,7 @@ std::vector<Traced> trace(Devices& devices, std::span<const Configuration> confi
 TimeFigures time_figures(const Traced& traced);
 // Of any repetitions, at least one.
 TimeFigures time_figures(const std::string& metric, std::vector<double> samples);
-using Clock = std::chrono::steady_clock;
-double ms_since(Clock::time_point start);
 // GPU time of all passes.
 double total_ms(const std::vector<PassTiming>& timings);
-
-// A buffer that holds them for all that is submitted later.
-template <class T>
-Buffer uploaded(Context& context, const char* name, std::span<const T> data) {
-    Buffer buffer(context, {.name = name, .bytes = data.size_bytes()});
-    Commands commands(context, name);
-    {
-        const auto pass = commands.pass(name);
-        commands.upload(buffer, data);
-    }
-    commands.submit();
-    return buffer;
-}
 
 }  // namespace twinray::suite

@@ -36,18 +36,12 @@ uvec3 hilbert_words(uvec3 cell)
     return uvec3(x.x ^ flips, x.y ^ flips, x.z ^ flips);
 }
 
-uint interleaved(uvec3 words)
-{
-    return spread_bits(words.x) << 2u | spread_bits(words.y) << 1u | spread_bits(words.z);
-}
-
 // The 30 higher or lower bits of the index of the cell that holds a point of the cube from `low` with sides `size`.
 uint hilbert_code(vec3 point, vec3 low, float size, bool is_higher)
 {
-    uvec3 words = hilbert_words(uvec3(cell_of(point.x, low.x, low.x + size), cell_of(point.y, low.y, low.y + size),
-                                      cell_of(point.z, low.z, low.z + size)));
+    uvec3 words = hilbert_words(cells_of(point, low, low + vec3(size)));
     uint shift = is_higher ? 10u : 0u;
-    return interleaved(uvec3((words.x >> shift) & 1023u, (words.y >> shift) & 1023u, (words.z >> shift) & 1023u));
+    return interleaved((words.x >> shift) & 1023u, (words.y >> shift) & 1023u, (words.z >> shift) & 1023u);
 }
 
 void main()
@@ -56,13 +50,11 @@ void main()
     if (i >= args.count) return;
     uint index = i;
     if (args.is_coarse != 0u) index = AT(args.order, i);
-    WorldBoundBits bits = AT(args.bits, 0);
-    vec3 low = vec3(from_ordered_bits(bits.lo.x), from_ordered_bits(bits.lo.y), from_ordered_bits(bits.lo.z));
-    vec3 high = vec3(from_ordered_bits(bits.hi.x), from_ordered_bits(bits.hi.y), from_ordered_bits(bits.hi.z));
+    GeometryBox cube = box_of(AT(args.bits, 0));
     TreeBox box = AT(args.boxes, index);
-    vec3 size = high - low;
+    vec3 size = cube.hi - cube.lo;
     uint code = 0u;
     float side = max(size.x, max(size.y, size.z));
-    if (!is_empty(box)) code = hilbert_code(center_of(box), low, side, args.is_coarse != 0u);
+    if (!is_empty(box)) code = hilbert_code(center_of(box), cube.lo, side, args.is_coarse != 0u);
     AT(args.keys, i) = code;
 }

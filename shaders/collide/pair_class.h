@@ -68,4 +68,12 @@ struct ClassifyArgs
     uint count;
     uint reserved;
 };
+
+// An order of points, for results that do not depend on that of vertices.
+FUNC bool is_before(dvec3 p, dvec3 q)
+{
+    if (p.x != q.x) return p.x < q.x;
+    if (p.y != q.y) return p.y < q.y;
+    return p.z < q.z;
+}
 #endif

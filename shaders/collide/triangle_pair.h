@@ -17,13 +17,6 @@ struct Hull
     uint axis; // along which it has an area
 };
 
-FUNC bool is_before(dvec3 p, dvec3 q)
-{
-    if (p.x != q.x) return p.x < q.x;
-    if (p.y != q.y) return p.y < q.y;
-    return p.z < q.z;
-}
-
 FUNC bool is_known(ivec3 s) { return s.x != UNKNOWN_SIGN && s.y != UNKNOWN_SIGN && s.z != UNKNOWN_SIGN; }
 FUNC bool is_all(ivec3 s, int sign) { return s.x == sign && s.y == sign && s.z == sign; }
 FUNC bool has_sign(ivec3 s, int sign) { return s.x == sign || s.y == sign || s.z == sign; }

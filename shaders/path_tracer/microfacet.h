@@ -39,17 +39,7 @@ FUNC float ggx_lambda(vec3 w, float alpha)
     return 0.5f * (sqrt(1.0f + alpha * alpha * tangent2) - 1.0f);
 }
 
-// Dupuy and Benyoub, "Sampling Visible GGX Normals with Spherical Caps", 2023.
-FUNC vec3 sample_visible_normal(vec3 wo, float alpha, vec2 u)
-{
-    vec3 stretched = normalize(vec3(alpha * wo.x, alpha * wo.y, wo.z));
-    float z = (1.0f - u.x) * (1.0f + stretched.z) - stretched.z;
-    vec2 circle = unit_circle(u.y) * sqrt(clamp(1.0f - z * z, 0.0f, 1.0f));
-    vec3 h = vec3(circle.x, circle.y, z) + stretched;
-    return normalize(vec3(alpha * h.x, alpha * h.y, h.z));
-}
-
-// The same three with a roughness along x and another along y (Heitz, "Understanding the Masking-Shadowing Function",
+// The same two with a roughness along x and another along y (Heitz, "Understanding the Masking-Shadowing Function",
 // 2014, section 5.3).
 FUNC float ggx_density_stretched(vec3 h, vec2 alpha)
 {
@@ -64,6 +54,7 @@ FUNC float ggx_lambda_stretched(vec3 w, vec2 alpha)
     return 0.5f * (sqrt(1.0f + dot(slope, slope) / (w.z * w.z)) - 1.0f);
 }
 
+// Dupuy and Benyoub, "Sampling Visible GGX Normals with Spherical Caps", 2023.
 FUNC vec3 sample_visible_normal_stretched(vec3 wo, vec2 alpha, vec2 u)
 {
     vec3 stretched = normalize(vec3(alpha.x * wo.x, alpha.y * wo.y, wo.z));
@@ -71,5 +62,10 @@ FUNC vec3 sample_visible_normal_stretched(vec3 wo, vec2 alpha, vec2 u)
     vec2 circle = unit_circle(u.y) * sqrt(clamp(1.0f - z * z, 0.0f, 1.0f));
     vec3 h = vec3(circle.x, circle.y, z) + stretched;
     return normalize(vec3(alpha.x * h.x, alpha.y * h.y, h.z));
+}
+
+FUNC vec3 sample_visible_normal(vec3 wo, float alpha, vec2 u)
+{
+    return sample_visible_normal_stretched(wo, vec2(alpha), u);
 }
 #endif

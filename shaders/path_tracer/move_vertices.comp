@@ -4,7 +4,6 @@
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"
 #include "shaders/path_tracer/scene.h"
-#include "shaders/path_tracer/move_vertices.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { MoveVerticesArgs args; };
 

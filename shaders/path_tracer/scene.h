@@ -242,4 +242,14 @@ struct SceneData
     Environment environment;
 };
 BUFFER_OF(SceneData, 8);
+
+// The arguments of the kernel that writes moved vertices into the records of a mesh.
+struct MoveVerticesArgs
+{
+    REF(SurfaceVertex) vertices;
+    Floats positions; // 3 floats a vertex
+    Floats normals;   // 3; absent: the mesh has none
+    Floats tangents;  // 4; absent: the mesh has none
+    uint count;
+};
 #endif

@@ -5,7 +5,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/path_tracer/includes.glsl"
 layout(local_size_x = PATH_GROUP) in;
-layout(push_constant, scalar) uniform Push { ShadowArgs args; };
+layout(push_constant, scalar) uniform Push { WaveArgs args; };
 
 WaveData wave;
 

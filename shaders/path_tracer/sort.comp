@@ -6,7 +6,7 @@
 #include "shaders/path_tracer/includes.glsl"
 #include "shaders/path_tracer/path.glsl"
 layout(local_size_x = PATH_GROUP) in;
-layout(push_constant, scalar) uniform Push { SortArgs args; };
+layout(push_constant, scalar) uniform Push { WaveArgs args; };
 
 uint kind_of(SceneData scene, Hit hit)
 {

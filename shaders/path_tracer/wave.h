@@ -87,7 +87,8 @@ struct WaveData
 };
 BUFFER_OF(WaveData, 8);
 
-struct SortArgs
+// Of the kernels that queue the rays of a wave, and that follow shadow rays.
+struct WaveArgs
 {
     REF(WaveData) wave;
     uint count;
@@ -101,12 +102,6 @@ struct ShadeArgs
     uint sample_index;
     uint seed;
     uint max_depth;
-};
-
-struct ShadowArgs
-{
-    REF(WaveData) wave;
-    uint count;
 };
 
 // A ray on which two accelerators name different hits.

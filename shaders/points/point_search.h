@@ -93,18 +93,11 @@ struct TrianglePoint
 
 FUNC double squared_length(dvec3 v) { return dot(v, v); }
 
-FUNC bool comes_first(dvec3 p, dvec3 q)
-{
-    if (p.x != q.x) return p.x < q.x;
-    if (p.y != q.y) return p.y < q.y;
-    return p.z < q.z;
-}
-
 // The closest point of the segment from `from` to `to`, which is at uv_from and uv_to. From either end, and of all
 // triangles that have the edge or the vertex, it is the same bits.
 FUNC TrianglePoint closest_on_edge(dvec3 p, dvec3 from, dvec3 to, dvec2 uv_from, dvec2 uv_to)
 {
-    bool is_turned = comes_first(to, from);
+    bool is_turned = is_before(to, from);
     dvec3 first = is_turned ? to : from;
     dvec3 last = is_turned ? from : to;
     dvec3 edge = last - first;

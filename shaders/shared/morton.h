@@ -26,18 +26,27 @@ FUNC uint cell_of(float x, float lo, float hi)
     return uint(scaled);
 }
 
+FUNC uvec3 cells_of(vec3 point, vec3 lo, vec3 hi)
+{
+    return uvec3(cell_of(point.x, lo.x, hi.x), cell_of(point.y, lo.y, hi.y), cell_of(point.z, lo.z, hi.z));
+}
+
+// Of 10 bits an axis.
+FUNC uint interleaved(uint x, uint y, uint z)
+{
+    return (spread_bits(x) << 2u) | (spread_bits(y) << 1u) | spread_bits(z);
+}
+
 FUNC uint morton_code(vec3 point, vec3 lo, vec3 hi)
 {
-    return (spread_bits(cell_of(point.x, lo.x, hi.x) >> 10u) << 2u) |
-        (spread_bits(cell_of(point.y, lo.y, hi.y) >> 10u) << 1u) |
-           spread_bits(cell_of(point.z, lo.z, hi.z) >> 10u);
+    uvec3 cells = cells_of(point, lo, hi);
+    return interleaved(cells.x >> 10u, cells.y >> 10u, cells.z >> 10u);
 }
 
 FUNC uint morton_code_low(vec3 point, vec3 lo, vec3 hi)
 {
-    return (spread_bits(cell_of(point.x, lo.x, hi.x) & 1023u) << 2u) |
-        (spread_bits(cell_of(point.y, lo.y, hi.y) & 1023u) << 1u) |
-           spread_bits(cell_of(point.z, lo.z, hi.z) & 1023u);
+    uvec3 cells = cells_of(point, lo, hi);
+    return interleaved(cells.x & 1023u, cells.y & 1023u, cells.z & 1023u);
 }
 
 // A map from floats (NaN excepted) to uints that keeps order, for atomic min and max.

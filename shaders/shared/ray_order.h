@@ -22,14 +22,6 @@ struct RayOrderArgs
     uint group_count; // of the kernel that finds the box
 };
 
-FUNC GeometryBox box_of(WorldBoundBits bits)
-{
-    GeometryBox box;
-    box.lo = vec3(from_ordered_bits(bits.lo.x), from_ordered_bits(bits.lo.y), from_ordered_bits(bits.lo.z));
-    box.hi = vec3(from_ordered_bits(bits.hi.x), from_ordered_bits(bits.hi.y), from_ordered_bits(bits.hi.z));
-    return box;
-}
-
 // The octant by the negative components: x in the highest bit.
 FUNC uint octant_of(vec3 direction)
 {

@@ -11,7 +11,6 @@
 #ifndef TWINRAY_SHARED_TRAVERSE_H
 #define TWINRAY_SHARED_TRAVERSE_H
 #include "shaders/shared/entered_children.h"
-#include "shaders/shared/short_stack_size.h"
 
 const uint NO_STACK_ENTRY = 0u;
 

@@ -27,6 +27,14 @@ struct WorldBoundBits
 };
 BUFFER_OF(WorldBoundBits, 4);
 
+FUNC GeometryBox box_of(WorldBoundBits bits)
+{
+    GeometryBox box;
+    box.lo = vec3(from_ordered_bits(bits.lo.x), from_ordered_bits(bits.lo.y), from_ordered_bits(bits.lo.z));
+    box.hi = vec3(from_ordered_bits(bits.hi.x), from_ordered_bits(bits.hi.y), from_ordered_bits(bits.hi.z));
+    return box;
+}
+
 struct WorldBoundArgs
 {
     REF(InstanceRecord) records;

@@ -67,18 +67,6 @@ class AccelTest : public VulkanTest, public ::testing::WithParamInterface<Kind> 
     Hit closest(const Ray& ray) { return accel().closest_hits(std::span(&ray, 1)).front(); }
     Hit any(const Ray& ray) { return accel().any_hits(std::span(&ray, 1)).front(); }
 
-    template <class T>
-    Buffer device_copy(const std::vector<T>& values) {
-        Buffer buffer(context(), {.name = "test input", .bytes = values.size() * sizeof(T)});
-        Commands commands(context(), "test input");
-        {
-            const auto pass = commands.pass("test input");
-            commands.upload(buffer, std::span<const T>(values));
-        }
-        commands.submit();
-        return buffer;
-    }
-
     // Writes as a kernel would, that many bytes behind where a handle's instances begin.
     template <class T>
     void write_instances(const InstanceRange& range, std::uint64_t offset, const T& value) {

@@ -136,19 +136,12 @@ TEST_P(HostWork, AMeshInDeviceMemoryIsNeitherWaitedForNorSeenByTheHost) {
         accel = std::make_unique<HwTlas>(*context, BuildOrder::automatic, AccelOptions{.keeps_surfaces = true});
 
     const Mesh mesh = make_icosphere(6);
-    const Buffer positions(*context, {.name = "positions", .bytes = mesh.positions.size() * sizeof(vec3)});
-    const Buffer indices(*context, {.name = "indices", .bytes = mesh.triangles.size() * sizeof(uvec3)});
     const Ray ray{vec3(0.1f, 0.2f, 5), 0, vec3(0, 0, -1), INFINITY};
-    const Buffer rays(*context, {.name = "rays", .bytes = sizeof ray}),
-        hits(*context, {.name = "hits", .bytes = sizeof(Hit)});
-    Commands fill(*context, "fill");
-    {
-        const auto pass = fill.pass("fill");
-        fill.upload(positions, std::span<const vec3>(mesh.positions));
-        fill.upload(indices, std::span<const uvec3>(mesh.triangles));
-        fill.write(rays, ray);
-    }
-    context->wait(fill.submit());
+    const Buffer positions = test::device_copy(*context, mesh.positions),
+                 indices = test::device_copy(*context, mesh.triangles),
+                 rays = test::device_copy(*context, std::span(&ray, 1)),
+                 hits(*context, {.name = "hits", .bytes = sizeof(Hit)});
+    context->wait(context->last_submission());
 
     const auto trace = [&] {
         Commands commands(*context, "trace");

@@ -76,13 +76,7 @@ class World {
         tower_top_ = 1 + std::fmod(tower_top_, 4.0f);
         const std::vector<vec3> positions = make_box(vec3(0), vec3(1, 1, tower_top_)).positions;
         if (where == Memory::upload) return accel().update_vertices(tower_, positions);
-        vertices_ = Buffer(context(), {.name = "vertices", .bytes = std::span(positions).size_bytes()});
-        Commands commands(context(), "vertices");
-        {
-            const auto pass = commands.pass("vertices");
-            commands.upload(vertices_, std::span(positions));
-        }
-        commands.submit();
+        vertices_ = test::device_copy(context(), positions);
         accel().update_vertices(tower_, vertices_.ref<float>(), positions.size());
     }
     // No ray comes here.
@@ -105,13 +99,9 @@ class World {
     // Fails it unless the view of the last sync still has the hits of then.
     void check_view_of_last_sync() {
         if (!view_.accel) return;
-        const Buffer ray_buffer(context(), {.name = "rays", .bytes = std::span(world_rays).size_bytes()});
+        const Buffer ray_buffer = test::device_copy(context(), world_rays);
         const Buffer hits(context(), {.name = "hits", .bytes = world_rays.size() * sizeof(Hit)});
         Commands commands(context(), "view of the last sync");
-        {
-            const auto pass = commands.pass("rays");
-            commands.upload(ray_buffer, std::span(world_rays));
-        }
         accel().trace(commands, view_,
                       {.rays = ray_buffer.ref<Ray>(), .hits = hits.ref<Hit>(), .count = world_rays.size()});
         commands.submit();

@@ -97,13 +97,9 @@ class Features : public test::VulkanTest, public ::testing::WithParamInterface<t
 
   private:
     std::vector<Hit> answers_alone(std::span<const Ray> rays, TraceDesc desc) {
-        const Buffer ray_buffer(context(), {.name = "rays", .bytes = rays.size_bytes()});
-        const Buffer hits(context(), {.name = "hits", .bytes = rays.size() * sizeof(Hit)});
+        const Buffer ray_buffer = device_copy(rays),
+                     hits(context(), {.name = "hits", .bytes = rays.size() * sizeof(Hit)});
         Commands commands(context(), "answers");
-        {
-            const auto pass = commands.pass("rays");
-            commands.upload(ray_buffer, rays);
-        }
         desc.rays = ray_buffer.ref<Ray>();
         desc.hits = hits.ref<Hit>();
         desc.count = rays.size();

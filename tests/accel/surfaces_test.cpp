@@ -248,17 +248,11 @@ FoundByKernel run_surface_kernel(Context& context, std::uint64_t scene, std::spa
         Ref<vec4> others;
         uint count, heat;
     };
-    const Buffer ray_buffer(context, {.name = "rays", .bytes = rays.size_bytes()});
-    const Buffer hit_buffer(context, {.name = "hits", .bytes = hits.size_bytes()});
+    const Buffer ray_buffer = test::device_copy(context, rays), hit_buffer = test::device_copy(context, hits);
     const Buffer surfaces(context, {.name = "surfaces", .bytes = rays.size() * sizeof(Surface)});
     const Buffer others(context, {.name = "others", .bytes = rays.size() * 2 * sizeof(vec4)});
     const Kernel<Args> kernel(context, {.name = "surface kernel", .spirv = test_surface_kernel_spirv});
     Commands commands(context, "surfaces");
-    {
-        const auto pass = commands.pass("rays and hits");
-        commands.upload(ray_buffer, rays);
-        commands.upload(hit_buffer, hits);
-    }
     kernel.dispatch(commands,
                     {scene, ray_buffer.ref<Ray>(), hit_buffer.ref<Hit>(), surfaces.ref<Surface>(), others.ref<vec4>(),
                      static_cast<uint>(rays.size()), heat},

@@ -7,16 +7,14 @@ import pathlib
 import struct
 import subprocess
 import sys
-import tempfile
 
-twinray, here = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(tempfile.mkdtemp())
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import command
+from command import here
 
 
 def run(*arguments, scene="two.ply", rays="rays", status=0):
-    done = subprocess.run([twinray, "trace", scene, "--rays", rays, "--hits", "hits", "--quiet", *arguments],
-                          capture_output=True, text=True, cwd=here)
-    assert done.returncode == status, f"{arguments}: status {done.returncode}\n{done.stdout}{done.stderr}"
-    return done.stdout + done.stderr
+    return command.run("trace", scene, "--rays", rays, "--hits", "hits", "--quiet", *arguments, status=status)
 
 
 def hits():  # (hit, t, triangle) of each
@@ -30,8 +28,7 @@ def hits():  # (hit, t, triangle) of each
 rays = [(0.5, 0.5, 0), (1.5, 1.5, 0), (5, 5, 0)]
 (here / "rays").write_bytes(b"".join(struct.pack("<8f", *origin, 0, 0, 0, 1, 9) for origin in rays))
 
-devices = json.loads(subprocess.run([twinray, "devices", "--json", "/dev/stdout"], capture_output=True, text=True,
-                                    check=True).stdout.splitlines()[0])
+devices = json.loads(command.run("devices", "--json", "/dev/stdout").splitlines()[0])
 for accel in ["sw", "hw"]:
     run("--accel", accel)
     assert hits() == [(1, 1, 1), (1, 2, 0), (0, -1, 0)], hits()
@@ -99,7 +96,8 @@ for accel in ["sw", "hw"]:
     run("--accel", accel, "--json", "far.jsonl", rays="rays.npy")
     assert near(inside), hits()
 assert json.loads((here / "far.jsonl").read_text().splitlines()[0])["origin"] == [500002, 5400002, 2]
-said = subprocess.run([twinray, "trace", "two.ply", "--rays", "rays.npy", "--hits", "hits"], capture_output=True, text=True, cwd=here)
+said = subprocess.run([command.program, "trace", "two.ply", "--rays", "rays.npy", "--hits", "hits"], capture_output=True,
+                      text=True, cwd=here)
 assert said.stderr.count("scene moved to local origin 500002 5400002 2\n") == 1, said.stderr
 # Rays whose coordinates float32 can hold there are moved exactly.
 at = [(500001, 5400001, 0), (500003, 5400001, 0), (500000, 5400001, 0)]

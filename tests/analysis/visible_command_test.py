@@ -4,17 +4,10 @@
 import csv
 import json
 import pathlib
-import subprocess
 import sys
-import tempfile
 
-twinray, here = sys.argv[1], pathlib.Path(tempfile.mkdtemp())
-
-
-def run(*arguments, status=0):
-    done = subprocess.run([twinray, *arguments], capture_output=True, text=True, cwd=here)
-    assert done.returncode == status, f"{arguments}: status {done.returncode}\n{done.stdout}{done.stderr}"
-    return done.stdout + done.stderr
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from command import here, run
 
 
 def rows():

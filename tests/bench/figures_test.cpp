@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Figures of a bench and the table that they stand in, and the hash of the hits that they are of.
 #include "bench/figures.h"
-#include "bench/hits_hash.h"
+#include "bench/measure.h"
 #include "engine/core/fnv1a.h"
 #include "bench/table.h"
 

@@ -7,7 +7,7 @@
 
 #include "bench/embree_backend.h"
 #include "bench/hit_check.h"
-#include "bench/hits_hash.h"
+#include "bench/measure.h"
 #include "bench/rays.h"
 #include "tests/scene/temp_dir.h"
 #include "tests/support/device.h"

@@ -8,20 +8,17 @@ import os
 import pathlib
 import random
 import struct
-import subprocess
 import sys
-import tempfile
 
-twinray = pathlib.Path(sys.argv[1]).resolve()
-here = pathlib.Path(tempfile.mkdtemp())
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import command
+from command import here
+
 RAYS = 20_000
 
 
 def run(*arguments, env=None):
-    done = subprocess.run([twinray, *map(str, arguments)], capture_output=True, text=True, cwd=here,
-                          env={**os.environ, "MESA_SHADER_CACHE_DISABLE": "true", **(env or {})})
-    assert done.returncode == 0, f"{arguments} {env}: status {done.returncode}\n{done.stdout}{done.stderr}"
-    return done.stdout
+    return command.run(*arguments, env={**os.environ, "MESA_SHADER_CACHE_DISABLE": "true", **(env or {})})
 
 
 draw = random.Random(1)

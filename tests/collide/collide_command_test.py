@@ -1,21 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Runs `twinray collide` as a user does. Usage: collide_command_test.py TWINRAY"""
+import functools
 import json
 import pathlib
-import subprocess
 import sys
-import tempfile
 
-twinray, here = sys.argv[1], pathlib.Path(tempfile.mkdtemp())
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import command
+from command import here
 
-
-def run(*arguments, status=0):
-    done = subprocess.run([twinray, "collide", *arguments], capture_output=True, text=True, cwd=here)
-    assert done.returncode == status, f"{arguments}: status {done.returncode}\n{done.stdout}{done.stderr}"
-    assert "VUID" not in done.stderr and "SYNC-HAZARD" not in done.stderr, done.stderr
-    return done.stdout + done.stderr
-
+run = functools.partial(command.run, "collide")
 
 # Three triangles in one mesh: the second pierces the first, the third touches the second at a corner.
 points = ["0 0 0", "4 0 0", "0 4 0", "1 1 -1", "1 1 1", "3 1 -1", "1 1 1", "0 0 5", "0 1 5"]

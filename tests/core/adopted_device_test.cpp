@@ -6,8 +6,8 @@
 #include <cstring>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <thread>
-#include <utility>
 
 #include <twinray/geometry.h>
 #include <twinray/queries.h>
@@ -17,6 +17,7 @@
 #include "engine/core/error.h"
 #include "tests/core/host_device.h"
 #include "tests/scene/temp_dir.h"
+#include "tests/support/caller.h"
 
 namespace twinray {
 namespace {
@@ -156,35 +157,17 @@ TEST_F(AdoptedDeviceTest, PipelinesGoIntoTheHostsCache) {
     vkDestroyPipelineCache(host_.device.device, cache, nullptr);
 }
 
-class WaitTest : public test::HostTest {
+class WaitTest : public test::VulkanTest {
   protected:
     void SetUp() override {
-        test::HostTest::SetUp();
-        if (IsSkipped()) return;
-        ASSERT_TRUE(host_.create());
-        context_ = std::make_unique<Context>(host_.device);
-        VkSemaphoreTypeCreateInfo type{};
-        type.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO;
-        type.semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE;
-        VkSemaphoreCreateInfo info{};
-        info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO;
-        info.pNext = &type;
-        ASSERT_EQ(vkCreateSemaphore(host_.device.device, &info, nullptr, &timeline_), VK_SUCCESS);
+        VulkanTest::SetUp();
+        if (!IsSkipped() && !HasFailure()) caller_.emplace(context());
     }
     void TearDown() override {
-        context_.reset();
-        if (timeline_) vkDestroySemaphore(host_.device.device, timeline_, nullptr);
+        caller_.reset();
+        VulkanTest::TearDown();
     }
-    void signal(std::uint64_t value) {
-        VkSemaphoreSignalInfo info{};
-        info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SIGNAL_INFO;
-        info.semaphore = timeline_;
-        info.value = value;
-        EXPECT_EQ(vkSignalSemaphore(host_.device.device, &info), VK_SUCCESS);
-    }
-    Context& context() { return *context_; }
-    std::unique_ptr<Context> context_;
-    VkSemaphore timeline_ = VK_NULL_HANDLE;
+    std::optional<test::Caller> caller_;
 };
 
 TEST_F(WaitTest, ASubmissionSeesWhatTheHostWroteBeforeItsSignal) {
@@ -197,25 +180,26 @@ TEST_F(WaitTest, ASubmissionSeesWhatTheHostWroteBeforeItsSignal) {
         const auto pass = commands.pass("copy");
         commands.copy(from, 0, to, 0, 4);
     }
-    context().wait_before_next_submission({timeline_, 7}, VK_PIPELINE_STAGE_TRANSFER_BIT);
+    context().wait_before_next_submission(caller_->begin().done, VK_PIPELINE_STAGE_TRANSFER_BIT);
     const SyncPoint copied = commands.submit();
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
     EXPECT_FALSE(context().is_reached(copied));
     write(2);
-    signal(7);
+    caller_->signal();
     context().wait(copied);
     uint value = 0;
     std::memcpy(&value, to.mapped(), 4);
     EXPECT_EQ(value, 2u);
     // The next one does not wait again: the layer would complain of a semaphore that is gone.
-    vkDestroySemaphore(host_.device.device, std::exchange(timeline_, VK_NULL_HANDLE), nullptr);
+    caller_.reset();
     context().wait(Commands(context(), "does not wait").submit());
 }
 
 TEST_F(WaitTest, AWaitForNothingIsRefused) {
     EXPECT_THROW(context().wait_before_next_submission({}), Error);
-    EXPECT_THROW(context().wait_before_next_submission({timeline_, 0}), Error);
-    EXPECT_THROW(context().wait_before_next_submission({timeline_, 1}, 0), Error);
+    const SyncPoint done = caller_->begin().done;
+    EXPECT_THROW(context().wait_before_next_submission({done.semaphore, 0}), Error);
+    EXPECT_THROW(context().wait_before_next_submission(done, 0), Error);
     context().wait(Commands(context(), "does not wait").submit());
 }
 

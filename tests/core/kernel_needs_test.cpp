@@ -11,7 +11,7 @@
 #include "engine/core/requirement.h"
 #include "engine/core/error.h"
 #include "engine/core/files.h"
-#include "engine/core/sort_args.h"
+#include "engine/core/radix_sort.h"
 #include "tests/support/spirv_needs.h"
 
 namespace twinray {
@@ -143,16 +143,23 @@ std::vector<std::filesystem::path> all_modules() {
 TEST(KernelNeeds, NoModuleNeedsMoreThanItsPartsOfTwinray) {
     const std::vector<std::filesystem::path> modules = all_modules();
     ASSERT_GT(modules.size(), 100u) << TWINRAY_MODULE_LIST;
+    SpirvNeeds all;
     for (const std::filesystem::path& file : modules) {
         const std::string name = file.stem().string();
         try {
             const SpirvNeeds needs = needs_of(words_of(file), constants_of(name));
             for (const std::string& excess : excess_of(needs, parts_of_file(file)))
                 ADD_FAILURE() << name << ": " << excess;
+            all.capabilities.insert(needs.capabilities.begin(), needs.capabilities.end());
+            all.shared_bytes = std::max(all.shared_bytes, needs.shared_bytes);
+            all.group_invocations = std::max(all.group_invocations, needs.group_invocations);
+            all.push_constant_bytes = std::max(all.push_constant_bytes, needs.push_constant_bytes);
         } catch (const Error& error) {
             ADD_FAILURE() << name << ": " << error.what();
         }
     }
+    EXPECT_TRUE(all.shared_bytes && all.group_invocations && all.push_constant_bytes) << "not read";
+    EXPECT_TRUE(all.capabilities.contains(10) && all.capabilities.contains(4472)) << "Float64 and RayQueryKHR";
 }
 
 TEST(KernelNeeds, AModuleOfNoKnownPartFails) {
@@ -182,38 +189,8 @@ TEST(KernelNeeds, OfThePartsDiffer) {
     EXPECT_EQ(excess(ray_query, {Of::ray_queries}).size(), 0u);
 }
 
-// A module by hand: groups of 8 x COLUMNS, for each invocation a vec3 and a number that they share; 132 bytes of push
-// constants.
-TEST(KernelNeeds, AreReadFromAModule) {
-    constexpr auto op = [](std::uint32_t code, std::uint32_t length) { return length << 16 | code; };
-    // An instruction or two a line.
-    // clang-format off
-    const std::vector<std::uint32_t> spirv = {
-        0x07230203, 0x00010500, 0, 40, 0,
-        op(17, 2), 1, op(17, 2), 11,                                // OpCapability Shader, Int64
-        op(10, 3), 0x5f565053, 0x00000041,                          // OpExtension "SPV_A"
-        op(16, 6), 30, 17, 1, 1, 1,                                 // OpExecutionMode LocalSize 1 1 1
-        op(71, 4), 5, 1, 7,                                         // OpDecorate %5 SpecId 7
-        op(71, 4), 6, 11, 25,                                       // OpDecorate %6 BuiltIn WorkgroupSize
-        op(72, 5), 20, 0, 35, 128,                                  // OpMemberDecorate %20 0 Offset 128
-        op(21, 4), 1, 32, 0, op(23, 4), 2, 1, 3,                    // %1 uint, %2 uvec3
-        op(43, 4), 1, 3, 8, op(43, 4), 1, 4, 1,                     // %3 8, %4 1
-        op(50, 4), 1, 5, 2, op(51, 6), 2, 6, 3, 5, 4,               // %5 COLUMNS, by default 2, %6 (8, COLUMNS, 1)
-        op(52, 6), 1, 7, 132, 3, 5, op(28, 4), 8, 2, 7,             // %7 8 * COLUMNS, %8 uvec3[8 * COLUMNS]
-        op(52, 6), 1, 9, 81, 6, 1, op(28, 4), 10, 1, 9,             // %9 %6.y, %10 uint[COLUMNS]
-        op(32, 4), 11, 4, 8, op(32, 4), 12, 4, 10,                  // pointers
-        op(59, 4), 11, 13, 4, op(59, 4), 12, 14, 4,                 // OpVariable Workgroup
-        op(30, 3), 20, 1, op(32, 4), 21, 9, 20, op(59, 4), 21, 22, 9};
-    // clang-format on
-    SpirvNeeds needs = needs_of(spirv);
-    EXPECT_EQ(needs.capabilities, (std::set<std::uint32_t>{1, 11}));
-    EXPECT_EQ(needs.extensions, std::set<std::string>{"SPV_A"});
-    EXPECT_EQ(needs.group_invocations, 16u);
-    EXPECT_EQ(needs.shared_bytes, 16u * 16 + 16);
-    EXPECT_EQ(needs.push_constant_bytes, 132u);
-    needs = needs_of(spirv, {{7, 128}});
-    EXPECT_EQ(needs.group_invocations, 1024u);
-    EXPECT_EQ(needs.shared_bytes, 1024u * 16 + 128 * 4);
+TEST(KernelNeeds, BeyondTheLimitsAreNamed) {
+    const SpirvNeeds needs = {0x00010500, {1, 11}, {"SPV_A"}, 16896, 1024, 132};
     EXPECT_EQ(excess_of(needs, {}),
               (std::vector<std::string>{"capability 11", "SPV_A", "16896 bytes of shared memory; the limit is 16384",
                                         "1024 invocations of a group; the limit is 256",

@@ -9,7 +9,7 @@
 #include <cstring>
 
 #include <twinray/tlas.h>
-#include "engine/accel/trace_args.h"
+#include "engine/accel/trace_desc.h"
 #include "engine/core/error.h"
 #include "engine/core/kernel.h"
 #include "swtlas_trace.spv.h"

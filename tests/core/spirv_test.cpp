@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
 // One file of more than 400 lines, since all tests share the builders of modules below.
 // SPIR-V in which constants are known, word by word, and branches that they decide, as text.
-#include "engine/core/frozen_spirv.h"
-#include "engine/core/pruned_spirv.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +12,7 @@
 #include "engine/accel/features_of.h"
 #include "engine/core/error.h"
 #include "engine/core/files.h"
-#include "engine/core/sort_args.h"
+#include "engine/core/radix_sort.h"
 #include "engine/core/spirv_words.h"
 #include "tests/scene/temp_dir.h"
 #include "tests/support/device.h"

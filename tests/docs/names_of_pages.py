@@ -5,6 +5,7 @@ other libraries have in the column of twinray. Commands of blocks that are not r
 Usage: names_of_pages.py --programs FOLDER [PAGE...]"""
 
 import argparse
+import collections
 import functools
 import pathlib
 import re
@@ -29,6 +30,11 @@ OPTION = re.compile(r"(?<![\w-])--?[a-z][\w-]*")
 MEMBER = re.compile(r"(?<![\w:])([A-Z]\w*)::(\w+)")
 # The names in a cell: functions, types, and whole spans.
 NAME = re.compile(r"\b(\w+)(?=\()|\b([A-Z]\w*[a-z]\w*)\b|^(\w+)$")
+
+
+# At least so many are looked at in all pages: else something of theirs is no longer recognised.
+LEAST = {"commands": 125, "options": 170, "members": 95, "cells": 70}
+looked_at = collections.Counter()
 
 
 class Public:
@@ -58,6 +64,7 @@ class Public:
 
     def has_member(self, name, member):
         """Types that are not public have what they like, but must be there."""
+        looked_at["members"] += 1
         bodies = self.bodies(name)
         return any(re.search(rf"\b{member}\b", body) for body in bodies) or not bodies and name in self.types
 
@@ -84,12 +91,14 @@ class Programs:
 
     def fault_of_span(self, span):
         if span.startswith("--"):
+            looked_at["options"] += 1
             wrong = [option for option in OPTION.findall(span) if option not in self.all_options]
             return f"no program has an option {wrong[0]}" if wrong else ""
         return next(filter(None, map(self.fault, commands_of(span))), "")
 
     def fault(self, words):
         """What is wrong with a command as pages write them, with dots, brackets and names for what may stand there."""
+        looked_at["commands"] += 1
         program, *rest = words
         has_command = rest and re.fullmatch(r"[a-z]+", rest[0]) and (program == "twinray" or rest[0] == "merge")
         if rest[:1] == ["help"] or program == "twinray" and not has_command:
@@ -136,6 +145,7 @@ def faults_of(page, text, public, programs):
                 if not public.has_member(name, member):
                     faults.append((number, f"`{span}`: {name} has no {member}"))
     for number, cell in cells_of_twinray(plain):
+        looked_at["cells"] += 1
         names = {name for span in SPAN.findall(cell) for match in NAME.findall(span) for name in match if name}
         faults += [(number, f"no {name} in headers or package") for name in sorted(names - public.words)]
     for block in blocks.blocks_of(text):
@@ -154,7 +164,11 @@ def main(arguments):
     faults = []
     for page in pages:
         faults += faults_of(page, (ROOT / page).read_text(encoding="utf-8"), public, programs)
-    print("\n".join([*faults, f"names_of_pages: {len(pages)} pages, {len(faults)} faults"]))
+    if not given.pages:
+        faults += [
+            f"only {looked_at[what]} {what}, not {least}" for what, least in LEAST.items() if looked_at[what] < least
+        ]
+    print("\n".join([*faults, f"names_of_pages: {len(pages)} pages, {dict(looked_at)}, {len(faults)} faults"]))
     return 1 if faults else 0
 
 

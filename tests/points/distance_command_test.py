@@ -1,22 +1,18 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Runs `twinray distance` as a user does. Usage: distance_command_test.py TWINRAY"""
+import functools
 import json
 import pathlib
 import struct
-import subprocess
 import sys
-import tempfile
 import zipfile
 
-twinray, here = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(tempfile.mkdtemp())
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import command
+from command import here
 
-
-def run(*arguments, status=0):
-    done = subprocess.run([twinray, "distance", *arguments], capture_output=True, text=True, cwd=here)
-    assert done.returncode == status, f"{arguments}: status {done.returncode}\n{done.stdout}{done.stderr}"
-    assert "VUID" not in done.stderr and "SYNC-HAZARD" not in done.stderr, done.stderr
-    return done.stdout + done.stderr
+run = functools.partial(command.run, "distance")
 
 
 def lines(name):

@@ -82,6 +82,7 @@ def test_only_hits_between_tnear_and_tfar_count():
     ray = [0.3, 0.6, -1, 0, 0, 1]
     assert scene.cast_rays(ray, tnear=1.5)["t_hit"] == 2
     assert scene.cast_rays(ray, tfar=0.5)["t_hit"] == np.inf
+    assert scene.cast_rays(ray, tnear=1.5, tfar=1.9)["t_hit"] == np.inf
     assert not scene.test_occlusions(ray, tfar=0.5) and scene.test_occlusions(ray, 1.5)
     assert scene.count_intersections(ray, tnear=1.5) == 1
 

@@ -10,17 +10,12 @@ import socket
 import struct
 import subprocess
 import sys
-import tempfile
 import time
 
-path_tracer, here = sys.argv[1], pathlib.Path(tempfile.mkdtemp())
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from command import here, program as path_tracer, run
+
 box = ["builtin:cornell-box", "--height", "24", "--accel", "sw"]
-
-
-def run(*arguments, status=0):
-    done = subprocess.run([path_tracer, *arguments], capture_output=True, text=True, cwd=here)
-    assert done.returncode == status, f"{arguments}: status {done.returncode}\n{done.stdout}{done.stderr}"
-    return done.stdout + done.stderr
 
 
 def same(*names):

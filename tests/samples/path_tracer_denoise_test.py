@@ -7,9 +7,11 @@ import os
 import pathlib
 import subprocess
 import sys
-import tempfile
 
-path_tracer, here = sys.argv[1], pathlib.Path(tempfile.mkdtemp())
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import command
+from command import here
+
 LIBRARY = "libOpenImageDenoise.so.2"
 box = ["builtin:cornell-box", "--height", "48", "--accel", "sw"]
 
@@ -17,9 +19,7 @@ box = ["builtin:cornell-box", "--height", "48", "--accel", "sw"]
 def run(*arguments, status=0, folder=None):
     """folder: for libraries, instead of those that the environment names; "": none."""
     variables = os.environ if folder is None else {**os.environ, "LD_LIBRARY_PATH": str(folder)}
-    done = subprocess.run([path_tracer, *arguments], capture_output=True, text=True, cwd=here, env=variables)
-    assert done.returncode == status, f"{arguments}: status {done.returncode}\n{done.stdout}{done.stderr}"
-    return done.stdout + done.stderr
+    return command.run(*arguments, status=status, env=variables)
 
 
 def is_found(folder):

@@ -5,11 +5,11 @@ import base64
 import json
 import pathlib
 import struct
-import subprocess
 import sys
-import tempfile
 
-path_tracer, here = sys.argv[1], pathlib.Path(tempfile.mkdtemp())
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from command import here, run
+
 buffer, views, accessors = b"", [], []
 
 
@@ -53,12 +53,6 @@ scene = {
 scene["buffers"] = [{"byteLength": len(buffer), "uri": "data:application/octet-stream;base64," + base64.b64encode(buffer).decode()}]
 (here / "flags.gltf").write_text(json.dumps(scene))
 small = ["flags.gltf", "--height", "24", "--spp", "2"]
-
-
-def run(*arguments, status=0):
-    done = subprocess.run([path_tracer, *arguments], capture_output=True, text=True, cwd=here)
-    assert done.returncode == status, f"{arguments}: status {done.returncode}\n{done.stdout}{done.stderr}"
-    return done.stdout + done.stderr
 
 
 def same(*names):

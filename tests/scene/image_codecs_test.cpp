@@ -2,7 +2,7 @@
 // Pictures in WebP and AVIF, made by the libraries that also decode them.
 #include <gtest/gtest.h>
 
-#include "engine/scene/image_codecs.h"
+#include "engine/scene/images.h"
 #include "tests/scene/gltf_builder.h"
 #include "tests/support/device.h"
 

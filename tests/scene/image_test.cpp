@@ -10,7 +10,7 @@
 #include <ImfOutputFile.h>
 #include <ImfRgbaFile.h>
 
-#include "engine/scene/importers/placeholder.h"
+#include "engine/scene/images.h"
 #include "tests/scene/packed_bytes.h"
 #include "tests/scene/temp_dir.h"
 #include "tests/support/device.h"

@@ -3,7 +3,6 @@
 #include "engine/scene/local_origin.h"
 
 #include "engine/scene/glb.h"
-#include "engine/scene/importers/gltf_origin.h"
 #include "engine/scene/rig.h"
 #include "tests/scene/far_houses.h"
 #include "tests/scene/load_text.h"

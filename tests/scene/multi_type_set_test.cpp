@@ -50,13 +50,9 @@ class MultiTypeSetTest : public VulkanTest {
     // The results of the kernel: a value for each key, the weighted sum, the results of unrolled loops.
     std::vector<float> run(const std::vector<SetKey>& keys, bool is_debug = false) {
         const std::size_t size = keys.size() + 1 + UNROLLED_RESULTS;
-        const Buffer on_device(context(), {.name = "keys", .bytes = keys.size() * sizeof(SetKey)});
+        const Buffer on_device = device_copy(keys);
         const Buffer values(context(), {.name = "values", .bytes = size * sizeof(float)});
         Commands commands(context(), "test set");
-        {
-            const auto pass = commands.pass("keys");
-            commands.upload(on_device, std::span(keys));
-        }
         const auto count = static_cast<uint>(keys.size());
         kernel(is_debug).dispatch(commands, {set().view(), on_device.ref<SetKey>(), values.ref<float>(), count, 0},
                                   std::max(count, 1u));

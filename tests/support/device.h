@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <span>
 
+#include <twinray/commands.h>
 #include "engine/core/context.h"
 
 namespace twinray::test {
@@ -30,6 +32,20 @@ bool has_validation();
 // failed when TWINRAY_REQUIRE names vulkan. Callers return at once on null.
 std::unique_ptr<Context> make_context(ContextDesc desc = {});
 
+// What a span can hold, in a buffer of the device's.
+template <class Values>
+Buffer device_copy(Context& context, const Values& values) {
+    const std::span<const std::byte> bytes = std::as_bytes(std::span(values));
+    Buffer buffer(context, {.name = "test input", .bytes = bytes.size()});
+    Commands commands(context, "test input");
+    {
+        const auto pass = commands.pass("test input");
+        commands.upload(buffer, 0, bytes);
+    }
+    commands.submit();
+    return buffer;
+}
+
 // Fixture for label `vulkan`.
 class VulkanTest : public ::testing::Test {
   protected:
@@ -40,6 +56,10 @@ class VulkanTest : public ::testing::Test {
     // those of a context itself, or that count what it has.
     virtual bool shares_context() const { return true; }
     Context& context() const { return *context_; }
+    template <class Values>
+    Buffer device_copy(const Values& values) const {
+        return test::device_copy(context(), values);
+    }
     // Whether a warning that contains this has come.
     bool was_logged(const std::string& part) const;
 

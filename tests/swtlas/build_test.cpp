@@ -185,20 +185,6 @@ TEST_P(SwBuild, AMeshOfNothingButNansIsEmpty) {
     EXPECT_EQ(hit.hit, 0u);
 }
 
-TEST_P(SwBuild, ASecondBuildIsBitIdentical) {
-    const Mesh mesh = make_soup(50'000, 5, 0.02f);
-    BuiltTree trees[2];
-    for (BuiltTree& tree : trees) {
-        SwTlas accel(context(), options());
-        const AccelHandle handle = accel.push(mesh);
-        accel.sync();
-        tree = download_geometry(accel, handle);
-    }
-    EXPECT_TRUE(same_bytes(trees[0].nodes, trees[1].nodes));
-    EXPECT_TRUE(same_bytes(trees[0].triangles, trees[1].triangles));
-    EXPECT_TRUE(same_bytes(trees[0].records, trees[1].records));
-}
-
 TEST_P(SwBuild, TheSceneTreeIsSoundOverInstancesAndEqualToItsReference) {
     for (const uint n : {777u, 9000u}) {
         SwTlas accel(context(), options());

@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-#include "engine/core/buffer.h"
+#include "engine/core/commands.h"
 #include "engine/core/radix_sort.h"
 #include "swtlas/plan.h"
 

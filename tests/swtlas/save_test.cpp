@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A built SwTlas is saved and loaded again; and files hold trees as deep as there may be, which no builder makes.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <string>
@@ -23,18 +22,11 @@ namespace {
 
 using test::error_of;
 using test::expect_contains;
-using Clock = std::chrono::steady_clock;
 
 class SwSave : public test::VulkanTest {
   protected:
     void move_on_device(SwTlas& accel, AccelHandle handle, const std::vector<Transform>& transforms) {
-        const Buffer source(context(), {.name = "source", .bytes = transforms.size() * sizeof(Transform)});
-        Commands commands(context(), "source");
-        {
-            const auto pass = commands.pass("source");
-            commands.upload(source, std::span<const Transform>(transforms));
-        }
-        commands.submit();
+        const Buffer source = device_copy(transforms);
         accel.update_transforms(handle, source.ref<Transform>(), transforms.size());
         accel.sync();
     }
@@ -62,35 +54,20 @@ class SwSave : public test::VulkanTest {
         return handles;
     }
 
-    std::vector<Hit> trace(SwTlas& accel, const std::vector<Ray>& rays, const TraceDesc& how) {
-        accel.sync();
-        const Buffer input(context(), {.name = "rays", .bytes = rays.size() * sizeof(Ray)}),
-            hits(context(), {.name = "hits", .bytes = rays.size() * sizeof(Hit)});
-        Commands commands(context(), "trace");
-        {
-            const auto pass = commands.pass("rays");
-            commands.upload(input, std::span<const Ray>(rays));
-        }
-        TraceDesc desc = how;
-        desc.rays = input.ref<Ray>();
-        desc.hits = hits.ref<Hit>();
-        desc.count = rays.size();
-        accel.trace(commands, accel.view(), desc);
-        commands.submit();
-        return download<Hit>(context(), hits, rays.size());
-    }
-
     // Which hit an any-hit query finds depends on the order of the top level, and refits keep an older one.
     void expect_equal_hits(SwTlas& a, SwTlas& b, bool same_top_level) {
         std::vector<Ray> rays = random_rays({vec3(-3), vec3(3)}, 20'000, 5);
         std::size_t hit_count = 0;
-        for (const Query query : {Query::closest, Query::any})
+        for (const bool is_any : {false, true})
             for (const std::uint8_t mask : {std::uint8_t{0xff}, std::uint8_t{0x10}, std::uint8_t{0x02}})
                 for (const Cull cull : {Cull::none, Cull::back}) {
-                    const TraceDesc how{.query = query, .mask = mask, .cull = cull};
-                    std::vector<Hit> first = trace(a, rays, how), second = trace(b, rays, how);
+                    const auto trace = [&](SwTlas& accel) {
+                        const TraceDesc how{.mask = mask, .cull = cull};
+                        return is_any ? accel.any_hits(rays, how) : accel.closest_hits(rays, how);
+                    };
+                    std::vector<Hit> first = trace(a), second = trace(b);
                     for (const Hit& hit : first) hit_count += hit.hit;
-                    if (query == Query::any && !same_top_level)
+                    if (is_any && !same_top_level)
                         for (std::vector<Hit>* hits : {&first, &second})
                             for (Hit& hit : *hits) hit = {hit.hit, 0, 0, 0, 0, 0, 0, 0};
                     EXPECT_EQ(std::memcmp(first.data(), second.data(), first.size() * sizeof(Hit)), 0);
@@ -152,13 +129,7 @@ TEST_F(SwSave, BoxesAndNonOpaqueInstancesComeBackToo) {
     const std::vector<vec4> spheres = {vec4(0, 0, 0, 0.5f), vec4(1, 0, 0, 0.25f), vec4(0, 1, 1, 0.75f)};
     std::vector<Bounds> boxes;
     for (const vec4& sphere : spheres) boxes.push_back({vec3(sphere) - sphere.w, vec3(sphere) + sphere.w});
-    const Buffer user(context(), {.name = "spheres", .bytes = sizeof(vec4) * spheres.size()});
-    Commands commands(context(), "spheres");
-    {
-        const auto pass = commands.pass("spheres");
-        commands.upload(user, std::span<const vec4>(spheres));
-    }
-    commands.submit();
+    const Buffer user = device_copy(spheres);
     SwTlas accel(context());
     accel.push(BoxesView{"spheres", boxes});
     accel.push(make_icosphere(3), Transform::translation({0, 0, -1}), {.non_opaque = true});
@@ -226,37 +197,6 @@ TEST_F(SwSave, AFailedSaveLeavesNoFile) {
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(file.parent_path()), {}), 2);
     accel.save(file);
     EXPECT_EQ(SwTlas::load(context(), file).handles.size(), 5u);
-}
-
-TEST_F(SwSave, LoadingIsMeasuredAgainstBuilding) {
-    const auto ms_since = [](Clock::time_point start) {
-        return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-    };
-    SwTlas(context()).closest_hits(std::vector<Ray>(1));
-    auto start = Clock::now();
-    SwTlas{context()};
-    const double compile = ms_since(start);  // the kernels: part of what follows
-    for (const uint n : {100'000u, 1'000'000u}) {
-        const Mesh mesh = make_soup(n, 7, 0.01f);
-        start = Clock::now();
-        SwTlas accel(context());
-        accel.push(mesh);
-        context().wait(accel.sync());
-        const double build = ms_since(start) - compile;
-        start = Clock::now();
-        accel.save(folder_ / "large.swtlas");
-        const double save = ms_since(start);
-        start = Clock::now();
-        const SwTlas::Loaded loaded = SwTlas::load(context(), folder_ / "large.swtlas");
-        context().wait(loaded.accel->sync());
-        const double load = ms_since(start) - compile;
-        const std::vector<Ray> rays = random_rays(bounds_of(mesh), 1000, n);
-        const std::vector<Hit> expected = accel.closest_hits(rays), found = loaded.accel->closest_hits(rays);
-        EXPECT_EQ(std::memcmp(found.data(), expected.data(), expected.size() * sizeof(Hit)), 0);
-        std::printf("%u triangles, %.1f MB: built in %.0f ms, saved in %.0f ms, loaded in %.0f ms, %.2f of building\n",
-                    n, static_cast<double>(std::filesystem::file_size(folder_ / "large.swtlas")) / 1e6, build, save,
-                    load, load / build);
-    }
 }
 
 // No builder is known to make such a tree of a mesh.

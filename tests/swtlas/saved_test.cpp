@@ -203,10 +203,11 @@ TEST(SavedTrees, BinaryOnesThatCannotBeWalkedSafelyAreRefused) {
     expect_contains(edited([](SavedGeometry& g) { g.nodes[3].child0 = 1000; }), "node 1000 of 19");
     expect_contains(edited([](SavedGeometry& g) { g.nodes[3].child1 = LEAF_BIT | 20; }), "leaf 20 of 20");
     expect_contains(edited([](SavedGeometry& g) { g.nodes[3].child0 = g.bvh.root; }), "reached twice");
+    expect_contains(edited([](SavedGeometry& g) { g.nodes[3].child0 = g.nodes[3].child1; }), "unsound tree");
     expect_contains(edited([](SavedGeometry& g) { g.nodes[3].subtree0 += 2; }), "its edge is");
     expect_contains(edited([](SavedGeometry& g) { g.bvh.root = 19; }), "node 19 of 19");
     expect_contains(edited([](SavedGeometry& g) { g.bvh.root = NOTHING; }), "unsound tree");
-    expect_contains(edited([](SavedGeometry& g) { g.nodes[g.bvh.root].lo0.x += 1; }), "not the union");
+    expect_contains(edited([](SavedGeometry& g) { g.nodes[g.bvh.root].lo0.x *= 1 + 0x1p-23f; }), "not the union");
     expect_contains(edited([](SavedGeometry& g) { g.leaves[5].primitive_index = 20; }), "primitive 20 of 20");
     expect_contains(edited([](SavedGeometry& g) { g.leaves.pop_back(); }), "19 leaves for 20 primitives");
     expect_contains(edited([](SavedGeometry& g) { g.nodes.pop_back(); }), "18 nodes, not 19");
@@ -227,6 +228,8 @@ TEST(SavedTrees, RecordsThatCannotBeWalkedSafelyAreRefused) {
     };
     expect_contains(edited([](SavedGeometry& g) { g.records[0].a.w = 3u << 26 | 1000; }), "record 1000 of 33");
     expect_contains(edited([](SavedGeometry& g) { g.records[0].a.w = 3u << 26; }), "record 0 is reached twice");
+    expect_contains(edited([](SavedGeometry& g) { g.records[0].a.w |= 1u << 24; }), "of 33");
+    expect_contains(edited([](SavedGeometry& g) { g.records[0].a.w += 1; }), "unsound tree");
     expect_contains(edited([](SavedGeometry& g) { g.records[0].a.w |= 7u << 26; }), "has 7 children");
     expect_contains(edited([](SavedGeometry& g) { g.bvh.root = NOTHING; }), "the root is record");
     expect_contains(edited([](SavedGeometry& g) { g.bvh.lo.x -= 1; }), "not the union");

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Runs `twinray view` as a user does. Usage: view_command_test.py TWINRAY [--record]; the latter writes the stored
 pictures."""
+import functools
 import json
 import math
 import os
@@ -9,19 +10,15 @@ import pathlib
 import shutil
 import subprocess
 import sys
-import tempfile
 
-twinray, here = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(tempfile.mkdtemp())
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import command
+from command import here, program as twinray
+
+run = functools.partial(command.run, "view")
 pictures = pathlib.Path(__file__).resolve().parent / "pictures"
 is_recording = "--record" in sys.argv
 required = os.environ.get("TWINRAY_REQUIRE", "").split(",")
-
-
-def run(*arguments, status=0, before=()):
-    done = subprocess.run([*before, twinray, "view", *arguments], capture_output=True, text=True, cwd=here)
-    assert done.returncode == status, f"{arguments}: status {done.returncode}\n{done.stdout}{done.stderr}"
-    assert "VUID" not in done.stderr and "SYNC-HAZARD" not in done.stderr, done.stderr
-    return done.stdout + done.stderr
 
 
 def scene(name):

@@ -111,9 +111,7 @@ double end_point_overlap(const BuiltTree& tree) {
     geometry.records = Ref<CompressedRecord>::to(tree.records.data());
     const std::vector<LeafTriangle> leaves = leaves_of(tree);
     std::vector<double> overlaps(leaves.size());
-    parallel_for(leaves.size(), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) overlaps[i] = overlap_of(geometry, leaves[i]);
-    });
+    parallel_for(leaves.size(), [&](std::size_t i) { overlaps[i] = overlap_of(geometry, leaves[i]); });
     double area = 0;
     for (const LeafTriangle& leaf : leaves)
         if (const LeafBox box = box_of_triangle(leaf.triangle); is_active(box)) area += area_within(leaf.triangle, box);

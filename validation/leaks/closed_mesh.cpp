@@ -112,9 +112,7 @@ std::optional<vec3> ClosedMesh::point_inside(std::uint64_t seed, std::uint64_t i
 
 std::vector<vec3> ClosedMesh::points_inside(std::size_t count, std::uint64_t seed) const {
     std::vector<std::optional<vec3>> found(count);
-    parallel_for(count, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) found[i] = point_inside(seed, i);
-    });
+    parallel_for(count, [&](std::size_t i) { found[i] = point_inside(seed, i); });
     std::vector<vec3> points;
     for (const auto& point : found)
         if (point) points.push_back(*point);

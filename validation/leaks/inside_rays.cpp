@@ -46,9 +46,7 @@ Ray InsideRays::ray(std::uint64_t index) const {
 
 std::vector<Ray> InsideRays::rays(std::uint64_t first, std::size_t count) const {
     std::vector<Ray> made(count);
-    parallel_for(count, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) made[i] = ray(first + i);
-    });
+    parallel_for(count, [&](std::size_t i) { made[i] = ray(first + i); });
     return made;
 }
 

@@ -41,9 +41,7 @@ void LeakTest::trace(std::size_t count, LeakCounts& counts,
     const std::vector<Ray> rays = state_->inside.rays(counts.rays, count);
     const std::vector<uint> crossings = state_->counter.count(state_->accel, rays);
     std::vector<Parity> parities(count);
-    parallel_for(count, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) parities[i] = check_crossings(state_->closed, rays[i], crossings[i]);
-    });
+    parallel_for(count, [&](std::size_t i) { parities[i] = check_crossings(state_->closed, rays[i], crossings[i]); });
     for (std::size_t i = 0; i < count; ++i) {
         const bool is_leak = parities[i] == Parity::leak, is_double_hit = parities[i] == Parity::double_hit;
         if ((is_leak || is_double_hit) && on_fault) on_fault({counts.rays + i, rays[i], crossings[i], is_leak});

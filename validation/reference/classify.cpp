@@ -200,12 +200,9 @@ std::vector<RayResult> classify_all(const ReferenceScene& reference, std::span<c
         if (!hits.empty() && hits.size() != rays.size())
             fail("classify: ", hits.size(), " hits for ", rays.size(), " rays");
     std::vector<RayResult> ray_results(rays.size());
-    parallel_for(rays.size(), [&](std::size_t begin, std::size_t end) {
-        const auto at = [](std::span<const Hit> hits, std::size_t i) {
-            return hits.empty() ? std::optional<Hit>() : hits[i];
-        };
-        for (std::size_t i = begin; i < end; ++i)
-            ray_results[i] = classify(reference, rays[i], at(software, i), at(hardware, i), arbiter);
+    parallel_for(rays.size(), [&](std::size_t i) {
+        const auto at = [i](std::span<const Hit> hits) { return hits.empty() ? std::optional<Hit>() : hits[i]; };
+        ray_results[i] = classify(reference, rays[i], at(software), at(hardware), arbiter);
     });
     return ray_results;
 }

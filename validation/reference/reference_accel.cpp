@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/accel/trace_args.h"
+#include "engine/accel/trace_desc.h"
 #include "validation/reference/reference_accel.h"
 
 #include <algorithm>
@@ -259,9 +259,7 @@ void ReferenceBackend::record_trace(Commands& commands, const TraceArgs& args) c
     Hit* const found = reinterpret_cast<Hit*>(hits.mapped());
     const ReferenceScene reference = synced_scene();
     const ReferenceQuery query{static_cast<std::uint8_t>(args.mask), args.flags};
-    parallel_for(count, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) found[i] = hit_of(reference.closest_hit(rays[i], query), rays[i]);
-    });
+    parallel_for(count, [&](std::size_t i) { found[i] = hit_of(reference.closest_hit(rays[i], query), rays[i]); });
     record_copy(commands, hits.ref<Hit>(), args.hits, count);
     commands.retain(std::move(hits));
 }

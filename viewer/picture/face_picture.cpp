@@ -43,9 +43,7 @@ void trace_all(AbstractAccel& accel, std::size_t count, Cull cull, const MakeRay
     std::vector<Ray> rays;
     for (std::size_t first = 0; first < count; first += rays.size()) {
         rays.resize(std::min(rays_a_batch, count - first));
-        parallel_for(rays.size(), [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) rays[i] = make_ray(first + i);
-        });
+        parallel_for(rays.size(), [&](std::size_t i) { rays[i] = make_ray(first + i); });
         const std::vector<Hit> hits = accel.closest_hits(rays, {.cull = cull});
         take(first, rays, hits);
     }
@@ -86,11 +84,9 @@ void draw_centers(AbstractAccel& accel, const Shader& shade, const FacePictureDe
     const auto ray = [&](std::size_t pixel) { return ray_through(picture.plane, in_plane(desc, pixel, vec2(0.5f))); };
     trace_all(accel, picture.raster.pixels.size(), desc.cull, ray,
               [&](std::size_t first, const std::vector<Ray>& rays, const std::vector<Hit>& hits) {
-                  parallel_for(rays.size(), [&](std::size_t begin, std::size_t end) {
-                      for (std::size_t i = begin; i < end; ++i) {
-                          picture.raster.pixels[first + i] = rgb_of_linear(shade(rays[i], hits[i]));
-                          picture.depths[first + i] = hits[i].hit ? hits[i].t : INFINITY;
-                      }
+                  parallel_for(rays.size(), [&](std::size_t i) {
+                      picture.raster.pixels[first + i] = rgb_of_linear(shade(rays[i], hits[i]));
+                      picture.depths[first + i] = hits[i].hit ? hits[i].t : INFINITY;
                   });
               });
 }
@@ -104,14 +100,12 @@ void smooth_edges(AbstractAccel& accel, const Shader& shade, const FacePictureDe
     static_assert(rays_a_batch % samples_of_an_edge == 0);
     trace_all(accel, edges.size() * samples_of_an_edge, desc.cull, ray,
               [&](std::size_t first, const std::vector<Ray>& rays, const std::vector<Hit>& hits) {
-                  parallel_for(rays.size() / samples_of_an_edge, [&](std::size_t begin, std::size_t end) {
-                      for (std::size_t pixel = begin; pixel < end; ++pixel) {
-                          vec3 sum(0);
-                          for (std::size_t i = 0; i < samples_of_an_edge; ++i)
-                              sum += shade(rays[pixel * samples_of_an_edge + i], hits[pixel * samples_of_an_edge + i]);
-                          picture.raster.pixels[edges[first / samples_of_an_edge + pixel]] =
-                              rgb_of_linear(sum / static_cast<float>(samples_of_an_edge));
-                      }
+                  parallel_for(rays.size() / samples_of_an_edge, [&](std::size_t pixel) {
+                      vec3 sum(0);
+                      for (std::size_t i = 0; i < samples_of_an_edge; ++i)
+                          sum += shade(rays[pixel * samples_of_an_edge + i], hits[pixel * samples_of_an_edge + i]);
+                      picture.raster.pixels[edges[first / samples_of_an_edge + pixel]] =
+                          rgb_of_linear(sum / static_cast<float>(samples_of_an_edge));
                   });
               });
 }

@@ -7,7 +7,7 @@
 #include "engine/core/files.h"
 #include "engine/scene/bytes.h"
 #include "engine/scene/glb.h"
-#include "engine/scene/png.h"
+#include "engine/scene/images.h"
 #include "twinray/glsl/vector_math.h"
 #include <twinray/scene.h>
 

@@ -8,12 +8,8 @@
 
 #include "engine/scene/flat.h"
 #include "engine/scene/importers/gltf_file.h"
-#include "engine/scene/importers/gltf_material.h"
 #include "engine/scene/importers/gltf_mesh.h"
 #include "engine/scene/importers/gltf_nodes.h"
-#include "engine/scene/importers/gltf_origin.h"
-#include "engine/scene/importers/gltf_rig.h"
-#include "engine/scene/importers/gltf_variants.h"
 #include "engine/scene/importers/importers.h"
 #include "engine/scene/rig.h"
 

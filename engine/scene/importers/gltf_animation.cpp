@@ -6,7 +6,7 @@
 
 #include "engine/scene/importers/gltf_accessor.h"
 #include "engine/scene/importers/gltf_json.h"
-#include "engine/scene/importers/gltf_rig.h"
+#include "engine/scene/importers/gltf_nodes.h"
 
 namespace twinray {
 namespace {

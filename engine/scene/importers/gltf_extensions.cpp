@@ -4,7 +4,7 @@
 #include <set>
 #include <string_view>
 
-#include "engine/scene/image_codecs.h"
+#include "engine/scene/images.h"
 #include "engine/scene/importers/gltf_json.h"
 
 namespace twinray {

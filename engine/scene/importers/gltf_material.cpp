@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/scene/importers/gltf_material.h"
+#include "engine/scene/importers/gltf_mesh.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <map>
 #include <vector>
 
-#include "engine/scene/importers/placeholder.h"
+#include "engine/scene/images.h"
 #include "twinray/glsl/vector_math.h"
 
 namespace twinray {
@@ -191,7 +191,7 @@ std::optional<Texture> GltfTextures::roughness_of(const Texture& glossiness, flo
 
 constexpr double no_limit = 1e30;
 
-// Reads members of one extension.
+// Reads members of one extension. `object` names the material in errors and warnings.
 struct Reader {
     const tinygltf::Value& extension;
     const std::string& object;
@@ -264,16 +264,23 @@ void read_volume(const Reader& from, Material& material) {
             clamped_factor(from.number("attenuationDistance", 1), std::numeric_limits<float>::min(), no_limit);
 }
 
-// Takes KHR_materials_{anisotropy, clearcoat, pbrSpecularGlossiness, sheen, specular, volume} into `material`; other
-// extensions are none of its business. `object` names the material in errors and warnings.
-void read_gltf_layer(const std::string& name, const tinygltf::Value& extension, const std::string& object,
-                     GltfTextures& textures, Material& material) {
-    const Reader from{extension, object, textures};
-    if (name == "KHR_materials_pbrSpecularGlossiness") read_specular_glossiness(from, material);
-    if (name == "KHR_materials_specular") read_specular(from, material);
-    if (name == "KHR_materials_clearcoat") read_clearcoat(from, material);
-    if (name == "KHR_materials_sheen") read_sheen(from, material);
+void read_transmission(const Reader& from, Material& material) {
+    material.transmission = unit_factor(from.number("transmissionFactor", 0));
+    material.transmission_texture = from.texture("transmissionTexture");
+}
+
+// Takes one extension into `material`; others than these are none of its business.
+void read_extension(const std::string& name, const Reader& from, Material& material) {
     if (name == "KHR_materials_anisotropy") read_anisotropy(from, material);
+    if (name == "KHR_materials_clearcoat") read_clearcoat(from, material);
+    if (name == "KHR_materials_emissive_strength")
+        material.emission *= clamped_factor(from.number("emissiveStrength", 1), 0, no_limit);
+    if (name == "KHR_materials_ior") material.ior = clamped_factor(from.number("ior", 1.5), 0, no_limit);
+    if (name == "KHR_materials_pbrSpecularGlossiness") read_specular_glossiness(from, material);
+    if (name == "KHR_materials_sheen") read_sheen(from, material);
+    if (name == "KHR_materials_specular") read_specular(from, material);
+    if (name == "KHR_materials_transmission") read_transmission(from, material);
+    if (name == "KHR_materials_unlit") material.unlit = true;
     if (name == "KHR_materials_volume") read_volume(from, material);
 }
 
@@ -293,7 +300,8 @@ class MaterialReader {
         material.name = source.name.empty() ? text("material ", index) : source.name;
         read_surface(source, material);
         read_texture_slots(source, object, material);
-        for (const auto& [name, extension] : source.extensions) read_extension(name, extension, object, material);
+        for (const auto& [name, extension] : source.extensions)
+            read_extension(name, {extension, object, textures_}, material);
         return material;
     }
 
@@ -321,22 +329,6 @@ class MaterialReader {
         material.normal_texture = slot(source.normalTexture, "normalTexture");
         // A checkerboard of colours is a warning; read as normals it would only spoil the shape.
         if (textures_.is_placeholder(material.normal_texture)) material.normal_texture = {};
-    }
-
-    void read_extension(const std::string& name, const tinygltf::Value& extension, const std::string& object,
-                        Material& material) {
-        if (name == "KHR_materials_emissive_strength") {
-            material.emission *= clamped_factor(number_or(extension, "emissiveStrength", 1), 0, 1e30);
-        } else if (name == "KHR_materials_ior") {
-            material.ior = clamped_factor(number_or(extension, "ior", 1.5), 0, 1e30);
-        } else if (name == "KHR_materials_unlit") {
-            material.unlit = true;
-        } else if (name == "KHR_materials_transmission") {
-            material.transmission = unit_factor(number_or(extension, "transmissionFactor", 0));
-            material.transmission_texture = textures_.read(extension, "transmissionTexture", object);
-        } else {
-            read_gltf_layer(name, extension, object, textures_, material);
-        }
     }
 
     GltfFile& file_;

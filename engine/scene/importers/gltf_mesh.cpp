@@ -5,8 +5,6 @@
 #include <cmath>
 #include <map>
 
-#include "engine/scene/importers/gltf_accessor.h"
-#include "engine/scene/importers/gltf_variants.h"
 #include "engine/scene/mesh.h"
 
 namespace twinray {
@@ -29,28 +27,6 @@ struct GltfVertices {
     VertexMotion motion;
 };
 
-// Returns an accessor's index, or -1.
-int attribute_of(const Primitive& primitive, const std::string& name) {
-    const auto found = primitive.attributes.find(name);
-    return found == primitive.attributes.end() ? -1 : found->second;
-}
-
-void check_count(const GltfFile& file, std::size_t count, std::size_t vertex_count, const std::string& object,
-                 const char* name) {
-    if (count != vertex_count)
-        file.fail(object, ": ", name, " has ", count, " elements, but POSITION has ", vertex_count);
-}
-
-template <int N>
-std::vector<Vec<N, float>> read_attribute(const GltfFile& file, const Primitive& primitive, const char* name,
-                                          std::size_t vertex_count, const std::string& object) {
-    const int accessor = attribute_of(primitive, name);
-    if (accessor < 0) return std::vector<Vec<N, float>>(vertex_count, Vec<N, float>(0));
-    auto values = read_vectors<N>(file, accessor, text(object, " ", name));
-    check_count(file, values.size(), vertex_count, object, name);
-    return values;
-}
-
 bool has_alpha(const GltfFile& file, int accessor) {
     const auto& accessors = file.model.accessors;
     return std::size_t(accessor) < accessors.size() && accessors[std::size_t(accessor)].type == TINYGLTF_TYPE_VEC4;
@@ -60,12 +36,12 @@ bool has_alpha(const GltfFile& file, int accessor) {
 std::vector<vec4> read_colors(GltfFile& file, const Primitive& primitive, std::size_t vertex_count,
                               const std::string& object) {
     std::vector<vec4> colors(vertex_count, vec4(1));
-    const int accessor = attribute_of(primitive, "COLOR_0");
+    const int accessor = attribute_of(primitive.attributes, "COLOR_0");
     if (accessor < 0) return colors;
     const int components = has_alpha(file, accessor) ? 4 : 3;
     const std::vector<float> values = read_floats(file, accessor, components, object + " COLOR_0");
     const std::size_t width = std::size_t(components);
-    check_count(file, values.size() / width, vertex_count, object, "COLOR_0");
+    check_element_count(file, values.size() / width, vertex_count, object, "COLOR_0");
     std::size_t unknown = 0;
     for (std::size_t i = 0; i < values.size(); ++i) {
         unknown += std::isnan(values[i]);
@@ -79,7 +55,7 @@ std::vector<vec4> read_colors(GltfFile& file, const Primitive& primitive, std::s
 std::vector<int> accessors_of(const Primitive& primitive) {
     std::vector<int> accessors;
     for (const char* name : {"POSITION", "NORMAL", "TANGENT", "TEXCOORD_0", "TEXCOORD_1", "COLOR_0"})
-        accessors.push_back(attribute_of(primitive, name));
+        accessors.push_back(attribute_of(primitive.attributes, name));
     for (const auto& [name, accessor] : primitive.attributes)
         if (name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_")) accessors.push_back(accessor);
     for (const auto& target : primitive.targets)
@@ -93,7 +69,7 @@ VertexLayout vertex_layout(const GltfFile& file, const std::vector<const Primiti
     VertexLayout layout;
     layout.tangents = !primitives.empty();
     for (const Primitive* primitive : primitives) {
-        const auto has = [&](const char* name) { return attribute_of(*primitive, name) >= 0; };
+        const auto has = [&](const char* name) { return attribute_of(primitive->attributes, name) >= 0; };
         layout.normals |= has("NORMAL");
         layout.uvs |= has("TEXCOORD_0");
         layout.second_uvs |= has("TEXCOORD_1");
@@ -112,13 +88,13 @@ VertexLayout vertex_layout(const GltfFile& file, const std::vector<const Primiti
 GltfVertices read_gltf_vertices(GltfFile& file, const Primitive& primitive, const VertexLayout& layout,
                                 const std::string& object) {
     GltfVertices v;
-    v.positions = read_vectors<3>(file, attribute_of(primitive, "POSITION"), object + " POSITION");
+    v.positions = read_vectors<3>(file, attribute_of(primitive.attributes, "POSITION"), object + " POSITION");
     const std::size_t count = v.positions.size();
-    const char* second = attribute_of(primitive, "TEXCOORD_1") < 0 ? "TEXCOORD_0" : "TEXCOORD_1";
-    if (layout.normals) v.normals = read_attribute<3>(file, primitive, "NORMAL", count, object);
-    if (layout.tangents) v.tangents = read_attribute<4>(file, primitive, "TANGENT", count, object);
-    if (layout.uvs) v.uvs = read_attribute<2>(file, primitive, "TEXCOORD_0", count, object);
-    if (layout.second_uvs) v.second_uvs = read_attribute<2>(file, primitive, second, count, object);
+    const char* second = attribute_of(primitive.attributes, "TEXCOORD_1") < 0 ? "TEXCOORD_0" : "TEXCOORD_1";
+    if (layout.normals) v.normals = read_attribute<3>(file, primitive.attributes, "NORMAL", count, object);
+    if (layout.tangents) v.tangents = read_attribute<4>(file, primitive.attributes, "TANGENT", count, object);
+    if (layout.uvs) v.uvs = read_attribute<2>(file, primitive.attributes, "TEXCOORD_0", count, object);
+    if (layout.second_uvs) v.second_uvs = read_attribute<2>(file, primitive.attributes, second, count, object);
     if (layout.colors) v.colors = read_colors(file, primitive, count, object);
     v.motion = read_gltf_motion(file, primitive, layout.motion, count, object);
     return v;
@@ -142,7 +118,7 @@ void append_to(Mesh& mesh, VertexMotion& motion, const GltfVertices& vertices) {
 }
 
 bool makes_triangles(const Primitive& primitive) {
-    return attribute_of(primitive, "POSITION") >= 0 &&
+    return attribute_of(primitive.attributes, "POSITION") >= 0 &&
            (primitive.mode == TINYGLTF_MODE_TRIANGLES || primitive.mode == TINYGLTF_MODE_TRIANGLE_STRIP ||
             primitive.mode == TINYGLTF_MODE_TRIANGLE_FAN);
 }
@@ -224,7 +200,7 @@ class MeshReader {
     void add(const Primitive& primitive, const std::string& object) {
         note_what_is_ignored(primitive);
         note_missing_uvs(primitive, object);
-        if (layout_.normals && attribute_of(primitive, "NORMAL") < 0) return add_flat(primitive, object);
+        if (layout_.normals && attribute_of(primitive.attributes, "NORMAL") < 0) return add_flat(primitive, object);
         const Part part = shared_part(primitive, object);
         add_triangles(read_triangles(primitive, part.count, object), part.base, primitive, object);
     }
@@ -277,7 +253,8 @@ class MeshReader {
     }
 
     void note_what_is_ignored(const Primitive& primitive) {
-        if (attribute_of(primitive, "COLOR_1") >= 0) file_.warn("vertex colours other than COLOR_0 are ignored");
+        if (attribute_of(primitive.attributes, "COLOR_1") >= 0)
+            file_.warn("vertex colours other than COLOR_0 are ignored");
         for (const auto& target : primitive.targets)
             for (const auto& [name, accessor] : target)
                 if (name.starts_with("COLOR_") || name.starts_with("TEXCOORD_"))
@@ -289,8 +266,8 @@ class MeshReader {
         const Material& material = materials_[std::size_t(primitive.material)];
         for (const Texture* texture : textures_of(material)) {
             const std::string wanted = text("TEXCOORD_", texture->uv_set);
-            if (texture->image < 0 || attribute_of(primitive, wanted) >= 0) continue;
-            const bool has_first = attribute_of(primitive, "TEXCOORD_0") >= 0;
+            if (texture->image < 0 || attribute_of(primitive.attributes, wanted) >= 0) continue;
+            const bool has_first = attribute_of(primitive.attributes, "TEXCOORD_0") >= 0;
             file_.warn(text(object, ": lacks the ", wanted, " of material '", material.name, "', whose textures show ",
                             has_first ? "by TEXCOORD_0" : "one texel"));
         }
@@ -309,6 +286,17 @@ class MeshReader {
 };
 
 }  // namespace
+
+int attribute_of(const GltfAttributes& attributes, const std::string& name) {
+    const auto found = attributes.find(name);
+    return found == attributes.end() ? -1 : found->second;
+}
+
+void check_element_count(const GltfFile& file, std::size_t count, std::size_t vertex_count, const std::string& object,
+                         std::string_view name) {
+    if (count != vertex_count)
+        file.fail(object, ": ", name, " has ", count, " elements, but POSITION has ", vertex_count);
+}
 
 GltfMesh read_gltf_mesh(GltfFile& file, std::size_t index, const std::vector<Material>& materials, bool is_skinned) {
     return MeshReader(file, index, materials, is_skinned).read();

@@ -1,13 +1,50 @@
 // SPDX-License-Identifier: MIT
-// Meshes of glTF, and what moves their vertices: morph targets and skins.
+// Meshes of glTF, their materials with variants, and what moves their vertices: morph targets and skins.
 #pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include <twinray/scene.h>
 
+#include "engine/scene/importers/gltf_accessor.h"
 #include "engine/scene/importers/gltf_file.h"
 #include "engine/scene/rig.h"
 
 namespace twinray {
+
+// Fills scene.materials, one per glTF material in the same order with its layers KHR_materials_*, and scene.images with
+// those that they use, each decoded once. An image that cannot be read becomes a checkerboard, with a warning; a normal
+// map that cannot be read is left out.
+void read_gltf_materials(GltfFile& file, Scene& scene);
+
+// Names of the file's variants: KHR_materials_variants.
+std::vector<std::string> read_variant_names(const GltfFile& file);
+
+// Returns by variant the primitive's material, or -1 if it keeps its own; empty if it has no mapping. Throws Error
+// naming `object` on a variant or material that does not exist.
+std::vector<int> read_variant_materials(const GltfFile& file, const tinygltf::Primitive& primitive,
+                                        const std::string& object);
+
+using GltfAttributes = std::map<std::string, int>;  // of a primitive or a morph target: accessors by name
+// Returns an accessor's index, or -1.
+int attribute_of(const GltfAttributes& attributes, const std::string& name);
+// Throws Error naming `object` and the attribute unless it has an element for each vertex.
+void check_element_count(const GltfFile& file, std::size_t count, std::size_t vertex_count, const std::string& object,
+                         std::string_view name);
+
+// Returns 0 for each vertex where there is no such attribute.
+template <int N>
+std::vector<Vec<N, float>> read_attribute(const GltfFile& file, const GltfAttributes& attributes, const char* name,
+                                          std::size_t vertex_count, const std::string& object) {
+    const int accessor = attribute_of(attributes, name);
+    if (accessor < 0) return std::vector<Vec<N, float>>(vertex_count, Vec<N, float>(0));
+    auto values = read_vectors<N>(file, accessor, text(object, " ", name));
+    check_element_count(file, values.size(), vertex_count, object, name);
+    return values;
+}
 
 // The motion data of a whole mesh; its primitives give 0 for what they lack.
 struct MotionLayout {

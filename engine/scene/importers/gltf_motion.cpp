@@ -3,45 +3,26 @@
 
 #include <cmath>
 
-#include "engine/scene/importers/gltf_accessor.h"
-
 namespace twinray {
 namespace {
 
 using tinygltf::Primitive;
-using Attributes = std::map<std::string, int>;
 
 constexpr uint set_size = 4;  // joints in JOINTS_n
 
-int accessor_of(const Attributes& attributes, const std::string& name) {
-    const auto found = attributes.find(name);
-    return found == attributes.end() ? -1 : found->second;
-}
-
 uint set_count(const Primitive& primitive) {
     uint count = 0;
-    while (accessor_of(primitive.attributes, text("JOINTS_", count)) >= 0 &&
-           accessor_of(primitive.attributes, text("WEIGHTS_", count)) >= 0)
+    while (attribute_of(primitive.attributes, text("JOINTS_", count)) >= 0 &&
+           attribute_of(primitive.attributes, text("WEIGHTS_", count)) >= 0)
         ++count;
     return count;
-}
-
-std::vector<vec3> read_displacements(const GltfFile& file, const Attributes& target, const char* name,
-                                     std::size_t vertex_count, const std::string& object) {
-    const int accessor = accessor_of(target, name);
-    if (accessor < 0) return std::vector<vec3>(vertex_count, vec3(0));
-    std::vector<vec3> values = read_vectors<3>(file, accessor, text(object, " ", name));
-    if (values.size() != vertex_count)
-        file.fail(object, ": ", name, " has ", values.size(), " elements, but POSITION has ", vertex_count);
-    return values;
 }
 
 std::vector<float> read_set(const GltfFile& file, const Primitive& primitive, const std::string& name,
                             std::size_t vertex_count, const std::string& object) {
     std::vector<float> values =
-        read_floats(file, accessor_of(primitive.attributes, name), set_size, object + " " + name);
-    if (values.size() != vertex_count * set_size)
-        file.fail(object, ": ", name, " has ", values.size() / set_size, " elements, but POSITION has ", vertex_count);
+        read_floats(file, attribute_of(primitive.attributes, name), set_size, object + " " + name);
+    check_element_count(file, values.size() / set_size, vertex_count, object, name);
     return values;
 }
 
@@ -94,9 +75,9 @@ MotionLayout motion_layout(const GltfFile& file, const std::vector<const Primiti
         if (primitive->targets.size() != layout.targets)
             file.fail(object, ": one primitive has ", layout.targets, " morph targets, another ",
                       primitive->targets.size());
-        for (const Attributes& target : primitive->targets) {
-            layout.normals |= accessor_of(target, "NORMAL") >= 0;
-            layout.tangents |= accessor_of(target, "TANGENT") >= 0;
+        for (const GltfAttributes& target : primitive->targets) {
+            layout.normals |= attribute_of(target, "NORMAL") >= 0;
+            layout.tangents |= attribute_of(target, "TANGENT") >= 0;
         }
         // A primitive without joints, beside others or alone, follows the first joint.
         if (is_skinned) layout.influences = std::max({layout.influences, set_count(*primitive) * set_size, set_size});
@@ -110,7 +91,7 @@ VertexMotion read_gltf_motion(GltfFile& file, const Primitive& primitive, const 
     for (std::size_t i = 0; i < layout.targets; ++i) {
         const std::string name = text(object, " target ", i);
         const auto read = [&](const char* attribute) {
-            return read_displacements(file, primitive.targets[i], attribute, vertex_count, name);
+            return read_attribute<3>(file, primitive.targets[i], attribute, vertex_count, name);
         };
         motion.targets.push_back({read("POSITION"), layout.normals ? read("NORMAL") : std::vector<vec3>(),
                                   layout.tangents ? read("TANGENT") : std::vector<vec3>()});

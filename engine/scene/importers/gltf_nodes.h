@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The node hierarchy of a glTF file, flattened.
+// The node hierarchy of a glTF file, flattened, the objects that it carries and what moves it: morph weights, skins,
+// animations.
 #pragma once
 
 #include <span>
@@ -39,6 +40,13 @@ Trs read_trs(const GltfFile& file, const std::vector<double>& translation, const
 
 // Rounds to float; throws Error naming `object` if an entry is or becomes infinite or NaN.
 Transform rounded_transform(const GltfFile& file, const glm::dmat4& matrix, const std::string& object);
+
+// Reads nodes with their morph weights, skins and animations. Skins have the file's indices; those that no shown node
+// uses have no joints. Throws Error naming a node's weights or skin that cannot be used. For animations that cannot be
+// played, Animation::fault and a warning say why.
+Rig read_gltf_rig(GltfFile& file, const std::vector<GltfNode>& nodes);
+// Reads its animations. flat: the index into `nodes` by the file's index of a node, -1 for one that is not shown.
+std::vector<Animation> read_gltf_animations(GltfFile& file, const Rig& rig, const std::vector<std::int32_t>& flat);
 
 struct GltfInstance {
     Instance instance;     // mesh: the glTF index

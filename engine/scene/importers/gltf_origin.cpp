@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/scene/importers/gltf_origin.h"
+#include "engine/scene/rig.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,6 @@
 
 #include "engine/scene/flat.h"
 #include "engine/scene/local_origin.h"
-#include "engine/scene/rig.h"
 
 namespace twinray {
 namespace {

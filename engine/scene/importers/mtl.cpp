@@ -10,7 +10,7 @@
 #include "engine/core/platform.h"
 #include "engine/core/error.h"
 #include "engine/scene/bytes.h"
-#include "engine/scene/importers/placeholder.h"
+#include "engine/scene/images.h"
 #include "engine/scene/importers/words.h"
 
 namespace twinray {

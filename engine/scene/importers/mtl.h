@@ -10,7 +10,7 @@
 #include <twinray/scene.h>
 
 #include "engine/scene/importers/obj_lines.h"
-#include "engine/scene/importers/passed_over.h"
+#include "engine/scene/importers/words.h"
 
 namespace twinray {
 

@@ -16,7 +16,6 @@
 #include "engine/scene/importers/importers.h"
 #include "engine/scene/importers/mtl.h"
 #include "engine/scene/importers/obj_lines.h"
-#include "engine/scene/importers/passed_over.h"
 #include "engine/scene/importers/polygon.h"
 #include "engine/scene/importers/weld.h"
 #include "engine/scene/importers/words.h"
@@ -54,19 +53,6 @@ struct ObjFile {
     std::vector<MaterialName> materials;
     std::vector<std::string> libraries;  // what each `mtllib` says
     std::vector<std::string> warnings;
-};
-
-// Names in the order of their first use.
-class Names {
-  public:
-    // Returns the name's number, and whether it is new.
-    std::pair<uint, bool> number_of(const std::string& name) {
-        const auto [entry, is_new] = numbers_.try_emplace(name, static_cast<uint>(numbers_.size()));
-        return {entry->second, is_new};
-    }
-
-  private:
-    std::map<std::string, uint> numbers_;
 };
 
 class ObjParser {
@@ -153,17 +139,17 @@ class ObjParser {
         const std::string name(lines_.name());
         material_ = ObjFile::none;
         if (name.empty()) return;
-        const auto [number, is_new] = material_names_.number_of(name);
+        const auto [known, is_new] = material_numbers_.try_emplace(name, static_cast<uint>(material_numbers_.size()));
         if (is_new) file_.materials.push_back({name, lines_.line()});
-        material_ = number;
+        material_ = known->second;
     }
 
     // An object is one mesh, whatever its groups and materials are.
     void use_part() {
         const std::string& name = object_name_.empty() ? group_name_ : object_name_;
-        const auto [number, is_new] = part_names_.number_of(name);
+        const auto [known, is_new] = part_numbers_.try_emplace(name, static_cast<uint>(part_numbers_.size()));
         if (is_new) file_.part_names.push_back(name);
-        part_ = number;
+        part_ = known->second;
     }
 
     void read_face() {
@@ -237,7 +223,7 @@ class ObjParser {
     ObjLines lines_;
     std::string object_;
     ObjFile file_;
-    Names part_names_, material_names_;
+    std::map<std::string, uint> part_numbers_, material_numbers_;  // by name, in the order of their first use
     std::string object_name_, group_name_;
     uint part_ = ObjFile::none, material_ = ObjFile::none;
     std::size_t points_and_lines_ = 0;

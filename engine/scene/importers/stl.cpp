@@ -9,7 +9,6 @@
 #include "engine/scene/bytes.h"
 #include "engine/scene/importers/importers.h"
 #include "engine/scene/importers/mtl.h"
-#include "engine/scene/importers/passed_over.h"
 #include "engine/scene/importers/polygon.h"
 #include "engine/scene/importers/weld.h"
 #include "engine/scene/importers/words.h"

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Lines, words and numbers of text formats.
+// Lines, words and numbers of text formats, and the parts of files that readers ignore.
 #pragma once
 
+#include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -24,5 +26,17 @@ std::string lowered(std::string_view text);
 // Parses the whole word as a number, rounded once; beyond the range of double it is infinite or 0. Accepts nan, inf,
 // and those of Microsoft's C library until 2015 (-1.#IND, 1.#QNAN, 1.#INF). Returns nothing for other words.
 std::optional<double> parse_number(std::string_view word);
+
+// Parts of a file that a reader ignores; each is reported once.
+class PassedOver {
+  public:
+    void add(std::string_view word, std::size_t line) { first_lines_.emplace(word, line); }
+    bool empty() const { return first_lines_.empty(); }
+    // Returns "'cstype' (line 2), 'vp' (line 7)", in the order of lines; the first ones if there are many.
+    std::string list() const;
+
+  private:
+    std::map<std::string, std::size_t, std::less<>> first_lines_;
+};
 
 }  // namespace twinray

@@ -5,7 +5,6 @@
 #ifndef TWINRAY_STACK_GLSL
 #define TWINRAY_STACK_GLSL
 #include "shaders/shared/features.h"
-#include "shaders/shared/short_stack_size.h"
 
 uint twinray_stack_registers[REGISTER_STACK_SIZE];
 

@@ -6,7 +6,6 @@
 #include <set>
 
 #include "cli/kernels/kernel_list.h"
-#include "engine/core/buffer.h"
 #include "engine/core/commands.h"
 #include "engine/core/error.h"
 #include "engine/core/spirv_words.h"

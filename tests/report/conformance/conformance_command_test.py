@@ -2,21 +2,16 @@
 # SPDX-License-Identifier: MIT
 """Runs `twinray verify --suite conformance` as a user does. Usage: conformance_command_test.py TWINRAY"""
 
+import functools
 import json
 import pathlib
-import subprocess
 import sys
-import tempfile
 
-twinray, here = sys.argv[1], pathlib.Path(tempfile.mkdtemp())
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+import command
+from command import here
 
-
-def verify(*arguments, status=0):
-    run = subprocess.run([twinray, "verify", "--quiet", *map(str, arguments)], capture_output=True, text=True)
-    assert run.returncode == status, f"{arguments}: status {run.returncode}\n{run.stdout}{run.stderr}"
-    assert "VUID" not in run.stderr and "SYNC-HAZARD" not in run.stderr, run.stderr
-    return run.stdout + run.stderr
-
+verify = functools.partial(command.run, "verify", "--quiet")
 
 said = verify("--suite", "conformance", "--json", here / "all.jsonl", "--validation")
 records = [json.loads(line) for line in (here / "all.jsonl").read_text().splitlines()]

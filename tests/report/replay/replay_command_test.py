@@ -3,18 +3,15 @@
 """Writes replays by `twinray verify` and shows them. Usage: replay_command_test.py TWINRAY"""
 import json
 import pathlib
-import struct
-import subprocess
 import sys
-import tempfile
 
-twinray, here = sys.argv[1], pathlib.Path(tempfile.mkdtemp())
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+import command
+from command import here
 
 
 def run(*arguments, status=0):
-    done = subprocess.run([twinray, *arguments, "--quiet"], capture_output=True, text=True, cwd=here)
-    assert done.returncode == status, f"{arguments}: status {done.returncode}\n{done.stdout}{done.stderr}"
-    return done.stdout + done.stderr
+    return command.run(*arguments, "--quiet", status=status)
 
 
 # A flat grid of unit cells, where the boxes of drivers are flat, too.

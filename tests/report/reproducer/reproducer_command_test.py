@@ -38,6 +38,12 @@ def compiled(folder):
     return program
 
 
+def counts_in(records):
+    """Of random rays of each class, of each accelerator."""
+    of_all = map(json.loads, (here / records).open())
+    return {record["backend"]: record["counts"] for record in of_all if record["case"] == "verify.random"}
+
+
 def triangles_of(folder):
     return (folder / "report.md").read_text().count("\n| 0 |")
 
@@ -75,7 +81,8 @@ with open(here / "soup.obj", "w") as soup:
             print("v", *(f"{x + random.uniform(-0.3, 0.3):.9g}" for x in center), file=soup)
         print("f -3 -2 -1", file=soup)
 arguments = (twinray, "verify", "soup.obj", "--random", 500, "--aimed", 0, "--quiet")
-assert "so no reproducer" in run("", *arguments, "--reproducers", "none"), "the driver is wrong as it is"
+said = run("", *arguments, "--reproducers", "none", "--json", "none.jsonl")
+assert "so no reproducer" in said, "the driver is wrong as it is"
 for fault, kind, most in (
     ("cull", "HW_LEAK", 1),
     ("first", "HW_LEAK", 2),
@@ -83,7 +90,10 @@ for fault, kind, most in (
     ("infinite", "HW_RANGE", 1),
     ("triangle", "HW_FALSE", 2),
 ):
-    said = run(fault, *arguments, "--reproducers", fault)
+    said = run(fault, *arguments, "--reproducers", fault, "--json", f"{fault}.jsonl")
+    counts = counts_in(f"{fault}.jsonl")
+    assert counts["hw"][kind] < 300, f"{fault}: {counts['hw']} of 500 rays"
+    assert counts["sw"] == counts_in("none.jsonl")["sw"], f"{fault} reached SwTlas: {counts['sw']}"
     folder = here / fault / kind
     assert folder.exists(), said
     assert triangles_of(folder) <= most, (folder / "report.md").read_text()

@@ -31,24 +31,8 @@ class Intervals : public test::VulkanTest {
     // Closest hits of a driver that refuses this share of them.
     std::vector<Hit> broken_hits(SwTlas& accel, std::span<const Ray> rays, double share, uint seed) {
         const std::unique_ptr<TraceProgram> program = accel.make_program(broken_program);
-        const Buffer asked(context(), {.name = "rays", .bytes = rays.size_bytes()});
-        const Buffer hits(context(), {.name = "hits", .bytes = rays.size() * sizeof(Hit)});
-        const Buffer data(context(), {.name = "share", .bytes = 8});
-        const std::array<uint, 2> words = {static_cast<uint>(share * 0x1p32), seed};
-        Commands commands(context(), "broken");
-        {
-            const auto pass = commands.pass("rays");
-            commands.upload(asked, rays);
-            commands.upload(data, std::span<const uint>(words));
-        }
-        accel.trace(commands, accel.view(),
-                    {.rays = asked.ref<Ray>(),
-                     .hits = hits.ref<Hit>(),
-                     .count = rays.size(),
-                     .program = program.get(),
-                     .user_data = data.address()});
-        commands.submit();
-        return download<Hit>(context(), hits, rays.size());
+        const Buffer data = device_copy(std::array{static_cast<uint>(share * 0x1p32), seed});
+        return accel.closest_hits(rays, {.program = program.get(), .user_data = data.address()});
     }
 };
 

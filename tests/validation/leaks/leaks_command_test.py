@@ -6,18 +6,14 @@ import math
 import pathlib
 import subprocess
 import sys
-import tempfile
 import time
 
-twinray, here = sys.argv[1], pathlib.Path(tempfile.mkdtemp())
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from command import here, program, run
 
 
 def leaks(scene, *arguments, status=0):
-    run = subprocess.run([twinray, "leaks", str(here / scene), "--quiet", *map(str, arguments)],
-                         capture_output=True, text=True)
-    assert run.returncode == status, f"{arguments}: status {run.returncode}\n{run.stdout}{run.stderr}"
-    assert "VUID" not in run.stderr and "SYNC-HAZARD" not in run.stderr, run.stderr
-    return run.stdout + run.stderr
+    return run("leaks", here / scene, "--quiet", *arguments, status=status)
 
 
 def write_torus(file, rings, sides, missing=0):
@@ -67,7 +63,7 @@ assert totals("parts.json") == totals("once.json"), (totals("parts.json"), total
 assert totals("once.json")[1] > 1000 and totals("once.json")[2] > 1000
 
 # Killed, a run leaves a whole file.
-with subprocess.Popen([twinray, "leaks", str(here / "torus.ply"), "--quiet", "--ray-count", "1000000000000", "--state",
+with subprocess.Popen([program, "leaks", str(here / "torus.ply"), "--quiet", "--ray-count", "1000000000000", "--state",
                        str(here / "killed.json")], stdout=subprocess.DEVNULL) as endless:
     deadline = time.monotonic() + 120
     while not (here / "killed.json").exists() and time.monotonic() < deadline:

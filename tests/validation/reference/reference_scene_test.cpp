@@ -57,24 +57,6 @@ TEST(ReferenceScene, ClosedMeshesNeverLeakFromInside) {
     }
 }
 
-TEST(ReferenceScene, IntervalIsOpenAtBothEnds) {
-    const ReferenceScene reference = plane_at_4();
-    const auto hits = [&](float t_min, float t_max) {
-        return reference.closest_hit(make_ray({0.7f, 0.2f, 0}, {0, 0, 1}, t_min, t_max)).hit;
-    };
-    EXPECT_TRUE(hits(0, INFINITY));
-    EXPECT_FALSE(hits(4, INFINITY));
-    EXPECT_FALSE(hits(0, 4));
-    EXPECT_TRUE(hits(std::nextafter(4.0f, 0.0f), INFINITY));
-    EXPECT_TRUE(hits(0, std::nextafter(4.0f, 5.0f)));
-    EXPECT_FALSE(hits(std::nextafter(4.0f, 5.0f), INFINITY));
-}
-
-TEST(ReferenceScene, ReportsTInUnitsOfTheDirection) {
-    const ReferenceHit hit = plane_at_4().closest_hit(make_ray({0.75f, 0.25f, 0}, {0, 0, 0.5f}));
-    EXPECT_EQ(hit, (ReferenceHit{true, 8, 0.5, 0.25, 0, 0, 0}));
-}
-
 TEST(ReferenceScene, NegativeTMinCountsAsZero) {
     const ReferenceScene reference = plane_at_4();
     EXPECT_FALSE(reference.any_hit(make_ray({0.7f, 0.2f, 5}, {0, 0, 1}, -10)));
@@ -110,20 +92,6 @@ TEST(ReferenceScene, NonFiniteAndDegenerateTrianglesAreNeverHit) {
     EXPECT_NE(reference.geometry(0).find(4), nullptr);
     EXPECT_NE(reference.geometry(0).find(5), nullptr);
     EXPECT_EQ(reference.geometry(0).find(6), nullptr);
-}
-
-TEST(ReferenceScene, DuplicatesAnswerWithTheLowestInstanceThenPrimitive) {
-    Soup soup;
-    for (int i = 0; i < 40; ++i) soup.add({0, 0, 4}, {1, 0, 4}, {1, 1, 4});
-    const ReferenceScene reference = reference_of({soup}, {{0, Transform::translation({0, 0, 1}), 0}, {}, {}});
-    const ReferenceHit hit = reference.closest_hit(make_ray({0.7f, 0.2f, 0}, {0, 0, 1}));
-    EXPECT_EQ(hit.primitive, 0u);
-    EXPECT_EQ(hit.instance, 1u);
-}
-
-TEST(ReferenceScene, HandsTheCustomIndexThrough) {
-    const ReferenceScene reference = reference_of({cube()}, {{0, Transform::translation({0, 0, 5}), 16777215}});
-    EXPECT_EQ(reference.closest_hit(make_ray({0.5f, 0.3f, 0}, {0, 0, 1})).custom_index, 16777215u);
 }
 
 TEST(ReferenceScene, EmptyScenesMiss) {

@@ -4,20 +4,13 @@
 import json
 import pathlib
 import struct
-import subprocess
 import sys
-import tempfile
 import zlib
 
-twinray, here = sys.argv[1], pathlib.Path(tempfile.mkdtemp())
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from command import here, run
+
 small = ["--picture-size", "80", "60"]
-
-
-def run(*arguments, status=0):
-    done = subprocess.run([twinray, *arguments], capture_output=True, text=True, cwd=here)
-    assert done.returncode == status, f"{arguments}: status {done.returncode}\n{done.stdout}{done.stderr}"
-    assert "VUID" not in done.stderr and "SYNC-HAZARD" not in done.stderr, done.stderr
-    return done.stdout + done.stderr
 
 
 def png(name):
