@@ -87,7 +87,7 @@ struct WaveData
 };
 BUFFER_OF(WaveData, 8);
 
-// Of the kernels that queue the rays of a wave, and that follow shadow rays.
+// Arguments of the kernels that queue the rays of a wave, and that follow shadow rays.
 struct WaveArgs
 {
     REF(WaveData) wave;

@@ -31,7 +31,7 @@ FUNC uvec3 cells_of(vec3 point, vec3 lo, vec3 hi)
     return uvec3(cell_of(point.x, lo.x, hi.x), cell_of(point.y, lo.y, hi.y), cell_of(point.z, lo.z, hi.z));
 }
 
-// Of 10 bits an axis.
+// The code of cells of 10 bits an axis.
 FUNC uint interleaved(uint x, uint y, uint z)
 {
     return (spread_bits(x) << 2u) | (spread_bits(y) << 1u) | spread_bits(z);
