@@ -16,10 +16,10 @@ set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
 
-# Programs of the target run here by Wine, where that is installed.
+# Programs of the target run here by Wine, where that is installed, with Wine's own folder for temporary files.
 find_program(TWINRAY_WINE NAMES wine wine64 DOC "runs Windows' programs: package wine")
 if(TWINRAY_WINE)
-    set(CMAKE_CROSSCOMPILING_EMULATOR ${TWINRAY_WINE})
+    set(CMAKE_CROSSCOMPILING_EMULATOR env -u TMPDIR ${TWINRAY_WINE})
 endif()
 
 # No program needs a DLL of the compiler or of zlib. Only the compiler's own DLL carries exceptions from one DLL to
