@@ -11,6 +11,9 @@ execute_process(COMMAND ${EMULATOR} ${PROGRAM} --gtest_list_tests OUTPUT_VARIABL
 string(REPLACE "\r" "" listing "${listing}")
 set(command ${EMULATOR} ${PROGRAM})
 list(JOIN command "]=] [=[" command)
+if(EMULATOR)
+    string(PREPEND RESULTS Z:) # the root as Wine names it: without a drive a path is relative
+endif()
 string(REGEX MATCHALL "(^|\n)[^ \n]+\\.[ \n]" suites "${listing}")
 set(tests "")
 foreach(suite ${suites})
