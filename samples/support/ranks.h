@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: MIT
-// The processes that mpirun started, if the program was built with MPI; else this one alone.
+// The processes that mpirun started; else this one alone.
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 
 #include <twinray/context.h>
+#include "samples/support/mpi_calls.h"
 
 namespace twinray::samples {
 
 class Ranks {
   public:
-    // Throws Error where mpirun started a program that was built without MPI.
+    // Throws Error where mpirun started a program that has no MPI.
     Ranks();
     // Waits for the others, unless abandon() was called.
     ~Ranks();
@@ -32,6 +34,7 @@ class Ranks {
   private:
     uint index_ = 0, count_ = 1, local_index_ = 0;
     bool is_abandoned_ = false;
+    std::optional<MpiCalls> mpi_;  // where a launcher of MPI started this
 };
 
 // Processes of one machine take turns on its best devices. Returns the index of the device.

@@ -151,4 +151,6 @@ for command in COMMANDS:
 check_refusals()
 if mpirun:
     check_lost_rank()
+    libraries = subprocess.run(["ldd", twinray], capture_output=True, text=True).stdout
+    assert "libmpi" not in libraries, "a program that no rank is would load it"
 print("shards_command_test: passed" + ("" if mpirun else ", without MPI"))
