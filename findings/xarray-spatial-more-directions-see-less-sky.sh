@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# A good guess: a sky-view factor by horizons comes nearer to the truth with more directions. In the middle of a slope of
-# 45 degrees a quarter of the hemisphere is ground, so the truth is 0.75.
+# A good guess: a sky-view factor by horizons comes nearer to the truth with more directions. In the middle of a slope
+# of 45 degrees a quarter of the hemisphere is ground, so the truth is 0.75.
 # Seen: xrspatial.sky_view_factor(max_radius=20) gives 0.7673 with 8 directions, 0.7442 with 16, 0.7284 with 64 and
 # 0.7275 with 256: from 8 directions on it goes away from the truth. With 8, the horizons of these directions are exact.
 # The others take the height of the nearest whole cell at a distance that is not that cell's, and the highest of 20

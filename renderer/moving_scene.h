@@ -9,7 +9,7 @@
 
 namespace twinray::path_tracer {
 
-// By mesh: push_scene makes one handle for each mesh that has instances, in their order.
+// Returns the handle of each mesh. push_scene makes one for each mesh that has instances, in their order.
 std::vector<AccelHandle> handles_by_mesh(const Scene& scene, const std::vector<AccelHandle>& handles);
 
 // The times of one pose, in milliseconds.

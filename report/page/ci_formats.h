@@ -12,7 +12,7 @@ namespace twinray::report {
 
 // A case on one accelerator, level and variant, over all its settings.
 struct Check {
-    // Of two, the later one is the check's.
+    // The later one counts where settings of a check differ.
     enum class Outcome : std::uint8_t {
         skipped,  // not run, or only measured
         passed,

@@ -14,7 +14,7 @@ std::vector<ReferenceHit> references_of(const ReferenceScene& reference, std::sp
 // primitive.
 std::optional<double> t_ulps(const ReferenceHit& reference, const Hit& hit);
 
-// Of errors that are not negative, at least one. The usual floor is half a unit in the last place of float32, in which
+// Takes at least one error; none is negative. The usual floor is half a unit in the last place of float32, in which
 // view factors are kept.
 ErrorFigures error_figures(const std::string& metric, std::vector<double> errors, double floor = 0x1p-25);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What Ranks needs of MPI. It is a library of its own, because Open MPI's libraries take a tenth of a second to load.
+// The calls of MPI that Ranks needs. They are a library of their own, because Open MPI's take a tenth of a second to
+// load.
 #pragma once
 
 #include <cstddef>

@@ -96,8 +96,8 @@ for accel in ["sw", "hw"]:
     run("--accel", accel, "--json", "far.jsonl", rays="rays.npy")
     assert near(inside), hits()
 assert json.loads((here / "far.jsonl").read_text().splitlines()[0])["origin"] == [500002, 5400002, 2]
-said = subprocess.run([command.program, "trace", "two.ply", "--rays", "rays.npy", "--hits", "hits"], capture_output=True,
-                      text=True, cwd=here)
+said = subprocess.run([command.program, "trace", "two.ply", "--rays", "rays.npy", "--hits", "hits"],
+                      capture_output=True, text=True, cwd=here)
 assert said.stderr.count("scene moved to local origin 500002 5400002 2\n") == 1, said.stderr
 # Rays whose coordinates float32 can hold there are moved exactly.
 at = [(500001, 5400001, 0), (500003, 5400001, 0), (500000, 5400001, 0)]

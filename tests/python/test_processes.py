@@ -211,6 +211,15 @@ LONG = {
 }
 
 
+def interrupted(code, seconds):
+    """A program that printed "begun" and got Ctrl-C so much later, and when it got it."""
+    program = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    assert program.stdout.readline() == "begun\n", program.communicate()
+    time.sleep(seconds)
+    program.send_signal(signal.SIGINT)
+    return program, time.monotonic()
+
+
 @pytest.mark.parametrize("call", LONG)
 def test_ctrl_c_ends_a_call(call):
     code = f"""
@@ -234,11 +243,7 @@ except KeyboardInterrupt:
         print(np.isfinite(scene.cast_rays([[0.3, 0.6, 9, 0, 0, -1]])["t_hit"]).all(), flush=True)
 os._exit(0)
 """
-    program = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    assert program.stdout.readline() == "begun\n", program.communicate()
-    time.sleep(2)
-    program.send_signal(signal.SIGINT)
-    begun = time.monotonic()
+    program, begun = interrupted(code, 2)
     try:
         answer = program.stdout.readline()
         seconds = time.monotonic() - begun
@@ -277,11 +282,7 @@ scene.add_triangles(*grid(70))
 print("begun", flush=True)
 {call}
 """
-    program = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    assert program.stdout.readline() == "begun\n", program.communicate()
-    time.sleep(3)
-    program.send_signal(signal.SIGINT)
-    begun = time.monotonic()
+    program, begun = interrupted(code, 3)
     try:
         rest = program.communicate(timeout=60)
     finally:
