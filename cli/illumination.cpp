@@ -110,17 +110,17 @@ std::optional<Illumination> compute(const Shards& shards, const IlluminationOpti
         .grid = grid, .sides = options.sides, .by = options.groups.by, .progress = [&](std::uint64_t rays) {
             progress.advance(rays);
         }};
-    if (shards.is_whole()) return illuminate(*analysed.accel, analysed.scene, faces, desc);
+    if (shards.is_whole()) return illuminate(*analysed.accel, faces, desc);
     Agreement agreement = agreement_of("illumination", analysed.scene, analysed.choice.name());
     const std::vector<uint> groups = faces.groups(options.groups.by);
     agreement.push_back({"groups", checksum_text(std::as_bytes(std::span(groups)))});
     agreement.push_back({"--sides", name_in(sides_by_name, options.sides)});
     agreement.push_back({"--seed", std::to_string(grid.seed)});
     agreement.push_back({"grid", options.grid.record().dump()});
-    const std::uint64_t rays = grid_ray_count(analysed.scene, desc);
+    const std::uint64_t rays = grid_ray_count(faces, desc);
     const auto parts = shards.parts((rays + 1) / 2, agreement, [&](Rows rows) {
         const std::vector<GroupCount> counts =
-            count_light(*analysed.accel, analysed.scene, faces, desc, rows.first * 2, std::min(rays, rows.last * 2));
+            count_light(*analysed.accel, faces, desc, rows.first * 2, std::min(rays, rows.last * 2));
         return joined<GroupCount, std::byte>(counts, {});
     });
     if (!parts) return {};
@@ -130,7 +130,7 @@ std::optional<Illumination> compute(const Shards& shards, const IlluminationOpti
         append_bytes(counts, part);
         for (std::size_t i = 0; i < sums.size(); ++i) sums[i].hits += counts[i].hits, sums[i].odd += counts[i].odd;
     }
-    return illumination_of(analysed.scene, faces, desc, sums);
+    return illumination_of(faces, desc, sums);
 }
 
 void run(IlluminationOptions options) {
@@ -218,9 +218,9 @@ std::vector<Option> sky_options(SkyOptions& options) {
 std::vector<Received> receive(const Analysed& analysed, const Faces& faces, const SkyOptions& options,
                               std::span<const SunPosition> sun, SkyRaysDesc desc, Rows rows) {
     desc.first_face = rows.first, desc.last_face = rows.last;
-    const SkyLight light = options.sky ? sky_light(*analysed.accel, analysed.scene, faces,
-                                                   {options.up[0], options.up[1], options.up[2]}, desc)
-                                       : sun_hours(*analysed.accel, analysed.scene, faces, sun, desc);
+    const SkyLight light = options.sky
+                               ? sky_light(*analysed.accel, faces, {options.up[0], options.up[1], options.up[2]}, desc)
+                               : sun_hours(*analysed.accel, faces, sun, desc);
     return {light.faces.begin() + static_cast<std::ptrdiff_t>(rows.first),
             light.faces.begin() + static_cast<std::ptrdiff_t>(rows.last)};
 }

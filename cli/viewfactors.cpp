@@ -46,7 +46,7 @@ struct Options {
 };
 
 // Empty where hits are to tell all, as they are in scenes of too many faces unless another estimator is asked for.
-PairExchanges compute_pairs(const Options& options, AbstractAccel& accel, const Scene& scene, const Faces& faces) {
+PairExchanges compute_pairs(const Options& options, AbstractAccel& accel, const Faces& faces) {
     const auto count = static_cast<std::size_t>(
         std::count_if(faces.areas().begin(), faces.areas().end(), [](double area) { return area > 0; }));
     if (options.estimator == PairEstimator::automatic && count > most_paired_faces) {
@@ -56,7 +56,7 @@ PairExchanges compute_pairs(const Options& options, AbstractAccel& accel, const 
         return {};
     }
     samples::Progress progress("pairs", faces.group_count(options.factors.grouping), options.common.quiet);
-    return exchanges_of_pairs(accel, scene, faces, options.factors, options.estimator,
+    return exchanges_of_pairs(accel, faces, options.factors, options.estimator,
                               [&](std::uint64_t groups) { progress.advance(groups); });
 }
 
@@ -249,7 +249,7 @@ void run(Options options) {
     Summary summary;
     summary.choice = choice;
     const Stopwatch start;
-    const PairExchanges pairs = options.shards.merged ? PairExchanges{} : compute_pairs(options, *accel, scene, faces);
+    const PairExchanges pairs = options.shards.merged ? PairExchanges{} : compute_pairs(options, *accel, faces);
     summary.rays_between_faces = pairs.rays;
     summary.seconds_of_pairs = start.seconds();
     ViewFactors factors(*accel, faces, options.factors, pairs.known);

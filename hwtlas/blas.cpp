@@ -78,7 +78,7 @@ BlasInput blas_input(const Geometry& geometry, bool reorder) {
     const uint anchor = first_active->x;
 
     BlasInput input;
-    input.positions = geometry.positions;
+    input.positions.assign(geometry.positions.begin(), geometry.positions.end());
     for (vec3& position : input.positions)
         if (!is_finite(position)) position = geometry.positions[anchor];
     if (reorder) input.original = morton_order(triangle_centers(geometry.positions, geometry.triangles));

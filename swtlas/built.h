@@ -13,9 +13,9 @@ struct SwBackend::HostMesh {
     std::span<const vec3> positions;
     std::span<const uvec3> triangles;
 
-    explicit HostMesh(const Geometry& geometry)
-        : positions(geometry.welded.is_empty() ? geometry.positions : geometry.welded.positions),
-          triangles(geometry.welded.is_empty() ? geometry.triangles : geometry.welded.triangles) {}
+    explicit HostMesh(const Geometry& geometry) : positions(geometry.positions), triangles(geometry.triangles) {
+        if (!geometry.welded.is_empty()) positions = geometry.welded.positions, triangles = geometry.welded.triangles;
+    }
 };
 
 struct SwBackend::SwBuiltGeometry : BuiltGeometry {

@@ -19,8 +19,8 @@ namespace {
 constexpr char magic[8] = {'\x89', 'T', 'W', 'R', '\r', '\n', '\x1a', '\n'};
 constexpr uint byte_order = 0x01020304u;
 
-template <class T>
-std::span<const std::byte> bytes_of(const std::vector<T>& values) {
+template <class Array>
+std::span<const std::byte> bytes_of(const Array& values) {
     return std::as_bytes(std::span(values));
 }
 

@@ -342,7 +342,7 @@ BuiltTree SwBackend::download_geometry(AccelHandle handle) const {
     const GeometryLayout& layout = built.layout;
     std::vector<CompressedRecord> records =
         with_clear_gaps(download<CompressedRecord>(context(), built.buffer, layout.record_count, layout.records));
-    std::vector<vec3> vertices;
+    SharedArray<vec3> vertices;
     if (layout.vertex_count && block.vertices.address == built.vertices().address)
         vertices = download<vec3>(context(), built.buffer, layout.vertex_count, layout.vertices);
     else if (has_pairs(records))

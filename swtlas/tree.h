@@ -15,7 +15,7 @@ struct BuiltTree {
     std::vector<BvhNode> nodes;             // of layout bvh2
     std::vector<BvhTriangle> triangles;     // of a geometry in layout bvh2
     std::vector<CompressedRecord> records;  // of all other layouts
-    std::vector<vec3> vertices;             // of leaves of two triangles
+    SharedArray<vec3> vertices;             // of leaves of two triangles
 };
 // Downloads it. Throws Error on a dead or unsynced handle.
 BuiltTree download_geometry(const SwTlas& accel, AccelHandle handle);

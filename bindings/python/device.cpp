@@ -136,7 +136,7 @@ Device& Scene::open_device() {
 
 // Instances keep sharing meshes.
 void Scene::push_parts(AbstractAccel& accel, AccelHandle Part::*handle) {
-    std::map<const Mesh*, AccelHandle> pushed;
+    std::map<const SharedMesh*, AccelHandle> pushed;
     for (uint number = 0; number < parts_.size(); ++number) {
         if (!parts_[number]) continue;
         Part& part = *parts_[number];
@@ -144,7 +144,9 @@ void Scene::push_parts(AbstractAccel& accel, AccelHandle Part::*handle) {
         const auto [known, is_new] = pushed.try_emplace(part.mesh.get());
         part.*handle = is_new ? accel.push(*part.mesh, part.transform, options)
                               : push_instance(accel, known->second, part.transform, options);
-        if (is_new) known->second = part.*handle;
+        if (!is_new) continue;
+        known->second = part.*handle;
+        if (&accel == accel_.get()) static_cast<SharedMesh&>(*part.mesh) = accel.mesh(part.handle);
     }
 }
 
@@ -156,7 +158,7 @@ AccelHandle Scene::push_instance(AbstractAccel& accel, AccelHandle pushed, const
 Content Scene::content() {
     const Lock lock(*this);
     Content content{.meshes = {}, .geometries = {}, .count = static_cast<uint>(parts_.size())};
-    std::map<const Mesh*, uint> numbers;
+    std::map<const SharedMesh*, uint> numbers;
     for (uint number = 0; number < parts_.size(); ++number) {
         if (!parts_[number]) continue;
         const Part& part = *parts_[number];
@@ -170,7 +172,7 @@ Content Scene::content() {
 void Scene::restore(Content&& content) {
     const Lock lock(*this);
     std::vector<std::shared_ptr<KeptMesh>> meshes;
-    for (Mesh& mesh : content.meshes) meshes.push_back(std::make_shared<KeptMesh>(KeptMesh{std::move(mesh), {}}));
+    for (SharedMesh& mesh : content.meshes) meshes.push_back(std::make_shared<KeptMesh>(KeptMesh{std::move(mesh)}));
     if (content.count > most_geometries)
         throw Error("a scene has at most " + std::to_string(most_geometries) + " geometries, not " +
                     std::to_string(content.count));

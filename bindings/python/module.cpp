@@ -207,9 +207,11 @@ nb::tuple add_file(Scene& scene, const std::string& file, const std::optional<Ve
 nb::tuple bound_content(Scene& scene) {
     Content content = unlocked([&] { return scene.content(); });
     nb::list meshes, geometries;
-    for (Mesh& mesh : content.meshes)
-        meshes.append(
-            nb::make_tuple(given<float>(std::move(mesh.positions), 3), given<uint>(std::move(mesh.triangles), 3)));
+    for (const SharedMesh& mesh : content.meshes) {
+        std::vector<vec3> positions(mesh.positions.begin(), mesh.positions.end());
+        std::vector<uvec3> triangles(mesh.triangles.begin(), mesh.triangles.end());
+        meshes.append(nb::make_tuple(given<float>(std::move(positions), 3), given<uint>(std::move(triangles), 3)));
+    }
     for (const auto& [number, mesh, transform, is_flat] : content.geometries) {
         std::vector<vec4> rows(transform.rows.begin(), transform.rows.end());
         geometries.append(nb::make_tuple(number, mesh, given<float>(std::move(rows), 4), is_flat));
@@ -220,11 +222,8 @@ nb::tuple bound_content(Scene& scene) {
 void restore(Scene& scene, const std::vector<std::pair<Rows<float, 3>, Rows<uint, 3>>>& meshes,
              const std::vector<std::tuple<uint, uint, TransformRows, bool>>& geometries, uint count) {
     Content content{.meshes = {}, .geometries = {}, .count = count};
-    for (const auto& [positions, triangles] : meshes) {
-        Mesh& mesh = content.meshes.emplace_back();
-        mesh.positions = copied<vec3>(positions);
-        mesh.triangles = copied<uvec3>(triangles);
-    }
+    for (const auto& [positions, triangles] : meshes)
+        content.meshes.push_back({"", copied<vec3>(positions), copied<uvec3>(triangles)});
     for (const auto& [number, mesh, transform, is_flat] : geometries)
         content.geometries.push_back({number, mesh, transform_of(transform), is_flat});
     unlocked([&] { scene.restore(std::move(content)); });

@@ -31,6 +31,13 @@ dvec3 world_vertex(const Transform& transform, vec3 p) {
     return world;
 }
 
+Mesh copy_of(const SharedMesh& mesh) {
+    Mesh copy;
+    copy.positions.assign(mesh.positions.begin(), mesh.positions.end());
+    copy.triangles.assign(mesh.triangles.begin(), mesh.triangles.end());
+    return copy;
+}
+
 constexpr std::size_t rays_of_block = 1 << 20;
 
 Ray rounded(const Ray64& ray) {
@@ -97,7 +104,7 @@ InstanceOptions Scene::options_of_next() const {
 }
 
 const Bounds& Scene::KeptMesh::bounds() {
-    if (!box) box = bounds_of(MeshView(*this));
+    if (!box) box = bounds_of(*this);
     return *box;
 }
 
@@ -122,12 +129,14 @@ uint Scene::add(Mesh&& mesh, const Transform& transform) {
     const Lock lock(*this);
     mesh.name = "geometry " + std::to_string(parts_.size());
     const std::optional<Transform> flat = flatten(mesh, transform);
-    const Transform placed = flat.value_or(transform);
-    auto kept = std::make_shared<KeptMesh>(KeptMesh{std::move(mesh), {}});
-    const AccelHandle handle = accel_->push(*kept, placed, options_of_next());
-    const uint geometry = keep(handle, std::move(kept), placed);
+    const uint geometry = push(mesh, flat.value_or(transform));
     parts_[geometry]->is_flat = flat.has_value();
     return geometry;
+}
+
+uint Scene::push(const MeshView& mesh, const Transform& transform) {
+    const AccelHandle handle = accel_->push(mesh, transform, options_of_next());
+    return keep(handle, std::make_shared<KeptMesh>(KeptMesh{accel_->mesh(handle)}), transform);
 }
 
 Scene::Part& Scene::movable(uint geometry, const char* action) {
@@ -141,7 +150,7 @@ Scene::Part& Scene::movable(uint geometry, const char* action) {
 uint Scene::add_instance(uint of, const Transform& transform) {
     const Lock lock(*this);
     const Part original = movable(of, "add_instance");
-    if (Mesh own = *original.mesh; flatten(own, transform)) return add(Mesh(*original.mesh), transform);
+    if (Mesh own = copy_of(*original.mesh); flatten(own, transform)) return add(copy_of(*original.mesh), transform);
     const InstanceOptions options = options_of_next();
     return keep(push_instance(*accel_, original.handle, transform, options), original.mesh, transform);
 }
@@ -191,8 +200,7 @@ void Scene::update_vertices(uint geometry, std::vector<vec3>&& positions) {
     Part& moved = movable(geometry, "update_vertices");
     accel_->update_vertices(moved.handle, positions);
     if (lister_) lister_->update_vertices(moved.listed, positions);
-    moved.mesh->positions = std::move(positions);
-    moved.mesh->box.reset();
+    *moved.mesh = {accel_->mesh(moved.handle)};
     changed();
 }
 
@@ -224,7 +232,7 @@ Bounds Scene::bounds() {
     std::vector<PlacedMesh> placed;
     for (const auto& part : parts_) {
         if (!part) continue;
-        placed.push_back({part->mesh.get(), part->mesh->bounds(), part->transform});
+        placed.push_back({*part->mesh, part->mesh->bounds(), part->transform});
     }
     bounds_ = bounds_of(placed);
     return *bounds_;

@@ -173,7 +173,7 @@ struct Content {
         Transform transform;
         bool is_flat;
     };
-    std::vector<Mesh> meshes;
+    std::vector<SharedMesh> meshes;
     std::vector<Geometry> geometries;
     uint count = 0;
 };
@@ -249,8 +249,9 @@ class Scene {
     };
 
   private:
-    struct KeptMesh : Mesh {
-        std::optional<Bounds> box;  // once it was asked for
+    // The accelerator's own arrays.
+    struct KeptMesh : SharedMesh {
+        std::optional<Bounds> box = {};  // once it was asked for
         const Bounds& bounds();
     };
     struct Part {
@@ -266,6 +267,7 @@ class Scene {
     // The one of this process. Throws Error where there is none.
     Device& open_device();
     void push_parts(AbstractAccel& accel, AccelHandle Part::*handle);
+    uint push(const MeshView& mesh, const Transform& transform);
     Part& part(uint geometry, const char* action);
     Part& movable(uint geometry, const char* action);  // throws Error for a flat one
     uint keep(AccelHandle handle, std::shared_ptr<KeptMesh> mesh, const Transform& transform);

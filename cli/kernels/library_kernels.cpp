@@ -71,7 +71,7 @@ void make_analysis(Context& context) {
     const ViewFactors factors(accel, faces, {});
     const PairSampler pairs(accel, faces, Sides::front, Sequence::sobol, 1);
     const SkyRays sky(accel, faces, {});
-    illuminate(accel, scene, faces, {.grid = {.side = 1}});
+    illuminate(accel, faces, {.grid = {.side = 1}});
     const vec3 up(0, 1, 0);
     visibility(accel, std::span(&up, 1), std::span(&up, 1));
     const std::array<float, 4> heights = {};

@@ -78,6 +78,7 @@ std::size_t AbstractAccel::n_instances(AccelHandle handle) const { return backen
 std::size_t AbstractAccel::n_geometries() const { return backend_->n_geometries(); }
 std::size_t AbstractAccel::n_primitives(AccelHandle handle) const { return backend_->n_primitives(handle); }
 std::vector<AccelHandle> AbstractAccel::handles() const { return backend_->handles(); }
+SharedMesh AbstractAccel::mesh(AccelHandle handle) const { return backend_->mesh(handle); }
 SyncPoint AbstractAccel::sync() { return backend_->sync(); }
 void AbstractAccel::sync(Commands& commands) { backend_->sync(commands); }
 bool AbstractAccel::compact() { return backend_->compact(); }

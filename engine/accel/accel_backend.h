@@ -112,8 +112,7 @@ class AccelBackend {
     MemoryUsage memory_usage() const;
     BuildBytes memory_requirements() const;
     BuildBytes memory_requirements(std::span<const GeometrySize> geometries, std::size_t instance_count) const;
-    // Returns the current mesh; if it is on the device, waits for that.
-    Mesh held_mesh(AccelHandle handle) const;
+    SharedMesh mesh(AccelHandle handle) const;
     std::vector<uint> face_metadata(AccelHandle handle) const;  // of each triangle; 0 if none was kept. Waits
     // Counts the syncs that moved or changed something.
     std::uint64_t edit_count() const { return edit_count_; }

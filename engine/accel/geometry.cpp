@@ -38,8 +38,7 @@ std::span<const Bounds> checked(const BoxesView& view) {
 Geometry::Geometry(const MeshView& mesh, float unit)
     : name(mesh.name),
       scale(unit),
-      positions(mesh.positions.size()),
-      triangles(checked(mesh).begin(), mesh.triangles.end()),
+      triangles(std::vector<uvec3>(checked(mesh).begin(), mesh.triangles.end())),
       non_finite_triangles(count_non_finite_triangles(mesh)) {
     move_to(mesh.positions);
 }
@@ -55,26 +54,28 @@ Geometry::Geometry(const DeviceMesh& mesh, float unit) : name(mesh.name), scale(
 
 void Geometry::move_to(std::span<const vec3> others) {
     const float factor = 1 / scale;
-    positions.resize(others.size());
-    std::transform(others.begin(), others.end(), positions.begin(), [&](vec3 p) { return p * factor; });
+    std::vector<vec3> scaled(others.begin(), others.end());
+    for (vec3& p : scaled) p *= factor;
+    positions = std::move(scaled);
 }
 
 void Geometry::forget_mesh(bool is_on_device) {
     if (device || kind == GEOMETRY_BOXES) return;
     forgotten = counts();
-    positions = std::vector<vec3>();  // without its memory
-    triangles = std::vector<uvec3>();
+    positions = {};
+    triangles = {};
     if (!is_on_device) leaves = std::vector<Leaf>();
 }
 
 std::uint64_t Geometry::host_bytes() const {
-    return positions.capacity() * sizeof(vec3) + triangles.capacity() * sizeof(uvec3) +
-           boxes.capacity() * sizeof(Bounds) + leaves.capacity() * sizeof(Leaf) +
-           welded.positions.capacity() * sizeof(vec3) + welded.triangles.capacity() * sizeof(uvec3);
+    return std::span(positions).size_bytes() + std::span(triangles).size_bytes() + boxes.capacity() * sizeof(Bounds) +
+           leaves.capacity() * sizeof(Leaf) + welded.positions.capacity() * sizeof(vec3) +
+           welded.triangles.capacity() * sizeof(uvec3);
 }
 
-std::vector<vec3> Geometry::given_positions() const {
-    std::vector<vec3> given = positions;
+SharedArray<vec3> Geometry::given_positions() const {
+    if (scale == 1) return positions;
+    std::vector<vec3> given(positions.begin(), positions.end());
     for (vec3& p : given) p *= scale;
     return given;
 }

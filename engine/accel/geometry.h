@@ -37,8 +37,8 @@ struct Geometry {
     std::string name;
     uint kind = GEOMETRY_TRIANGLES;
     float scale = 1;              // what `positions` are in units of: a power of two
-    std::vector<vec3> positions;  // these three of GEOMETRY_TRIANGLES
-    std::vector<uvec3> triangles;
+    SharedArray<vec3> positions;  // these three of GEOMETRY_TRIANGLES
+    SharedArray<uvec3> triangles;
     std::size_t non_finite_triangles = 0;  // inactive: never hit, still counted
     std::vector<Bounds> boxes;             // of GEOMETRY_BOXES
     // The leaves for the accelerator's builder; empty: each primitive is one. A build needs it.
@@ -67,7 +67,7 @@ struct Geometry {
     void forget_mesh(bool is_on_device);
     std::uint64_t host_bytes() const;
     // Returns the positions that the user gave.
-    std::vector<vec3> given_positions() const;
+    SharedArray<vec3> given_positions() const;
     // Returns the exponent of the largest finite coordinate, which is below 2^(1 + exponent); 0 if all are 0.
     static int size_exponent(std::span<const vec3> positions);
     // Returns the power of two just below the largest finite coordinate, so that coordinates in this unit are near 1.

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
 // A scene into an accelerator, and back.
-#include <twinray/scene.h>
-
 #include <algorithm>
 
-#include <twinray/abstract_accel.h>
 #include "engine/accel/held_geometry.h"
+#include "engine/accel/placed_meshes.h"
 #include "engine/core/error.h"
 
 namespace twinray {
@@ -29,30 +27,47 @@ std::vector<AccelHandle> push_scene(AbstractAccel& accel, const Scene& scene) {
     return handles;
 }
 
-Scene scene_of(AbstractAccel& accel) {
+PlacedMeshes::PlacedMeshes(const Scene& scene) : meshes(scene.meshes.begin(), scene.meshes.end()) {
+    for (const Instance& instance : scene.instances) instances.push_back({instance.mesh, instance.transform});
+}
+
+PlacedMeshes::PlacedMeshes(AbstractAccel& accel) {
     accel.sync();
-    const AccelBackend& backend = accel.backend();
-    Scene scene;
-    scene.materials.resize(1);
     for (const AccelHandle handle : accel.handles()) {
-        const auto mesh = static_cast<uint>(scene.meshes.size());
-        scene.meshes.push_back(backend.held_mesh(handle));
         for (const InstanceState& state : accel.get_instances(handle)) {
             if (const std::string fault = fault_of(state.transform); !fault.empty())
-                fail(accel.name(), ": scene_of: instance ", scene.instances.size(), ": ", fault);
-            scene.instances.push_back({"", mesh, state.transform, {}});
+                fail(accel.name(), ": scene_of: instance ", instances.size(), ": ", fault);
+            instances.push_back({static_cast<uint>(owned_.size()), state.transform});
         }
+        owned_.push_back(accel.mesh(handle));
     }
+    meshes.assign(owned_.begin(), owned_.end());
+}
+
+std::vector<std::size_t> triangle_counts(const PlacedMeshes& placed) {
+    std::vector<std::size_t> counts;
+    for (const MeshInstance& instance : placed.instances)
+        counts.push_back(placed.meshes[instance.mesh].triangles.size());
+    return counts;
+}
+
+Scene scene_of(AbstractAccel& accel) {
+    const PlacedMeshes placed(accel);
+    Scene scene;
+    scene.materials.resize(1);
+    for (const MeshView& mesh : placed.meshes) {
+        Mesh& copy = scene.meshes.emplace_back();
+        copy.name = mesh.name;
+        copy.positions.assign(mesh.positions.begin(), mesh.positions.end());
+        copy.triangles.assign(mesh.triangles.begin(), mesh.triangles.end());
+    }
+    for (const auto& [mesh, transform] : placed.instances) scene.instances.push_back({"", mesh, transform, {}});
     return scene;
 }
 
-Mesh AccelBackend::held_mesh(AccelHandle handle) const {
+SharedMesh AccelBackend::mesh(AccelHandle handle) const {
     const Geometry held = geometry(handle);
-    Mesh mesh;
-    mesh.name = held.name;
-    mesh.positions = held.given_positions();
-    mesh.triangles = held.triangles;
-    return mesh;
+    return {held.name, held.given_positions(), held.triangles};
 }
 
 std::vector<uint> AccelBackend::face_metadata(AccelHandle handle) const {

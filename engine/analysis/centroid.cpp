@@ -7,14 +7,14 @@ namespace {
 
 constexpr std::size_t rays_of_sum = 4096;  // even: pairs stay together
 
-std::optional<dvec3> point_of(const Scene& scene, const Hit& hit) {
+std::optional<dvec3> point_of(const PlacedMeshes& placed, const Hit& hit) {
     if (hit.hit == 0) return std::nullopt;
-    const Instance& instance = scene.instances[hit.instance_index];
-    const Mesh& mesh = scene.meshes[instance.mesh];
+    const Transform& transform = placed.instances[hit.instance_index].transform;
+    const MeshView& mesh = placed.mesh_of(hit.instance_index);
     const uvec3 vertices = mesh.triangles[hit.primitive_index];
-    const dvec3 a = in_world(instance.transform, mesh.positions[vertices.x]);
-    const dvec3 b = in_world(instance.transform, mesh.positions[vertices.y]);
-    const dvec3 c = in_world(instance.transform, mesh.positions[vertices.z]);
+    const dvec3 a = in_world(transform, mesh.positions[vertices.x]);
+    const dvec3 b = in_world(transform, mesh.positions[vertices.y]);
+    const dvec3 c = in_world(transform, mesh.positions[vertices.z]);
     return a + (b - a) * static_cast<double>(hit.u) + (c - a) * static_cast<double>(hit.v);
 }
 
@@ -55,11 +55,11 @@ Sums sum_of(Points points, dvec3 center) {
 }
 
 // Returns one for each run of rays_of_sum rays; these are added up in order, so that no thread influences a bit.
-std::vector<Sums> sums_of(const Scene& scene, std::span<const Hit> hits, dvec3 center, Points points) {
+std::vector<Sums> sums_of(const PlacedMeshes& placed, std::span<const Hit> hits, dvec3 center, Points points) {
     std::vector<Sums> sums((hits.size() + rays_of_sum - 1) / rays_of_sum);
     parallel_for(sums.size(), [&](std::size_t run) {
         const std::size_t first = run * rays_of_sum, count = std::min(rays_of_sum, hits.size() - first);
-        for (std::size_t i = first; i < first + count; ++i) points[i] = point_of(scene, hits[i]);
+        for (std::size_t i = first; i < first + count; ++i) points[i] = point_of(placed, hits[i]);
         sums[run] = sum_of(points.subspan(first, count), center);
     });
     return sums;
@@ -76,11 +76,8 @@ void finish(Centroid& result, const Sums& sums, const RayGridPlan& plan) {
     if (plan.grid.points == GRID_AT_RANDOM) result.standard_error = sqrt(max(variance, dvec3(0))) / sums.count;
 }
 
-}  // namespace
-
-Centroid centroid(AbstractAccel& accel, const Scene& scene, const CentroidDesc& desc) {
-    check_filled(accel, triangle_counts(scene), "centroid");
-    const RayGridPlan plan = plan_ray_grid(scene, desc.grid);
+Centroid centroid_of(AbstractAccel& accel, const PlacedMeshes& placed, const CentroidDesc& desc) {
+    const RayGridPlan plan = plan_ray_grid(placed, desc.grid);
     Centroid result;
     result.ray_count = plan.ray_count;
     if (plan.ray_count == 0) return result;
@@ -93,7 +90,7 @@ Centroid centroid(AbstractAccel& accel, const Scene& scene, const CentroidDesc& 
         trace.finish(commands);
         const std::vector<Hit> hits = download<Hit>(accel.context(), trace.hits(), batch.count);
         points.assign(hits.size(), std::nullopt);
-        for (const Sums& sums : sums_of(scene, hits, plan.center, points)) total.add(sums);
+        for (const Sums& sums : sums_of(placed, hits, plan.center, points)) total.add(sums);
         if (desc.keeps_points)
             for (const std::optional<dvec3>& point : points)
                 if (point) result.points.push_back(*point);
@@ -103,6 +100,16 @@ Centroid centroid(AbstractAccel& accel, const Scene& scene, const CentroidDesc& 
     return result;
 }
 
-Centroid centroid(AbstractAccel& accel, const CentroidDesc& desc) { return centroid(accel, scene_of(accel), desc); }
+}  // namespace
+
+Centroid centroid(AbstractAccel& accel, const Scene& scene, const CentroidDesc& desc) {
+    const PlacedMeshes placed(scene);
+    check_filled(accel, triangle_counts(placed), "centroid");
+    return centroid_of(accel, placed, desc);
+}
+
+Centroid centroid(AbstractAccel& accel, const CentroidDesc& desc) {
+    return centroid_of(accel, PlacedMeshes(accel), desc);
+}
 
 }  // namespace twinray

@@ -6,7 +6,6 @@
 #include <set>
 
 #include "engine/accel/accel_backend.h"
-#include "engine/core/commands.h"
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
 #include "engine/core/ray.h"
@@ -15,53 +14,46 @@
 namespace twinray {
 namespace {
 
-std::uint64_t count_faces(const Scene& scene) {
-    std::uint64_t count = 0;
-    for (const Instance& instance : scene.instances) count += scene.meshes[instance.mesh].triangles.size();
+std::uint64_t count_faces(std::span<const std::size_t> triangle_counts) {
+    const auto count = std::reduce(triangle_counts.begin(), triangle_counts.end(), std::uint64_t{0});
     constexpr std::uint64_t most = Faces::State::most;
     if (count > most) fail("faces: the scene has ", count, " with its instances; at most ", most, " fit");
     return count;
 }
 
-double largest_coordinate_of(const Scene& scene, Face face) {
-    const Instance& instance = scene.instances[face.instance];
-    const Mesh& mesh = scene.meshes[instance.mesh];
+double largest_coordinate_of(const PlacedMeshes& placed, Face face) {
+    const MeshView& mesh = placed.mesh_of(face.instance);
     const uvec3 triangle = mesh.triangles[face.primitive];
     double largest = 0;
     for (const uint vertex : {triangle.x, triangle.y, triangle.z}) {
-        const dvec3 p = abs(in_world(instance.transform, mesh.positions[vertex]));
+        const dvec3 p = abs(in_world(placed.instances[face.instance].transform, mesh.positions[vertex]));
         largest = std::max({largest, p.x, p.y, p.z});
     }
     return largest;
 }
 
-void upload_meshes(Context& context, Commands& commands, const Scene& scene, Faces::State& state) {
-    for (const Mesh& mesh : scene.meshes) {
-        state.materials.push_back(mesh.materials);
-        const std::uint64_t bytes = std::span(mesh.positions).size_bytes();
-        state.meshes.emplace_back(context, BufferDesc{.name = "faces of mesh '" + mesh.name + "'",
-                                                      .bytes = bytes + std::span(mesh.triangles).size_bytes()});
-        commands.upload(state.meshes.back(), std::span<const vec3>(mesh.positions));
-        commands.upload(state.meshes.back(), std::span<const uvec3>(mesh.triangles), bytes);
+void upload_meshes(Context& context, Commands& commands, Faces::State& state) {
+    for (const MeshView& mesh : state.placed.meshes) {
+        const std::uint64_t bytes = mesh.positions.size_bytes();
+        state.meshes.emplace_back(context, BufferDesc{.name = text("faces of mesh '", mesh.name, "'"),
+                                                      .bytes = bytes + mesh.triangles.size_bytes()});
+        commands.upload(state.meshes.back(), mesh.positions);
+        commands.upload(state.meshes.back(), mesh.triangles, bytes);
     }
 }
 
-void upload_instances(Context& context, Commands& commands, const Scene& scene, Faces::State& state) {
+void upload_instances(Context& context, Commands& commands, Faces::State& state) {
     std::vector<FacesOfInstance> instances;
-    for (uint i = 0; i < scene.instances.size(); ++i) {
-        const Instance& instance = scene.instances[i];
-        const Mesh& mesh = scene.meshes[instance.mesh];
-        const auto& rows = instance.transform.rows;
-        const auto triangles = static_cast<uint>(mesh.triangles.size());
-        const Buffer& buffer = state.meshes[instance.mesh];
+    for (uint i = 0; i < state.placed.instances.size(); ++i) {
+        const auto& [mesh, transform] = state.placed.instances[i];
+        const auto& rows = transform.rows;
         instances.push_back({{rows[0], rows[1], rows[2]},
-                             buffer.ref<float>(),
-                             buffer.ref<uint>(std::span(mesh.positions).size_bytes()),
+                             state.meshes[mesh].ref<float>(),
+                             state.meshes[mesh].ref<uint>(state.placed.meshes[mesh].positions.size_bytes()),
                              static_cast<uint>(state.faces.size()),
                              0});
-        state.mesh_of_instance.push_back(instance.mesh);
-        state.triangle_counts.push_back(triangles);
-        for (uint primitive = 0; primitive < triangles; ++primitive) state.faces.push_back({i, primitive});
+        for (uint primitive = 0; primitive < state.triangle_counts[i]; ++primitive)
+            state.faces.push_back({i, primitive});
     }
     state.instance_buffer = Buffer(context, {.name = "faces of instances", .bytes = std::span(instances).size_bytes()});
     state.face_buffer = Buffer(context, {.name = "faces", .bytes = std::span(state.faces).size_bytes()});
@@ -69,16 +61,25 @@ void upload_instances(Context& context, Commands& commands, const Scene& scene, 
     commands.upload(state.face_buffer, std::span<const Face>(state.faces));
 }
 
-std::vector<double> areas_of_faces(const Scene& scene, std::span<const Face> faces) {
+std::vector<double> areas_of_faces(const PlacedMeshes& placed, std::span<const Face> faces) {
     std::vector<double> areas(faces.size());
     parallel_for(faces.size(), [&](std::size_t face) {
-        areas[face] = length(area_vector(scene, faces[face]));
-        const double largest = areas[face] > 0 ? largest_coordinate_of(scene, faces[face]) : 0;
+        areas[face] = length(area_vector(placed, faces[face]));
+        const double largest = areas[face] > 0 ? largest_coordinate_of(placed, faces[face]) : 0;
         if (!(largest <= Faces::State::largest_coordinate))
             fail("faces: triangle ", faces[face].primitive, " of instance ", faces[face].instance,
                  " has a coordinate of ", largest, " in world space; at most 2^124, about 2.1e37");
     });
     return areas;
+}
+
+dvec3 area_vector(const MeshView& mesh, const Transform& transform, uint primitive) {
+    const uvec3 triangle = mesh.triangles[primitive];
+    const vec3 a = mesh.positions[triangle.x], b = mesh.positions[triangle.y], c = mesh.positions[triangle.z];
+    if (!is_active_triangle(a, b, c)) return dvec3(0);
+    const dvec3 origin = in_world(transform, a);
+    const dvec3 twice = cross(in_world(transform, b) - origin, in_world(transform, c) - origin);
+    return twice * (determinant(transform) < 0 ? -0.5 : 0.5);
 }
 
 }  // namespace
@@ -93,21 +94,13 @@ dvec3 in_world(const Transform& transform, vec3 point) {
     return {dot(dvec4(transform.rows[0]), p), dot(dvec4(transform.rows[1]), p), dot(dvec4(transform.rows[2]), p)};
 }
 
-dvec3 area_vector(const Scene& scene, Face face) {
-    const Instance& instance = scene.instances[face.instance];
-    const Mesh& mesh = scene.meshes[instance.mesh];
-    const uvec3 triangle = mesh.triangles[face.primitive];
-    const vec3 a = mesh.positions[triangle.x], b = mesh.positions[triangle.y], c = mesh.positions[triangle.z];
-    if (!is_active_triangle(a, b, c)) return dvec3(0);
-    const dvec3 origin = in_world(instance.transform, a);
-    const dvec3 twice = cross(in_world(instance.transform, b) - origin, in_world(instance.transform, c) - origin);
-    return twice * (determinant(instance.transform) < 0 ? -0.5 : 0.5);
+dvec3 area_vector(const PlacedMeshes& placed, Face face) {
+    return area_vector(placed.mesh_of(face.instance), placed.instances[face.instance].transform, face.primitive);
 }
 
-std::vector<std::size_t> triangle_counts(const Scene& scene) {
-    std::vector<std::size_t> counts;
-    for (const Instance& instance : scene.instances) counts.push_back(scene.meshes[instance.mesh].triangles.size());
-    return counts;
+dvec3 area_vector(const Scene& scene, Face face) {
+    const Instance& instance = scene.instances[face.instance];
+    return area_vector(scene.meshes[instance.mesh], instance.transform, face.primitive);
 }
 
 void check_filled(const AbstractAccel& accel, std::span<const std::size_t> triangle_counts, const char* action) {
@@ -123,33 +116,7 @@ void check_filled(const AbstractAccel& accel, std::span<const std::size_t> trian
                      " primitives and the scene's ", triangle_counts[instance], " triangles", advice);
 }
 
-void check_faces(const Scene& scene, const Faces& faces) {
-    if (count_triangles(scene) != faces.count() || faces.group_count(FaceGrouping::instance) != scene.instances.size())
-        fail("the scene has ", count_triangles(scene), " faces in ", scene.instances.size(), " instances, and Faces ",
-             faces.count(), " in ", faces.group_count(FaceGrouping::instance));
-}
-
 namespace {
-
-// Uses ranks of the metadata of faces as materials, so that groups are numbered without gaps.
-Faces::State::Held hold(AbstractAccel& accel) {
-    Faces::State::Held held{
-        .scene = scene_of(accel), .metadata = {}, .accel = accel.view().accel, .at = accel.backend().edit_count()};
-    std::set<uint> values;
-    const std::vector<AccelHandle> handles = accel.handles();
-    for (std::size_t i = 0; i < handles.size(); ++i) {
-        std::vector<uint>& materials = held.scene.meshes[i].materials;
-        materials = accel.backend().face_metadata(handles[i]);
-        materials.resize(held.scene.meshes[i].triangles.size());
-        values.insert(materials.begin(), materials.end());
-    }
-    held.metadata.assign(values.begin(), values.end());
-    for (Mesh& mesh : held.scene.meshes)
-        for (uint& value : mesh.materials)
-            value = static_cast<uint>(std::ranges::lower_bound(held.metadata, value) - held.metadata.begin());
-    held.scene.materials.resize(held.metadata.size());
-    return held;
-}
 
 const Faces::State::Held& held_by(const Faces& faces) {
     if (!faces.state().held) fail("faces: made of a scene, not of an accelerator");
@@ -158,13 +125,25 @@ const Faces::State::Held& held_by(const Faces& faces) {
 
 }  // namespace
 
-Faces::Faces(AbstractAccel& accel) {
-    State::Held held = hold(accel);
-    *this = Faces(accel.context(), held.scene);
-    state_->held = std::move(held);
+// Uses ranks of the metadata of faces as materials, so that groups are numbered without gaps.
+Faces::Faces(AbstractAccel& accel) : state_(std::make_unique<State>()) {
+    state_->placed = PlacedMeshes(accel);
+    std::set<uint> values;
+    const std::vector<AccelHandle> handles = accel.handles();
+    for (std::size_t i = 0; i < handles.size(); ++i) {
+        std::vector<uint>& materials = state_->materials.emplace_back(accel.backend().face_metadata(handles[i]));
+        materials.resize(state_->placed.meshes[i].triangles.size());
+        values.insert(materials.begin(), materials.end());
+    }
+    state_->held = {{values.begin(), values.end()}, accel.view().accel, accel.backend().edit_count()};
+    const std::vector<uint>& metadata = state_->held->metadata;
+    for (std::vector<uint>& materials : state_->materials)
+        for (uint& value : materials)
+            value = static_cast<uint>(std::ranges::lower_bound(metadata, value) - metadata.begin());
+    state_->material_count = metadata.size();
+    state_->fill(accel.context());
 }
 
-const Scene& Faces::scene() const { return held_by(*this).scene; }
 const std::vector<uint>& Faces::metadata() const { return held_by(*this).metadata; }
 
 bool Faces::is_current(AbstractAccel& accel) const {
@@ -173,7 +152,8 @@ bool Faces::is_current(AbstractAccel& accel) const {
     return accel.view().accel == held.accel && accel.backend().edit_count() == held.at;
 }
 
-void check_current(AbstractAccel& accel, const Faces& faces, const char* action) {
+void check_faces(AbstractAccel& accel, const Faces& faces, const char* action) {
+    if (!faces.state().held) return check_filled(accel, faces.triangle_counts(), action);
     if (!faces.is_current(accel))
         fail(
             accel.name(), ": ", action, ": the faces are of ",
@@ -181,18 +161,23 @@ void check_current(AbstractAccel& accel, const Faces& faces, const char* action)
 }
 
 Faces::Faces(Context& context, const Scene& scene) : state_(std::make_unique<State>()) {
-    const std::uint64_t count = count_faces(scene);
-    state_->mesh_count = scene.meshes.size();
+    state_->placed = scene;
+    for (const Mesh& mesh : scene.meshes) state_->materials.push_back(mesh.materials);
     state_->material_count = scene.materials.size();
-    state_->faces.reserve(count);
+    state_->fill(context);
+}
+
+void Faces::State::fill(Context& context) {
+    triangle_counts = twinray::triangle_counts(placed);
+    faces.reserve(count_faces(triangle_counts));
     Commands commands(context, "faces");
     {
         const auto pass = commands.pass("faces upload");
-        upload_meshes(context, commands, scene, *state_);
-        upload_instances(context, commands, scene, *state_);
+        upload_meshes(context, commands, *this);
+        upload_instances(context, commands, *this);
     }
     commands.submit();
-    state_->areas = areas_of_faces(scene, state_->faces);
+    areas = areas_of_faces(placed, faces);
 }
 
 Faces::Faces(Faces&&) noexcept = default;
@@ -237,7 +222,7 @@ std::vector<uint> Faces::groups(FaceGrouping grouping) const {
     }
     std::vector<uint> groups(count());
     const auto group = [&](const Face& face) {
-        const uint mesh = state_->mesh_of_instance[face.instance];
+        const uint mesh = state_->placed.instances[face.instance].mesh;
         switch (grouping) {
             case FaceGrouping::mesh: return mesh;
             case FaceGrouping::instance: return face.instance;
@@ -254,8 +239,8 @@ std::vector<uint> Faces::groups(FaceGrouping grouping) const {
 std::size_t Faces::group_count(FaceGrouping grouping) const {
     switch (grouping) {
         case FaceGrouping::face: return count();
-        case FaceGrouping::mesh: return state_->mesh_count;
-        case FaceGrouping::instance: return state_->mesh_of_instance.size();
+        case FaceGrouping::mesh: return state_->placed.meshes.size();
+        case FaceGrouping::instance: return state_->placed.instances.size();
         case FaceGrouping::material: return state_->material_count;
         default: {
             const std::vector<uint> of = groups(grouping);

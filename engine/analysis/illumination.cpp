@@ -10,12 +10,12 @@ namespace twinray {
 namespace {
 
 // Returns the area of each face as seen along the direction; 0 if the side that it meets receives nothing.
-std::vector<double> unobstructed_areas(const Scene& scene, const Faces& faces, const RayGridPlan& plan, Sides sides) {
+std::vector<double> unobstructed_areas(const Faces& faces, const RayGridPlan& plan, Sides sides) {
     std::vector<double> areas(faces.count());
     if (plan.ray_count == 0) return areas;
     const dvec3 along = normalize(dvec3(plan.grid.direction));
     parallel_for(areas.size(), [&](std::size_t face) {
-        const double towards = -dot(area_vector(scene, faces[face]), along);
+        const double towards = -dot(area_vector(faces.state().placed, faces[face]), along);
         areas[face] = sides == Sides::both ? std::abs(towards) : std::max(towards, 0.0);
     });
     return areas;
@@ -98,27 +98,24 @@ void estimate(LitArea& lit, const GroupCount& count, const RayGridPlan& plan) {
 
 }  // namespace
 
-std::uint64_t grid_ray_count(const Scene& scene, const IlluminationDesc& desc) {
-    return plan_ray_grid(scene, desc.grid).ray_count;
+std::uint64_t grid_ray_count(const Faces& faces, const IlluminationDesc& desc) {
+    return plan_ray_grid(faces.state().placed, desc.grid).ray_count;
 }
 
-std::vector<GroupCount> count_light(AbstractAccel& accel, const Scene& scene, const Faces& faces,
-                                    const IlluminationDesc& desc, std::uint64_t first, std::uint64_t last) {
-    check_faces(scene, faces);
-    check_filled(accel, faces.triangle_counts(), "illumination");
-    const RayGridPlan plan = plan_ray_grid(scene, desc.grid);
+std::vector<GroupCount> count_light(AbstractAccel& accel, const Faces& faces, const IlluminationDesc& desc,
+                                    std::uint64_t first, std::uint64_t last) {
+    check_faces(accel, faces, "illumination");
+    const RayGridPlan plan = plan_ray_grid(faces.state().placed, desc.grid);
     const std::size_t group_count = faces.group_count(desc.by);
     if (first == last) return std::vector<GroupCount>(group_count + 1);
-    const std::vector<uint> counted =
-        groups_that_count(faces, desc.by, unobstructed_areas(scene, faces, plan, desc.sides));
+    const std::vector<uint> counted = groups_that_count(faces, desc.by, unobstructed_areas(faces, plan, desc.sides));
     const GroupCounts counts(accel.context(), faces, counted, group_count);
     return count_hits(accel, plan, first, last, counts, desc.progress);
 }
 
-Illumination illumination_of(const Scene& scene, const Faces& faces, const IlluminationDesc& desc,
-                             std::span<const GroupCount> hits) {
-    const RayGridPlan plan = plan_ray_grid(scene, desc.grid);
-    const std::vector<double> unobstructed = unobstructed_areas(scene, faces, plan, desc.sides);
+Illumination illumination_of(const Faces& faces, const IlluminationDesc& desc, std::span<const GroupCount> hits) {
+    const RayGridPlan plan = plan_ray_grid(faces.state().placed, desc.grid);
+    const std::vector<double> unobstructed = unobstructed_areas(faces, plan, desc.sides);
     Illumination result{.groups = std::vector<LitArea>(faces.group_count(desc.by)),
                         .total = {},
                         .ray_count = plan.ray_count,
@@ -140,13 +137,8 @@ Illumination illumination_of(const Scene& scene, const Faces& faces, const Illum
     return result;
 }
 
-Illumination illuminate(AbstractAccel& accel, const Scene& scene, const Faces& faces, const IlluminationDesc& desc) {
-    return illumination_of(scene, faces, desc, count_light(accel, scene, faces, desc, 0, grid_ray_count(scene, desc)));
-}
-
 Illumination illuminate(AbstractAccel& accel, const Faces& faces, const IlluminationDesc& desc) {
-    check_current(accel, faces, "illumination");
-    return illuminate(accel, faces.scene(), faces, desc);
+    return illumination_of(faces, desc, count_light(accel, faces, desc, 0, grid_ray_count(faces, desc)));
 }
 
 }  // namespace twinray

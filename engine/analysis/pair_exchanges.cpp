@@ -97,12 +97,12 @@ KnownExchange exchange_of(const PlannedPair& pair, const Estimate& sampled, cons
 
 }  // namespace
 
-PairExchanges exchanges_of_pairs(AbstractAccel& accel, const Scene& scene, const Faces& faces,
-                                 const ViewFactorOptions& options, PairEstimator estimator,
-                                 const ProgressCallback& progress) {
-    check_filled(accel, faces.triangle_counts(), "exchanges of pairs");
+PairExchanges exchanges_of_pairs(AbstractAccel& accel, const Faces& faces, const ViewFactorOptions& options,
+                                 PairEstimator estimator, const ProgressCallback& progress) {
+    check_faces(accel, faces, "exchanges of pairs");
     const std::vector<std::vector<uint>> members = faces.members(options.grouping);
-    const PairPlan plan = plan_pairs(FacePolygons(scene), members, {estimator, options.sides, options.rays}, progress);
+    const PairPlan plan =
+        plan_pairs(FacePolygons(faces.state().placed), members, {estimator, options.sides, options.rays}, progress);
     const std::vector<double> areas = faces.areas_of(members);
     std::vector<Sampling> samplings = samplings_of(plan, areas, options);
     if (!samplings.empty()) {
@@ -123,12 +123,6 @@ PairExchanges exchanges_of_pairs(AbstractAccel& accel, const Scene& scene, const
         result.known.push_back(exchange_of(pair, sampled, areas));
     }
     return result;
-}
-
-PairExchanges exchanges_of_pairs(AbstractAccel& accel, const Faces& faces, const ViewFactorOptions& options,
-                                 PairEstimator estimator, const ProgressCallback& progress) {
-    check_current(accel, faces, "exchanges of pairs");
-    return exchanges_of_pairs(accel, faces.scene(), faces, options, estimator, progress);
 }
 
 }  // namespace twinray

@@ -15,7 +15,7 @@
 namespace twinray {
 namespace {
 
-Polygon64 polygon_of(const Transform& transform, const Mesh& mesh, uvec3 triangle) {
+Polygon64 polygon_of(const Transform& transform, const MeshView& mesh, uvec3 triangle) {
     const auto point = [&](uint vertex) { return in_world(transform, mesh.positions[vertex]); };
     return {point(triangle.x), point(triangle.y), point(triangle.z)};
 }
@@ -226,13 +226,13 @@ class Planner {
 
 }  // namespace
 
-FacePolygons::FacePolygons(const Scene& scene) {
-    for (uint i = 0; i < scene.instances.size(); ++i) {
-        const Mesh& mesh = scene.meshes[scene.instances[i].mesh];
-        const Transform& transform = scene.instances[i].transform;
+FacePolygons::FacePolygons(const PlacedMeshes& placed) {
+    for (uint i = 0; i < placed.instances.size(); ++i) {
+        const MeshView& mesh = placed.mesh_of(i);
+        const Transform& transform = placed.instances[i].transform;
         const bool is_mirrored = determinant(transform) < 0;
         for (uint primitive = 0; primitive < mesh.triangles.size(); ++primitive) {
-            const bool has_area = area_vector(scene, {i, primitive}) != dvec3(0);
+            const bool has_area = area_vector(placed, {i, primitive}) != dvec3(0);
             const Polygon64 face = has_area ? polygon_of(transform, mesh, mesh.triangles[primitive]) : Polygon64();
             faces.push_back(is_mirrored ? face.flipped() : face);
             are_mirrored.push_back(is_mirrored);

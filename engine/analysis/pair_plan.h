@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/accel/placed_meshes.h"
 #include "engine/analysis/contour.h"
 
 namespace twinray {
@@ -22,7 +23,7 @@ struct FacePolygons {
     std::vector<char> are_mirrored;  // their vertices are in the opposite order of the mesh's
 
     FacePolygons() = default;
-    explicit FacePolygons(const Scene& scene);
+    explicit FacePolygons(const PlacedMeshes& placed);
 };
 
 // Two faces whose areas are sampled, each by its part on the front side of the other's plane.

@@ -46,11 +46,11 @@ struct PlaneExtent {
     bool is_empty() const { return !(low.x <= high.x); }
 };
 
-PlaneExtent extent_of(const Scene& scene, const Axes& axes) {
+PlaneExtent extent_of(const PlacedMeshes& placed, const Axes& axes) {
     PlaneExtent all;
     std::mutex mutex;
-    for (const Instance& instance : scene.instances) {
-        const Mesh& mesh = scene.meshes[instance.mesh];
+    for (const MeshInstance& instance : placed.instances) {
+        const MeshView& mesh = placed.meshes[instance.mesh];
         parallel_for(mesh.triangles.size(), [&](std::size_t begin, std::size_t end) {
             PlaneExtent some;
             for (std::size_t i = begin; i < end; ++i) {
@@ -81,11 +81,11 @@ dvec3 unit_direction(dvec3 direction) {
     return normalize(direction / largest);
 }
 
-RayGridPlan plan_ray_grid(const Scene& scene, const RayGridDesc& desc) {
+RayGridPlan plan_ray_grid(const PlacedMeshes& placed, const RayGridDesc& desc) {
     if (desc.side < 1 || desc.side > largest_side)
         fail("ray grid: ", desc.side, " cells per side; must be 1 to ", largest_side);
     const Axes axes = axes_of(desc.direction);
-    const PlaneExtent extent = extent_of(scene, axes);
+    const PlaneExtent extent = extent_of(placed, axes);
     if (extent.is_empty()) return {};
     const dvec3 size = extent.high - extent.low;
     // The plane is a twentieth of the scene in front of it. Origins, and these after an accelerator's transforms, are

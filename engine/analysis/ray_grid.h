@@ -24,7 +24,7 @@ struct RayGridPlan {
 // Plans cells of a rectangle across the direction in front of all finite triangles, which covers their projection, with
 // a margin of some roundings of their coordinates. Throws Error for a direction that is 0 or not finite, for `side`,
 // and for scenes that float32 rays cannot start in front of.
-RayGridPlan plan_ray_grid(const Scene& scene, const RayGridDesc& desc);
+RayGridPlan plan_ray_grid(const PlacedMeshes& placed, const RayGridDesc& desc);
 
 // The most rays in a submission for a grid or for faces: 64 MiB on the device with their hits.
 constexpr uint rays_of_batch = 1 << 20;

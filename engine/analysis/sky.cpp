@@ -33,11 +33,10 @@ void add_position(std::vector<HoursOfFace>& sums, std::span<const GroupCount> co
     }
 }
 
-void add_possible(std::vector<HoursOfFace>& sums, const Scene& scene, const Faces& faces, const SunPosition& position,
-                  Sides sides) {
+void add_possible(std::vector<HoursOfFace>& sums, const Faces& faces, const SunPosition& position, Sides sides) {
     const dvec3 towards = -unit_direction(position.direction);
     parallel_for(sums.size(), [&](std::size_t face) {
-        const double turned = dot(area_vector(scene, faces[face]), towards);
+        const double turned = dot(area_vector(faces.state().placed, faces[face]), towards);
         if (sides == Sides::both ? turned != 0 : turned > 0) sums[face].possible += position.hours;
     });
 }
@@ -59,9 +58,8 @@ Received received(std::uint64_t free_rays, double possible, double value, const 
 
 }  // namespace
 
-SkyLight sky_light(AbstractAccel& accel, const Scene& scene, const Faces& faces, dvec3 zenith,
-                   const SkyRaysDesc& desc) {
-    check_faces(scene, faces);
+SkyLight sky_light(AbstractAccel& accel, const Faces& faces, dvec3 zenith, const SkyRaysDesc& desc) {
+    check_faces(accel, faces, "sky light");
     const dvec3 up = unit_direction(zenith);
     const SkyRays rays(accel, faces, desc);
     SkyLight light{.faces = std::vector<Received>(faces.count()), .ray_count = asked(faces, desc) * desc.samples};
@@ -70,15 +68,16 @@ SkyLight sky_light(AbstractAccel& accel, const Scene& scene, const Faces& faces,
         if (faces.areas()[face] == 0) continue;
         const double samples = desc.samples;
         const Interval free = paired_count_interval_95(counts[face].hits, counts[face].odd, desc.samples);
-        light.faces[face] = received(counts[face].hits, open_sky(area_vector(scene, faces[face]), up, desc.sides),
-                                     counts[face].hits / samples, {free.low / samples, free.high / samples});
+        const double open = open_sky(area_vector(faces.state().placed, faces[face]), up, desc.sides);
+        light.faces[face] =
+            received(counts[face].hits, open, counts[face].hits / samples, {free.low / samples, free.high / samples});
     }
     return light;
 }
 
-SkyLight sun_hours(AbstractAccel& accel, const Scene& scene, const Faces& faces, std::span<const SunPosition> positions,
+SkyLight sun_hours(AbstractAccel& accel, const Faces& faces, std::span<const SunPosition> positions,
                    const SkyRaysDesc& desc) {
-    check_faces(scene, faces);
+    check_faces(accel, faces, "sun hours");
     check_positions(positions);
     const SkyRays rays(accel, faces, desc);
     std::vector<HoursOfFace> sums(faces.count());
@@ -87,7 +86,7 @@ SkyLight sun_hours(AbstractAccel& accel, const Scene& scene, const Faces& faces,
         const double hours_of_ray = positions[i].hours / desc.samples;
         most = std::max(most, hours_of_ray);
         add_position(sums, rays.free_to_sun(-positions[i].direction, static_cast<uint>(i)), hours_of_ray);
-        add_possible(sums, scene, faces, positions[i], desc.sides);
+        add_possible(sums, faces, positions[i], desc.sides);
     }
     SkyLight light{.faces = std::vector<Received>(faces.count()),
                    .ray_count = asked(faces, desc) * desc.samples * positions.size()};
@@ -98,17 +97,6 @@ SkyLight sun_hours(AbstractAccel& accel, const Scene& scene, const Faces& faces,
         light.faces[face] = received(sum.free_rays, sum.possible, sum.hours, {sum.hours - margin, sum.hours + margin});
     }
     return light;
-}
-
-SkyLight sky_light(AbstractAccel& accel, const Faces& faces, dvec3 zenith, const SkyRaysDesc& desc) {
-    check_current(accel, faces, "sky light");
-    return sky_light(accel, faces.scene(), faces, zenith, desc);
-}
-
-SkyLight sun_hours(AbstractAccel& accel, const Faces& faces, std::span<const SunPosition> positions,
-                   const SkyRaysDesc& desc) {
-    check_current(accel, faces, "sun hours");
-    return sun_hours(accel, faces.scene(), faces, positions, desc);
 }
 
 }  // namespace twinray

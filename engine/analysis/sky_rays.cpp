@@ -24,7 +24,6 @@ SkyRays::SkyRays(AbstractAccel& accel, const Faces& faces, const SkyRaysDesc& de
       faces_of_batch_(faces_of_batch(desc.samples, faces.count())),
       rays_kernel_(accel.context(), {.name = "analysis_sky_rays", .spirv = analysis_sky_rays_spirv}),
       count_kernel_(accel.context(), {.name = "analysis_count_free", .spirv = analysis_count_free_spirv}) {
-    check_filled(accel, faces.triangle_counts(), "rays from faces");
     const std::uint64_t rays = std::uint64_t{faces_of_batch_} * desc.samples;
     rays_ = Buffer(accel.context(), {.name = "face rays", .bytes = rays * sizeof(Ray)});
     hits_ = Buffer(accel.context(), {.name = "face hits", .bytes = rays * sizeof(Hit)});

@@ -142,8 +142,7 @@ ViewFactors::State::State(AbstractAccel& accel_of_faces, const Faces& all_faces,
 ViewFactors::ViewFactors(AbstractAccel& accel, const Faces& faces, const ViewFactorOptions& options,
                          std::span<const KnownExchange> known) {
     check(options);
-    if (faces.state().held) check_current(accel, faces, "view factors");
-    check_filled(accel, faces.triangle_counts(), "view factors");
+    check_faces(accel, faces, "view factors");
     state_ = std::make_unique<State>(accel, faces, options, known);
 }
 ViewFactors::~ViewFactors() = default;
@@ -178,8 +177,7 @@ Row ViewFactors::State::row_of(std::size_t group) const {
 }
 
 std::vector<ViewFactorRow> ViewFactors::rows(std::size_t first, std::size_t last) {
-    if (state_->faces.state().held) check_current(state_->accel, state_->faces, "view factors");
-    check_filled(state_->accel, state_->faces.triangle_counts(), "view factors");
+    check_faces(state_->accel, state_->faces, "view factors");
     state_->accel.sync();
     std::vector<Row> rows;
     for (std::size_t i = first; i < last; ++i) rows.push_back(state_->row_of(i));

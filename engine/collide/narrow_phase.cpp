@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "engine/accel/placed_meshes.h"
 #include "engine/collide/pair_classifier.h"
 #include "engine/collide/triangle_set.h"
 #include "engine/core/float64.h"
@@ -46,14 +47,13 @@ std::uint64_t NarrowPhase::max_pairs() const { return state_->search.max_pairs()
 void NarrowPhase::set_max_pairs(std::uint64_t count) { state_->search.set_max_pairs(count); }
 
 Contacts NarrowPhase::find(const Scene& scene, const ContactOptions& options) {
-    const std::vector<MeshView> meshes(scene.meshes.begin(), scene.meshes.end());
-    std::vector<MeshInstance> instances;
-    for (const Instance& instance : scene.instances) instances.push_back({instance.mesh, instance.transform});
-    return find(meshes, instances, options);
+    const PlacedMeshes placed(scene);
+    return find(placed.meshes, placed.instances, options);
 }
 
 Contacts NarrowPhase::find(AbstractAccel& accel, const ContactOptions& options) {
-    return find(scene_of(accel), options);
+    const PlacedMeshes placed(accel);
+    return find(placed.meshes, placed.instances, options);
 }
 
 Contacts NarrowPhase::find(std::span<const MeshView> meshes, std::span<const MeshInstance> instances,

@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 
+#include "engine/accel/placed_meshes.h"
 #include "engine/collide/box_tree.h"
 #include "engine/collide/exact_sign.h"
 #include "engine/collide/triangle_set.h"
@@ -66,8 +67,6 @@ void dispatch(Commands& commands, const Kernel<Args>& kernel, Args args, std::ui
 }  // namespace
 
 struct PointQuery::State {
-    std::vector<std::unique_ptr<const Scene>> held;  // of accelerators: what the spans refer to
-
     explicit State(Context& device)
         : context(with_float64(device, "points: distances")),
           boxes_of_points(device, {.name = "points_boxes", .spirv = points_boxes_spirv}),
@@ -81,6 +80,7 @@ struct PointQuery::State {
           found_items(device, "pairs of a point and a triangle", sizeof(PointItem)),
           pace(device) {}
 
+    void set(PlacedMeshes&& given);
     PointSearchArgs upload(std::span<const dvec3> some, std::uint64_t result_bytes);
     std::vector<PointItem> found(const Kernel<PointSearchArgs>& kernel, PointSearchArgs args);
     const std::string& why_not_closed();  // "" where all meshes are
@@ -95,8 +95,7 @@ struct PointQuery::State {
     HilbertOrder order;
     TriangleSet triangles;
     BoxTree tree;
-    std::vector<MeshView> meshes;
-    std::vector<MeshInstance> instances;
+    PlacedMeshes placed;
     std::optional<std::string> side_fault;  // of the first mesh that is not closed; not set: not looked for yet
     float scale = 1;
     std::optional<std::vector<OpenEdge>> edges;  // of all instances; not set: not looked for yet
@@ -118,33 +117,24 @@ std::uint64_t PointQuery::bytes() const {
            state_->point_boxes.bytes() + state_->results.bytes() + state_->found_items.bytes();
 }
 
-void PointQuery::set(const Scene& scene) {
-    const std::vector<MeshView> meshes(scene.meshes.begin(), scene.meshes.end());
-    std::vector<MeshInstance> instances;
-    for (const Instance& instance : scene.instances) instances.push_back({instance.mesh, instance.transform});
-    set(meshes, instances);
-}
-
-void PointQuery::set(AbstractAccel& accel) {
-    // The previous scene may still be referred to if this throws.
-    state_->held.push_back(std::make_unique<const Scene>(scene_of(accel)));
-    set(*state_->held.back());
-    state_->held.erase(state_->held.begin(), state_->held.end() - 1);
-}
-
+void PointQuery::set(const Scene& scene) { state_->set(scene); }
+void PointQuery::set(AbstractAccel& accel) { state_->set(PlacedMeshes(accel)); }
 void PointQuery::set(std::span<const MeshView> meshes, std::span<const MeshInstance> instances) {
-    check_instances(meshes, instances, "points");
-    state_->meshes.assign(meshes.begin(), meshes.end());
-    state_->instances.assign(instances.begin(), instances.end());
-    state_->side_fault.reset();
-    state_->edges.reset();
-    state_->scale = scale_for(state_->meshes, state_->instances);
-    std::vector<uint> all(instances.size());
+    state_->set({meshes, instances});
+}
+
+void PointQuery::State::set(PlacedMeshes&& given) {
+    check_instances(given.meshes, given.instances, "points");
+    placed = std::move(given);
+    side_fault.reset();
+    edges.reset();
+    scale = scale_for(placed.meshes, placed.instances);
+    std::vector<uint> all(placed.instances.size());
     std::iota(all.begin(), all.end(), 0u);
-    state_->triangles.set(state_->meshes, state_->instances, all, SharedVertices::by_index);
-    Commands commands(state_->context, "points tree");
-    state_->triangles.record(commands, state_->tree.prepare(state_->triangles.count()));
-    state_->tree.record(commands);
+    triangles.set(placed.meshes, placed.instances, all, SharedVertices::by_index);
+    Commands commands(context, "points tree");
+    triangles.record(commands, tree.prepare(triangles.count()));
+    tree.record(commands);
     commands.submit();
 }
 
@@ -247,9 +237,9 @@ const std::string& PointQuery::State::why_not_closed() {
     if (side_fault) return *side_fault;
     side_fault.emplace();
     std::set<uint> used;
-    for (const MeshInstance& instance : instances) used.insert(instance.mesh);
+    for (const MeshInstance& instance : placed.instances) used.insert(instance.mesh);
     for (auto mesh = used.begin(); mesh != used.end() && side_fault->empty(); ++mesh)
-        side_fault = side_fault_of(meshes[*mesh], *mesh);
+        side_fault = side_fault_of(placed.meshes[*mesh], *mesh);
     return *side_fault;
 }
 
@@ -295,12 +285,12 @@ void PointQuery::State::wind(std::span<const dvec3> some, std::span<int> winding
 
 const std::vector<OpenEdge>& PointQuery::State::open_edges() {
     if (edges) return *edges;
-    std::vector<std::optional<std::vector<BoundaryEdge>>> of_mesh(meshes.size());
+    std::vector<std::optional<std::vector<BoundaryEdge>>> of_mesh(placed.meshes.size());
     std::vector<OpenEdge> all;
     uint first_item = 0;
-    for (const MeshInstance& instance : instances) {
+    for (const MeshInstance& instance : placed.instances) {
         auto& boundary = of_mesh[instance.mesh];
-        if (!boundary) boundary = boundary_edges(meshes[instance.mesh]);
+        if (!boundary) boundary = boundary_edges(placed.meshes[instance.mesh]);
         for (const BoundaryEdge& edge : *boundary) {
             const uint item = first_item + edge.triangle;
             const WorldTriangle at = triangles.triangle(item);
@@ -311,7 +301,7 @@ const std::vector<OpenEdge>& PointQuery::State::open_edges() {
                            .passes = triangles.is_mirrored(item) ? -edge.passes : edge.passes,
                            .reserved = 0});
         }
-        first_item += static_cast<uint>(meshes[instance.mesh].triangles.size());
+        first_item += static_cast<uint>(placed.meshes[instance.mesh].triangles.size());
     }
     grow(context, edges_on_device, "boundary edges", all.size() * sizeof(OpenEdge));
     Commands commands(context, "points boundary");

@@ -73,9 +73,9 @@ bool keeps_axes(const Transform& transform) {
 
 Bounds box_of_vertices(const PlacedMesh& placed) {
     dvec3 lo(INFINITY), hi(-INFINITY);
-    for (const uvec3& triangle : placed.mesh->triangles)
+    for (const uvec3& triangle : placed.mesh.triangles)
         for (int corner = 0; corner < 3; ++corner) {
-            const vec3 point = placed.mesh->positions[triangle[corner]];
+            const vec3 point = placed.mesh.positions[triangle[corner]];
             if (!is_finite(point)) continue;
             const auto& rows = placed.transform.rows;
             const dvec3 world(along(rows[0], point), along(rows[1], point), along(rows[2], point));

@@ -81,7 +81,7 @@ Bounds bounds_of(const Scene& scene) {
     for (const Mesh& mesh : scene.meshes) mesh_bounds.push_back(bounds_of(MeshView(mesh)));
     std::vector<PlacedMesh> placed;
     for (const Instance& instance : scene.instances)
-        placed.push_back({&scene.meshes[instance.mesh], mesh_bounds[instance.mesh], instance.transform});
+        placed.push_back({scene.meshes[instance.mesh], mesh_bounds[instance.mesh], instance.transform});
     return bounds_of(placed);
 }
 

@@ -105,6 +105,9 @@ class AbstractAccel {
     std::size_t n_geometries() const;                    // a mesh or boxes of several handles count once
     std::size_t n_primitives(AccelHandle handle) const;  // triangles or boxes of its geometry; 0 for a dead handle
     std::vector<AccelHandle> handles() const;            // those alive, in push order
+    // Returns the positions and triangles of the handle's mesh, as kernels have left them; none for boxes. Waits if
+    // only the device has them. Throws Error with AccelOptions::keeps_meshes = false.
+    SharedMesh mesh(AccelHandle handle) const;
 
     // Builds what changed since the last sync and returns the point at which the GPU has built it; does nothing if
     // nothing changed. If only transforms and vertices changed, everything is refitted in place and views stay valid.

@@ -6,9 +6,9 @@
 //   triangle; those that no ray can hit keep their number and have the area 0.
 // - Lengths and areas are the scene's own, in world space, in float64 from float32 vertices and transforms.
 // - Intervals are confidence intervals of 95 % and hold whatever the scene.
-// - An analysis takes an accelerator with its instances and vertices as they are now, and Faces made from it; or an
-//   accelerator that push_scene() has filled, and the scene. It syncs the accelerator. The same scene and options give
-//   the same result on one device.
+// - An analysis takes an accelerator and its Faces: made from it, with its instances and vertices as they are now, or
+//   from the scene that push_scene() has filled it with. It syncs the accelerator. The same scene and options give the
+//   same result on one device.
 // - Options out of range, an accelerator or faces of another scene and failures of the device throw Error, which names
 //   the object, the value and the limit.
 // - Contexts, accelerators and Faces must outlive objects made with them; an object is used by one thread at a time.
@@ -81,9 +81,11 @@ std::uint32_t checksum_of(const Scene& scene);
 // The faces of a scene at the time when this is made, with a copy of their triangles on the device.
 class Faces {
   public:
-    // Throws Error above 2^32 - 16 faces, and for a coordinate above 2^124 in world space: distances would overflow.
+    // The scene must outlive it. Throws Error above 2^32 - 16 faces, and for a coordinate above 2^124 in world space:
+    // distances would overflow.
     Faces(Context& context, const Scene& scene);
-    // Takes what an accelerator holds after a sync: see scene_of().
+    Faces(Context& context, const Scene&& scene) = delete;
+    // Takes what an accelerator holds after a sync, as scene_of() does.
     explicit Faces(AbstractAccel& accel);
     Faces(Faces&&) noexcept;
     Faces& operator=(Faces&&) noexcept;
@@ -93,8 +95,7 @@ class Faces {
     const std::vector<double>& areas() const;                 // by face
     const std::vector<std::size_t>& triangle_counts() const;  // by instance
     std::uint64_t bytes() const;                              // device memory
-    // These three need Faces of an accelerator and throw Error for others. scene() is what the accelerator held then.
-    const Scene& scene() const;
+    // These two need Faces of an accelerator and throw Error for others.
     // Returns whether the accelerator has not been synced with edits since.
     bool is_current(AbstractAccel& accel) const;
     // The face_metadata of its meshes, ascending, each once (0 for those without), by number of the group by material.
@@ -193,11 +194,6 @@ inline constexpr std::size_t most_paired_faces = 1024;  // that have an area: th
 // areas share as many rays as a row has, but two faces get at least 64, and more if their intervals would be wider than
 // those of hits; with target_error, their rays are doubled until the interval of both view factors is short enough.
 // Throws Error for more than most_paired_faces, and naming the faces if the requested estimator does not fit a pair.
-PairExchanges exchanges_of_pairs(AbstractAccel& accel, const Scene& scene, const Faces& faces,
-                                 const ViewFactorOptions& options, PairEstimator estimator,
-                                 const ProgressCallback& progress = {});
-
-// The same for an accelerator and its Faces.
 PairExchanges exchanges_of_pairs(AbstractAccel& accel, const Faces& faces, const ViewFactorOptions& options,
                                  PairEstimator estimator, const ProgressCallback& progress = {});
 
@@ -324,7 +320,6 @@ struct Illumination {
 };
 // Computes the parts of a scene that parallel light reaches. Intervals: hits of random points are independent, and how
 // often neighbours differ bounds their variance. Throws Error also if float32 rays cannot start outside the scene.
-Illumination illuminate(AbstractAccel& accel, const Scene& scene, const Faces& faces, const IlluminationDesc& desc);
 Illumination illuminate(AbstractAccel& accel, const Faces& faces, const IlluminationDesc& desc);
 
 // Options of sky_light() and sun_hours().
@@ -353,7 +348,6 @@ struct SkyLight {
 // units of what an unobstructed horizontal plane receives. For its front this is the sky view factor, (1 + cos) / 2 for
 // an unobstructed face tilted by an angle, and never more; for both sides together 1 for any such face. `zenith`:
 // finite, of any length but 0.
-SkyLight sky_light(AbstractAccel& accel, const Scene& scene, const Faces& faces, dvec3 zenith, const SkyRaysDesc& desc);
 SkyLight sky_light(AbstractAccel& accel, const Faces& faces, dvec3 zenith, const SkyRaysDesc& desc);
 
 // A position of the sun and how long it stays there.
@@ -363,8 +357,6 @@ struct SunPosition {
 };
 // Returns the hours for which a point of a face is lit, mean over the face: for each position `desc.samples` rays per
 // face, from stratified points. A side lit at a grazing angle counts like any other.
-SkyLight sun_hours(AbstractAccel& accel, const Scene& scene, const Faces& faces, std::span<const SunPosition> positions,
-                   const SkyRaysDesc& desc);
 SkyLight sun_hours(AbstractAccel& accel, const Faces& faces, std::span<const SunPosition> positions,
                    const SkyRaysDesc& desc);
 

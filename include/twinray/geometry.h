@@ -13,11 +13,13 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace twinray {
@@ -308,13 +310,45 @@ struct MeshView {
     MeshView(const Mesh& mesh);
 };
 
+// An array that several owners read and none changes.
+template <class T>
+class SharedArray {
+  public:
+    SharedArray() = default;
+    SharedArray(std::vector<T>&& items) : items_(std::make_shared<const std::vector<T>>(std::move(items))) {}
+    std::size_t size() const { return items_ ? items_->size() : 0; }
+    bool empty() const { return size() == 0; }
+    const T* data() const { return items_ ? items_->data() : nullptr; }
+    const T* begin() const { return data(); }
+    const T* end() const { return data() + size(); }
+    const T& operator[](std::size_t index) const { return (*items_)[index]; }
+
+  private:
+    std::shared_ptr<const std::vector<T>> items_;
+};
+
+// A mesh that an accelerator keeps: AbstractAccel::mesh().
+struct SharedMesh {
+    std::string name;
+    SharedArray<vec3> positions;
+    SharedArray<uvec3> triangles;
+
+    operator MeshView() const { return {name, positions, triangles}; }
+};
+
+// A mesh as an instance places it, by its index among meshes.
+struct MeshInstance {
+    uint mesh = 0;
+    Transform transform;
+};
+
 // Returns the box of the finite vertices that triangles use.
 Bounds bounds_of(const MeshView& mesh);
 
 // A mesh as an instance places it.
 struct PlacedMesh {
-    const Mesh* mesh;
-    Bounds box;  // bounds_of(*mesh)
+    MeshView mesh;
+    Bounds box;  // bounds_of(mesh)
     Transform transform;
 };
 // Returns the box of the finite vertices that triangles use, in world space, rounded outward. It only reads the

@@ -29,12 +29,6 @@
 
 namespace twinray {
 
-// A mesh as an instance places it.
-struct MeshInstance {
-    uint mesh = 0;  // index among the meshes
-    Transform transform;
-};
-
 // The number of pairs that a search may find before it throws, unless set otherwise.
 inline constexpr std::uint64_t default_max_pairs = 1u << 27;
 

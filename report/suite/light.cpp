@@ -33,10 +33,10 @@ struct Stage {
 };
 
 // Area of the first mesh that light reaches, seen along the light.
-Estimate lit_area(Stage& stage, const Scene& scene, const dvec3& direction, std::uint64_t side, std::uint64_t seed) {
+Estimate lit_area(Stage& stage, const dvec3& direction, std::uint64_t side, std::uint64_t seed) {
     const Stopwatch start;
     const Illumination light = illuminate(
-        stage.accel, scene, stage.faces,
+        stage.accel, stage.faces,
         {.grid = {.direction = direction, .side = static_cast<uint>(side), .seed = seed}, .by = FaceGrouping::mesh});
     const LitArea& found = light.groups[0];
     const double rounding = 1 + 0x1p-50;
@@ -57,10 +57,9 @@ void measure_light(CaseRun& run, const Scene& scene, const Values& params, doubl
 }
 
 void measure_lit_area(CaseRun& run, const Scene& scene, const dvec3& direction, double truth, const Values& params) {
-    measure_light(run, scene, params, truth, "side", grid_sides,
-                  [&](Stage& stage, std::uint64_t side, std::uint64_t seed) {
-                      return lit_area(stage, scene, direction, side, seed);
-                  });
+    measure_light(
+        run, scene, params, truth, "side", grid_sides,
+        [&](Stage& stage, std::uint64_t side, std::uint64_t seed) { return lit_area(stage, direction, side, seed); });
 }
 
 void shadows(CaseRun& run) {
@@ -101,7 +100,7 @@ void hidden_sky(CaseRun& run) {
     measure_light(run, scene, {}, 1 - hidden, "samples", sky_samples,
                   [&](Stage& stage, std::uint64_t samples, std::uint64_t seed) {
                       const auto light = [&](const SkyRaysDesc& desc) {
-                          return sky_light(stage.accel, scene, stage.faces, {0, 0, 1}, desc);
+                          return sky_light(stage.accel, stage.faces, {0, 0, 1}, desc);
                       };
                       return of_square(light, samples, seed);
                   });
@@ -114,7 +113,7 @@ void hours_of_sun(CaseRun& run) {
     measure_light(run, scene, {}, 3 * lit, "samples", sky_samples,
                   [&](Stage& stage, std::uint64_t samples, std::uint64_t seed) {
                       const auto light = [&](const SkyRaysDesc& desc) {
-                          return sun_hours(stage.accel, scene, stage.faces, positions, desc);
+                          return sun_hours(stage.accel, stage.faces, positions, desc);
                       };
                       return of_square(light, samples, seed);
                   });

@@ -51,9 +51,9 @@ Solution solve(const std::vector<ViewFactorRow>& rows, double rho) {
     return solution;
 }
 
-std::vector<ViewFactorRow> factors_of(AbstractAccel& accel, const Faces& faces, const Scene& scene,
-                                      const ViewFactorOptions& options, PairEstimator estimator) {
-    const PairExchanges pairs = exchanges_of_pairs(accel, scene, faces, options, estimator);
+std::vector<ViewFactorRow> factors_of(AbstractAccel& accel, const Faces& faces, const ViewFactorOptions& options,
+                                      PairEstimator estimator) {
+    const PairExchanges pairs = exchanges_of_pairs(accel, faces, options, estimator);
     ViewFactors factors(accel, faces, options, pairs.known);
     return factors.rows(0, factors.row_count());
 }
@@ -85,7 +85,7 @@ void by_rays(CaseRun& run) {
                 const ViewFactorOptions options{
                     .grouping = FaceGrouping::mesh, .rays = rays, .seed = static_cast<uint>(run.seed() + seed)};
                 const Stopwatch start;
-                last = solve(factors_of(accel, faces, scene, options, PairEstimator::hits), rho);
+                last = solve(factors_of(accel, faces, options, PairEstimator::hits), rho);
                 ms.push_back(start.ms());
                 errors.push_back(last->error);
                 double sampling = 0;
@@ -112,7 +112,7 @@ void by_reflectance(CaseRun& run) {
     push_scene(accel, scene);
     const Faces faces(accel.context(), scene);
     const ViewFactorOptions options{.grouping = FaceGrouping::mesh, .rays = 1024};
-    const std::vector<ViewFactorRow> rows = factors_of(accel, faces, scene, options, PairEstimator::contour);
+    const std::vector<ViewFactorRow> rows = factors_of(accel, faces, options, PairEstimator::contour);
     for (const double rho : {0.5, 0.9, 0.99, 0.999, 0.9999, 0.99999, 0.999999}) {
         std::vector<double> errors, ms;
         std::optional<Solution> last;

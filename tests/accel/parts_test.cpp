@@ -123,11 +123,11 @@ TEST(Parts, LightIsTheSame) {
             push_scene(accel, scene);
             const Faces faces(context, scene);
             const RayGridDesc grid{.direction = dvec3(0.25, -1, 0.5), .side = 45};
-            for (const LitArea& lit : illuminate(accel, scene, faces, {.grid = grid}).groups)
+            for (const LitArea& lit : illuminate(accel, faces, {.grid = grid}).groups)
                 found.add(lit.hits, lit.area, lit.interval);
             const Centroid seen = centroid(accel, scene, {.grid = grid, .keeps_points = true});
             found.add(seen.points, *seen.mean);
-            for (const Received& received : sky_light(accel, scene, faces, dvec3(0, 1, 0), {.samples = 33}).faces)
+            for (const Received& received : sky_light(accel, faces, dvec3(0, 1, 0), {.samples = 33}).faces)
                 found.add(received.value, received.interval);
         },
         2 * 30 + 100);
@@ -141,7 +141,7 @@ TEST(Parts, ViewFactorsAreTheSame) {
             push_scene(accel, scene);
             const Faces faces(context, scene);
             const ViewFactorOptions options{.grouping = FaceGrouping::instance, .rays = 1024};
-            const PairExchanges pairs = exchanges_of_pairs(accel, scene, faces, options, PairEstimator::automatic);
+            const PairExchanges pairs = exchanges_of_pairs(accel, faces, options, PairEstimator::automatic);
             for (const KnownExchange& known : pairs.known)
                 found.add(known.i, known.j, known.flow, known.low, known.high);
             ViewFactors factors(accel, faces, options);

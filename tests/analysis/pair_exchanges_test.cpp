@@ -16,12 +16,12 @@ class PairExchangesOfAccels : public test::AnalysisTest {
   protected:
     PairExchanges exchanges(const Scene& scene, const ViewFactorOptions& options, PairEstimator estimator) {
         const Faces faces(context(), scene);
-        return exchanges_of_pairs(accel(), scene, faces, options, estimator);
+        return exchanges_of_pairs(accel(), faces, options, estimator);
     }
     std::vector<ViewFactorRow> rows(const Scene& scene, const ViewFactorOptions& options, PairEstimator estimator) {
         fill(scene);
         const Faces faces(context(), scene);
-        const PairExchanges pairs = exchanges_of_pairs(accel(), scene, faces, options, estimator);
+        const PairExchanges pairs = exchanges_of_pairs(accel(), faces, options, estimator);
         ViewFactors factors(accel(), faces, options, pairs.known);
         return factors.rows(0, factors.row_count());
     }
@@ -236,7 +236,7 @@ TEST_P(PairExchangesTest, ProjectionKeepsWhatIsKnownBest) {
     fill(room);
     const Faces faces(context(), room);
     const ViewFactorOptions options{.rays = 4096};
-    const PairExchanges pairs = exchanges_of_pairs(accel(), room, faces, options, PairEstimator::automatic);
+    const PairExchanges pairs = exchanges_of_pairs(accel(), faces, options, PairEstimator::automatic);
     EXPECT_GT(pairs.left_to_hits, 0u);
     ViewFactors factors(accel(), faces, options, pairs.known);
     std::vector<ViewFactorRow> all = factors.rows(0, factors.row_count());
@@ -300,7 +300,7 @@ TEST_P(PairExchangesOfAccels, AllAcceleratorsTellTheSame) {
     const Scene scene = plate_between(2);
     push_scene(software, scene);
     const Faces faces(context(), scene);
-    const PairExchanges theirs = exchanges_of_pairs(software, scene, faces, {.rays = 4096}, PairEstimator::area);
+    const PairExchanges theirs = exchanges_of_pairs(software, faces, {.rays = 4096}, PairEstimator::area);
     ASSERT_EQ(ours.known.size(), theirs.known.size());
     for (std::size_t i = 0; i < ours.known.size(); ++i) EXPECT_EQ(ours.known[i].flow, theirs.known[i].flow);
 }

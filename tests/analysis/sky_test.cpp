@@ -12,11 +12,11 @@ class SkyTest : public AnalysisTest {
   protected:
     SkyLight sky(const Scene& scene, const SkyRaysDesc& desc) {
         fill(scene);
-        return sky_light(accel(), scene, Faces(context(), scene), zenith, desc);
+        return sky_light(accel(), Faces(context(), scene), zenith, desc);
     }
     SkyLight hours(const Scene& scene, const std::vector<SunPosition>& positions, const SkyRaysDesc& desc) {
         fill(scene);
-        return sun_hours(accel(), scene, Faces(context(), scene), positions, desc);
+        return sun_hours(accel(), Faces(context(), scene), positions, desc);
     }
 };
 TWINRAY_OVER_EVERY_ACCEL(SkyTest);
@@ -100,8 +100,7 @@ TEST_P(SkyTest, EveryAcceleratorCountsTheSame) {
     SwTlas software(context());
     push_scene(software, scene);
     const SkyRaysDesc desc{.samples = 33, .sides = Sides::front};
-    const SkyLight expected = sky_light(software, scene, Faces(context(), scene), zenith, desc),
-                   result = sky(scene, desc);
+    const SkyLight expected = sky_light(software, Faces(context(), scene), zenith, desc), result = sky(scene, desc);
     ASSERT_EQ(result.faces.size(), 640u);
     for (std::size_t face = 0; face < 640; ++face)
         EXPECT_EQ(result.faces[face].free_rays, expected.faces[face].free_rays) << face;
@@ -111,15 +110,15 @@ TEST_P(SkyRulesTest, IntervalsCoverAndEstimatesHaveNoBias) {
     const Scene scene = half_hidden();
     fill(scene);
     const Faces faces(context(), scene);
-    const double exact = sky_light(accel(), scene, faces, zenith, {.samples = 1u << 18, .seed = 9}).faces[0].value;
+    const double exact = sky_light(accel(), faces, zenith, {.samples = 1u << 18, .seed = 9}).faces[0].value;
     const std::vector<SunPosition> positions = {{{0, 0, -1}, 2}, {{-1, 0, -1}, 3}};
     double sky_sum = 0, hours_sum = 0;
     int missed = 0;
     constexpr int runs = 100;
     for (int run = 0; run < runs; ++run) {
         const SkyRaysDesc desc{.samples = 101, .sides = Sides::front, .seed = 100u + run};
-        const Received of_sky = sky_light(accel(), scene, faces, zenith, desc).faces[0];
-        const Received of_sun = sun_hours(accel(), scene, faces, positions, desc).faces[0];
+        const Received of_sky = sky_light(accel(), faces, zenith, desc).faces[0];
+        const Received of_sun = sun_hours(accel(), faces, positions, desc).faces[0];
         sky_sum += of_sky.value, hours_sum += of_sun.value;
         missed += of_sky.interval.low > exact || of_sky.interval.high < exact;
         missed += of_sun.interval.low > 2.75 || of_sun.interval.high < 2.75;
@@ -189,9 +188,9 @@ TEST_P(SkyRulesTest, WrongUseSaysWhatIsWrong) {
     EXPECT_NE(error({{0, 0, 1}, 1}, 1048577).find("1048577 per face"), std::string::npos);
     EXPECT_EQ(error({{0, 0, 1e-200}, 0}, 1), "");
     const Faces faces(context(), scene);
-    expect_contains(error_of([&] { sky_light(accel(), scene, faces, dvec3(0), {}); }), "must be finite");
+    expect_contains(error_of([&] { sky_light(accel(), faces, dvec3(0), {}); }), "must be finite");
     fill(scene_of({square(0), square(1)}));
-    expect_contains(error_of([&] { sky_light(accel(), scene, faces, zenith, {}); }), "it has 2 instances");
+    expect_contains(error_of([&] { sky_light(accel(), faces, zenith, {}); }), "it has 2 instances");
 }
 
 }  // namespace

@@ -283,9 +283,8 @@ TEST_P(ViewFactorsTest, AnAcceleratorOfAnotherSceneIsRefused) {
     ViewFactors factors(*accel, faces, {});
     accel->push(make_icosphere(0));
     test::expect_contains(test::error_of([&] { factors.rows(0, 1); }), "it has 3 instances");
-    test::expect_contains(
-        test::error_of([&] { exchanges_of_pairs(*accel, scene, faces, {}, PairEstimator::area, nullptr); }),
-        "exchanges of pairs: it has 3 instances");
+    test::expect_contains(test::error_of([&] { exchanges_of_pairs(*accel, faces, {}, PairEstimator::area, nullptr); }),
+                          "exchanges of pairs: it has 3 instances");
 }
 
 TEST_P(ViewFactorsTest, OptionsOutOfRangeAreRefused) {

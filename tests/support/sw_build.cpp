@@ -20,7 +20,8 @@ std::vector<LeafBox> boxes_of(const std::vector<BvhTriangle>& triangles, const M
 }  // namespace
 
 std::vector<vec3> built(const Mesh& mesh, const Mesh* pushed) {
-    return Geometry(mesh, software_unit((pushed ? pushed : &mesh)->positions)).positions;
+    const SharedArray<vec3> positions = Geometry(mesh, software_unit((pushed ? pushed : &mesh)->positions)).positions;
+    return {positions.begin(), positions.end()};
 }
 
 void expect_sound(const BuiltTree& tree, const std::vector<LeafBox>& boxes, const std::string& name) {

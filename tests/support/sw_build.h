@@ -47,9 +47,9 @@ inline std::string name_of_build(const testing::TestParamInfo<How>& how) {
                 std::get<KernelShape>(how.param) == KernelShape::of_gpu ? "_as_on_a_gpu" : "");
 }
 
-template <class T>
-bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
-    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+template <class Array>
+bool same_bytes(const Array& a, const Array& b) {
+    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0);
 }
 
 // As it is built: in units of a power of two, that of the mesh which was pushed.

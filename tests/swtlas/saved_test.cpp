@@ -211,7 +211,12 @@ TEST(SavedTrees, BinaryOnesThatCannotBeWalkedSafelyAreRefused) {
     expect_contains(edited([](SavedGeometry& g) { g.leaves[5].primitive_index = 20; }), "primitive 20 of 20");
     expect_contains(edited([](SavedGeometry& g) { g.leaves.pop_back(); }), "19 leaves for 20 primitives");
     expect_contains(edited([](SavedGeometry& g) { g.nodes.pop_back(); }), "18 nodes, not 19");
-    expect_contains(edited([](SavedGeometry& g) { g.mesh.triangles[7].y = 60; }), "triangle 7 has vertex index 60");
+    expect_contains(edited([](SavedGeometry& g) {
+                        std::vector<uvec3> triangles(g.mesh.triangles.begin(), g.mesh.triangles.end());
+                        triangles[7].y = 60;
+                        g.mesh.triangles = std::move(triangles);
+                    }),
+                    "triangle 7 has vertex index 60");
     expect_contains(edited([](SavedGeometry& g) { g.mesh.kind = 2; }), "unknown kind of geometry 2");
     expect_contains(edited([](SavedGeometry& g) { g.mesh.kind = GEOMETRY_BOXES; }), "20 triangles of 60 positions");
     expect_contains(edited([](SavedGeometry& g) { g = saved_boxes(), g.mesh.boxes[2].hi.x = INFINITY; }), "box 2 from");

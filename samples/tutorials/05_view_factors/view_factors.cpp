@@ -103,7 +103,7 @@ std::vector<double> light_in_cube(Context& context) {
     push_scene(accel, scene);
     const Faces faces(context, scene);
     const ViewFactorOptions options{.grouping = FaceGrouping::instance};
-    const PairExchanges pairs = exchanges_of_pairs(accel, scene, faces, options, PairEstimator::automatic);
+    const PairExchanges pairs = exchanges_of_pairs(accel, faces, options, PairEstimator::automatic);
     ViewFactors factors(accel, faces, options, pairs.known);
     const std::vector<double> emission(6, 1.0), reflectance(6, 0.5);
     return solve_radiosity(factors.rows(0, 6), emission, reflectance).values;
@@ -219,7 +219,7 @@ int main(int argc, char** argv) try {
     // [/first]
 
     // [contour]
-    const PairExchanges pairs = exchanges_of_pairs(accel, scene, faces, options, PairEstimator::automatic);
+    const PairExchanges pairs = exchanges_of_pairs(accel, faces, options, PairEstimator::automatic);
     ViewFactors better(accel, faces, options, pairs.known);
     const ViewFactor exact = better.rows(0, 1).front().factors.front();
     std::cout << "by " << name_of(exact.by) << "s F = " << exact.value << ", off by "

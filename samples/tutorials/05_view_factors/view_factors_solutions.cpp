@@ -25,7 +25,7 @@ double floor_to_wall(Context& context) {
     push_scene(accel, scene);
     const Faces faces(context, scene);
     const ViewFactorOptions options{.grouping = FaceGrouping::instance};
-    const PairExchanges pairs = exchanges_of_pairs(accel, scene, faces, options, PairEstimator::contour);
+    const PairExchanges pairs = exchanges_of_pairs(accel, faces, options, PairEstimator::contour);
     ViewFactors factors(accel, faces, options, pairs.known);
     return factors.rows(0, 1).front().factors.front().value;
 }

@@ -56,7 +56,7 @@ class Estimator {
             .grouping = FaceGrouping::instance, .sequence = method.sequence, .rays = rays, .seed = seed};
         PairExchanges pairs;
         if (method.estimator == PairEstimator::area)
-            pairs = exchanges_of_pairs(accel_, scene_, faces_, options, PairEstimator::area);
+            pairs = exchanges_of_pairs(accel_, faces_, options, PairEstimator::area);
         const double value = pairs.known.empty() ? by_hits(options) : pairs.known.front().flow;  // the area is 1
         const std::chrono::duration<double, std::milli> ms = std::chrono::steady_clock::now() - start;
         return {value, ms.count()};
