@@ -2,7 +2,7 @@
 // Bottom levels of HwTlas over meshes whose vertices are on the device.
 #pragma once
 
-#include "engine/accel/vertices.h"
+#include "engine/accel/mesh_store.h"
 #include "engine/core/radix_sort.h"
 #include "hwtlas/blas.h"
 

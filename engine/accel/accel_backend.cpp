@@ -36,7 +36,7 @@ AccelBackend::AccelBackend(Context& context, std::string name, const AccelOption
       name_(std::move(name)),
       id_(next_accel_id()),
       options_(options),
-      vertices_(std::make_unique<VertexArrays>(context)),
+      meshes_(std::make_unique<MeshStore>(context)),
       instances_(context),
       bound_(std::make_unique<WorldBoundKernel>(context)),
       scene_costs_(context),
@@ -97,7 +97,7 @@ AccelHandle AccelBackend::place(Geometry&& geometry, SurfaceSlice&& surface, std
                      .block = Buffer(context_, {.name = "geometry block", .bytes = geometry_block_bytes}),
                      .built = nullptr,
                      .surface = std::move(surface)});
-    if (held->geometry.device) held->vertices.read_again();
+    if (held->geometry.device) held->stored.read_again();
     const AccelHandle handle = place(held, transforms, options);
     warn_of_inactive_triangles(held->geometry);
     return handle;
@@ -197,8 +197,8 @@ void AccelBackend::update(AccelHandle handle, const DeviceMesh& mesh) {
     if (!pushed.held->geometry.fits_in_place_of(geometry) || !pushed.held->surface.is_empty() || !surface.is_empty())
         return replace(handle, std::move(geometry), std::move(surface));
     pushed.held->geometry = std::move(geometry);
-    pushed.held->vertices.read_again();
-    pushed.held->vertices.rebuilds = true;
+    pushed.held->stored.read_again();
+    pushed.held->stored.rebuilds = true;
     pushed.held->has_source = false;
     edit(pushed.held, Dirty::moves);
 }
@@ -209,7 +209,7 @@ void AccelBackend::mark_vertices_dirty(AccelHandle handle) {
     if (!pushed.held->geometry.is_in_place())
         fail(name_, ": mark_vertices_dirty: mesh '", pushed.held->geometry.name,
              "' does not use the caller's memory in place");
-    pushed.held->vertices.read_again();
+    pushed.held->stored.read_again();
     edit(pushed.held, Dirty::moves);
 }
 
@@ -222,11 +222,11 @@ void AccelBackend::replace(AccelHandle handle, Geometry&& geometry, SurfaceSlice
         replaced_.push_back({.geometry = std::move(held.geometry),
                              .block = {},
                              .built = std::move(held.built),
-                             .vertices = std::move(held.vertices),
+                             .stored = std::move(held.stored),
                              .surface = std::move(held.surface)});
     held.geometry = std::move(geometry);
-    held.vertices = {};
-    if (held.geometry.device) held.vertices.read_again();
+    held.stored = {};
+    if (held.geometry.device) held.stored.read_again();
     held.surface = std::move(surface);
     held.has_source = false;
     edit(pushed.held, Dirty::structure);
@@ -240,7 +240,7 @@ AccelBackend::PushedGeometry& AccelBackend::checked_for_vertices(AccelHandle han
     if (geometry.is_in_place())
         fail(name_, ": update_vertices: mesh '", geometry.name,
              "' uses the caller's memory in place: write there, then call mark_vertices_dirty()");
-    if (!pushed.held->vertices.on_device()) check_mesh_is_kept(*pushed.held, "update_vertices");
+    if (!pushed.held->stored.on_device()) check_mesh_is_kept(*pushed.held, "update_vertices");
     if (const std::size_t n = geometry.vertex_count(); count != n)
         fail(name_, ": update_vertices: mesh '", geometry.name, "': ", count, " positions for its ", n,
              " vertices; update() changes their number");
@@ -263,10 +263,10 @@ void AccelBackend::update_vertices(AccelHandle handle, std::span<const vec3> pos
     warn_of_inactive_triangles(geometry);
     if (geometry.triangle_count() == 0) return;
     if (!pushed.held->built) prepare(geometry);
-    pushed.held->vertices.incoming = {};
-    pushed.held->vertices.device_wrote = false;
-    pushed.held->vertices.edited =
-        pushed.held->built || pushed.held->vertices.on_device() || pushed.held->vertices.gathers;
+    pushed.held->stored.incoming = {};
+    pushed.held->stored.device_wrote = false;
+    pushed.held->stored.edited =
+        pushed.held->built || pushed.held->stored.on_device() || pushed.held->stored.gathers;
     edit(pushed.held, Dirty::moves);
 }
 
@@ -276,8 +276,8 @@ void AccelBackend::update_vertices(AccelHandle handle, Floats positions, std::si
     if (!positions.address || positions.address % 4)
         fail(name_, ": update_vertices: device address ", positions.address, " must be a multiple of 4 and not 0");
     if (pushed.held->geometry.triangle_count() == 0) return;
-    pushed.held->vertices.incoming = positions;
-    pushed.held->vertices.edited = true;
+    pushed.held->stored.incoming = positions;
+    pushed.held->stored.edited = true;
     edit(pushed.held, Dirty::moves);
 }
 
@@ -374,7 +374,7 @@ Geometry AccelBackend::geometry(AccelHandle handle) const {
     check_mesh_is_kept(*pushed.held, "reading it back");
     Geometry geometry = pushed.held->geometry;
     context_.state().check_submitted(synced_);
-    vertices_->download(geometry, pushed.held->vertices);
+    meshes_->download(geometry, pushed.held->stored);
     return geometry;
 }
 

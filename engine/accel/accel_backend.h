@@ -21,6 +21,8 @@ namespace twinray {
 
 struct AccelTraits;
 class BoundOfSync;
+class MeshStore;
+struct MeshOnDevice;
 class PipelineVariants;
 class RaySort;
 class Refinement;
@@ -28,7 +30,6 @@ struct SceneTraits;
 struct SurfaceKernels;
 struct SurfaceSlice;
 class SurfaceTables;
-class VertexArrays;
 class WorldBoundKernel;
 
 // Its public functions are those of AbstractAccel, where they are documented.
@@ -113,6 +114,8 @@ class AccelBackend {
     BuildBytes memory_requirements() const;
     BuildBytes memory_requirements(std::span<const GeometrySize> geometries, std::size_t instance_count) const;
     SharedMesh mesh(AccelHandle handle) const;
+    // Returns the mesh as the last sync left it; records the commands that bring it to the device if it is not there.
+    MeshOnDevice lend_mesh(Commands& commands, AccelHandle handle);
     std::vector<uint> face_metadata(AccelHandle handle) const;  // of each triangle; 0 if none was kept. Waits
     // Counts the syncs that moved or changed something.
     std::uint64_t edit_count() const { return edit_count_; }
@@ -279,7 +282,7 @@ class AccelBackend {
     Staged stage(Commands& commands, bool wants_bound);
     void list_geometries(Staged& staged) const;
     std::vector<InstanceSlice*> slices_to_stage();
-    void stage_vertices(Commands& commands, Staged& staged);
+    void stage_meshes(Commands& commands, Staged& staged);
     void stage_surfaces(Commands& commands, Staged& staged);
     void stage_sources(Commands& commands, Staged& staged);
     static PackedMesh kept_mesh(const HeldGeometry& held, const Staged& staged);
@@ -309,7 +312,7 @@ class AccelBackend {
     std::string name_;
     std::uint64_t id_;
     AccelOptions options_;
-    std::unique_ptr<VertexArrays> vertices_;
+    std::unique_ptr<MeshStore> meshes_;
     InstanceArray instances_;
     std::unique_ptr<Refinement> refinement_;                   // null below Level::refined
     std::unique_ptr<SurfaceTables> surfaces_;                  // null if it keeps nothing

@@ -18,12 +18,6 @@ namespace twinray {
 #include "shaders/shared/leaf.h"
 #include "twinray/glsl/cpp_end.h"
 
-// A mesh in device memory: 3 floats per vertex, 3 indices per triangle. Null: it is only on the host.
-struct PackedMesh {
-    Floats positions;
-    Uints indices;
-};
-
 // A mesh with other vertices and the same triangles.
 struct Welded {
     std::vector<vec3> positions;

@@ -5,7 +5,7 @@
 #include "engine/accel/accel_backend.h"
 #include "engine/accel/geometry.h"
 #include "engine/accel/surface_tables.h"
-#include "engine/accel/vertices.h"
+#include "engine/accel/mesh_store.h"
 
 namespace twinray {
 
@@ -15,7 +15,7 @@ struct AccelBackend::HeldGeometry {
     Buffer block;                          // see GeometryInput
     std::unique_ptr<BuiltGeometry> built;  // null: `geometry` is not built yet
     SyncPoint built_at = {};
-    VertexSlice vertices = {};
+    StoredMesh stored = {};
     SurfaceSlice surface = {};
     std::size_t handles = 0;  // alive
     bool has_source = false;  // the block's GeometrySource is that of `geometry`
@@ -24,9 +24,9 @@ struct AccelBackend::HeldGeometry {
 
 // The records of a sync, to be committed once it is certain to run.
 struct AccelBackend::Staged {
-    VertexArrays::Staged vertices;
+    MeshStore::Staged meshes;
     std::vector<HeldGeometry*> sources;  // whose GeometrySource was written
-    std::vector<bool> is_rebuilt;        // by moved item of `vertices`, which come first
+    std::vector<bool> is_rebuilt;        // by moved item of `meshes`, which come first
     std::optional<Buffer> refinement;
     SurfaceTables::Staged surfaces;
     std::vector<HeldGeometry*> building;

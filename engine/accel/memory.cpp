@@ -15,7 +15,7 @@ MemoryUsage AccelBackend::memory_usage() const {
     if (surfaces_) usage.surfaces = surfaces_->bytes();
     for (const HeldGeometry* held : held_geometries()) {
         usage.blocks += held->block.bytes();
-        usage.vertices += held->vertices.bytes();
+        usage.vertices += held->stored.bytes();
         usage.surfaces += held->surface.data.bytes();
         if (held->built) usage.geometries += held->built->bytes;
         usage.host += held->geometry.host_bytes() + held->surface.packed.capacity();

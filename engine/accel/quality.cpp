@@ -36,11 +36,11 @@ std::optional<double> AccelBackend::sah() const {
 }
 
 std::optional<double> AccelBackend::sah(AccelHandle handle) const {
-    return sah_of(live(handle, "sah").held->vertices.costs, Wait::yes);
+    return sah_of(live(handle, "sah").held->stored.costs, Wait::yes);
 }
 
 std::optional<double> AccelBackend::sah_if_ready(AccelHandle handle) const {
-    return sah_of(live(handle, "sah_if_ready").held->vertices.costs, Wait::no);
+    return sah_of(live(handle, "sah_if_ready").held->stored.costs, Wait::no);
 }
 
 void AccelBackend::set_rebuild_ratio(double ratio) {
@@ -60,7 +60,7 @@ AccelBackend::Compaction AccelBackend::compaction_of(const HeldGeometry& held) c
 bool AccelBackend::compact() {
     const bool any = std::ranges::any_of(uncompacted_, [&](const std::weak_ptr<HeldGeometry>& listed) {
         const auto held = listed.lock();
-        return held && !held->vertices.edited && compaction_of(*held) == Compaction::possible;
+        return held && !held->stored.edited && compaction_of(*held) == Compaction::possible;
     });
     if (any) mark(Dirty::compaction);
     return any;

@@ -31,9 +31,10 @@ PlacedMeshes::PlacedMeshes(const Scene& scene) : meshes(scene.meshes.begin(), sc
     for (const Instance& instance : scene.instances) instances.push_back({instance.mesh, instance.transform});
 }
 
-PlacedMeshes::PlacedMeshes(AbstractAccel& accel) {
+PlacedMeshes::PlacedMeshes(AbstractAccel& accel) : accel_(&accel) {
     accel.sync();
-    for (const AccelHandle handle : accel.handles()) {
+    handles_ = accel.handles();
+    for (const AccelHandle handle : handles_) {
         for (const InstanceState& state : accel.get_instances(handle)) {
             if (const std::string fault = fault_of(state.transform); !fault.empty())
                 fail(accel.name(), ": scene_of: instance ", instances.size(), ": ", fault);
@@ -42,6 +43,17 @@ PlacedMeshes::PlacedMeshes(AbstractAccel& accel) {
         owned_.push_back(accel.mesh(handle));
     }
     meshes.assign(owned_.begin(), owned_.end());
+}
+
+std::vector<MeshOnDevice> PlacedMeshes::on_device(Commands& commands, std::span<const uint> some) const {
+    if (accel_ && &accel_->context() == &commands.context()) {
+        std::vector<MeshOnDevice> lent;
+        for (const uint mesh : some) lent.push_back(accel_->backend().lend_mesh(commands, handles_[mesh]));
+        return lent;
+    }
+    std::vector<MeshView> views;
+    for (const uint mesh : some) views.push_back(meshes[mesh]);
+    return upload_meshes(commands, views);
 }
 
 std::vector<std::size_t> triangle_counts(const PlacedMeshes& placed) {
@@ -63,6 +75,11 @@ Scene scene_of(AbstractAccel& accel) {
     }
     for (const auto& [mesh, transform] : placed.instances) scene.instances.push_back({"", mesh, transform, {}});
     return scene;
+}
+
+MeshOnDevice AccelBackend::lend_mesh(Commands& commands, AccelHandle handle) {
+    HeldGeometry& held = *live(handle, "lending its mesh").held;
+    return meshes_->lend(commands, held.geometry, held.stored);
 }
 
 SharedMesh AccelBackend::mesh(AccelHandle handle) const {

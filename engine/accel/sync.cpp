@@ -34,7 +34,7 @@ void AccelBackend::Staged::add(const Work& work, std::vector<std::unique_ptr<Bui
 float AccelBackend::unit_of(std::span<const vec3> positions) const { return Geometry::near_unit(positions); }
 
 SyncPoint AccelBackend::sync() {
-    vertices_->warn_of_faults(name_);
+    meshes_->warn_of_faults(name_);
     context_.state().check_submitted(synced_);
     if (dirty_ == Dirty::no) return synced_;
     auto commands = std::make_unique<Commands>(context_, name_ + " sync");
@@ -45,7 +45,7 @@ SyncPoint AccelBackend::sync() {
 }
 
 void AccelBackend::sync(Commands& commands) {
-    vertices_->warn_of_faults(name_);
+    meshes_->warn_of_faults(name_);
     if (dirty_ == Dirty::no) return;
     // Commands that come later may ask for the bound before these are submitted.
     constexpr bool wants_bound = true;
@@ -91,19 +91,19 @@ std::vector<InstanceSlice*> AccelBackend::slices_to_stage() {
     return slices;
 }
 
-void AccelBackend::stage_vertices(Commands& commands, Staged& staged) {
-    std::vector<VertexArrays::Item> items;
+void AccelBackend::stage_meshes(Commands& commands, Staged& staged) {
+    std::vector<MeshStore::Item> items;
     for (const auto& held : staged.geometries)
-        if (held->vertices.edited) items.push_back({&held->geometry, &held->vertices});
+        if (held->stored.edited) items.push_back({&held->geometry, &held->stored});
     for (const auto& held : staged.geometries)
-        if (lacks_mesh(*held)) items.push_back({&held->geometry, &held->vertices});
-    staged.vertices = vertices_->stage(commands, std::move(items));
+        if (lacks_mesh(*held)) items.push_back({&held->geometry, &held->stored});
+    staged.meshes = meshes_->stage(commands, std::move(items));
     stage_sources(commands, staged);
 }
 
 // Returns whether refining or surfaces lack its mesh on the device, which no edit brings there.
 bool AccelBackend::lacks_mesh(const HeldGeometry& held) const {
-    return keeps_meshes_on_device() && !held.vertices.edited && !held.vertices.on_device() &&
+    return keeps_meshes_on_device() && !held.stored.edited && !held.stored.on_device() &&
            held.geometry.kind == GEOMETRY_TRIANGLES && !held.geometry.is_in_place();
 }
 
@@ -115,7 +115,7 @@ void AccelBackend::stage_sources(Commands& commands, Staged& staged) {
     for (const HeldGeometry* held : staged.sources) {
         PackedMesh mesh = keeps_meshes_on_device() ? kept_mesh(*held, staged) : PackedMesh{};
         context_.fill_absent(mesh.positions, mesh.indices);
-        commands.write(held->block, GeometrySource{mesh.positions, mesh.indices, held->geometry.scale, 0},
+        commands.write(held->block, GeometrySource{mesh, held->geometry.scale, 0},
                        GEOMETRY_SOURCE_OFFSET);
     }
 }
@@ -124,25 +124,25 @@ void AccelBackend::stage_sources(Commands& commands, Staged& staged) {
 PackedMesh AccelBackend::kept_mesh(const HeldGeometry& held, const Staged& staged) {
     const Geometry& geometry = held.geometry;
     if (geometry.is_in_place()) return {{geometry.device->positions}, {geometry.device->indices}};
-    return staged.vertices.mesh_of(held.vertices);
+    return staged.meshes.mesh_of(held.stored);
 }
 
 void AccelBackend::stage_geometries(Commands& commands, Staged& staged) {
-    stage_vertices(commands, staged);
+    stage_meshes(commands, staged);
     Work builds, refits, compactions;
     for (const auto& held : staged.geometries) {
         GeometryInput input{
-            &held->geometry, &held->block, {}, staged.vertices.mesh_of(held->vertices), held->built.get(), {}};
+            &held->geometry, &held->block, {}, staged.meshes.mesh_of(held->stored), held->built.get(), {}};
         const bool is_refit =
-            held->vertices.edited && held->built && !held->vertices.rebuilds && !has_degraded(held->vertices.costs);
-        if (held->vertices.edited) {
-            input.mesh = staged.vertices.mesh(staged.is_rebuilt.size());
-            input.cost = staged.vertices.cost_target(staged.is_rebuilt.size());
+            held->stored.edited && held->built && !held->stored.rebuilds && !has_degraded(held->stored.costs);
+        if (held->stored.edited) {
+            input.mesh = staged.meshes.mesh(staged.is_rebuilt.size());
+            input.cost = staged.meshes.cost_target(staged.is_rebuilt.size());
             staged.is_rebuilt.push_back(!is_refit);
         }
         if (is_refit)
             refits.add(*held, input);
-        else if (!held->built || held->vertices.edited)
+        else if (!held->built || held->stored.edited)
             builds.add(*held, input);
         else if (compaction_of(*held) == Compaction::possible)
             compactions.add(*held, input);
@@ -150,7 +150,7 @@ void AccelBackend::stage_geometries(Commands& commands, Staged& staged) {
     staged.add(builds, build_geometries(commands, builds.inputs));
     staged.add(refits, refit_geometries(commands, refits.inputs));
     staged.add(compactions, compact_geometries(commands, compactions.inputs));
-    staged.vertices.retain_temporaries(commands);
+    staged.meshes.retain_temporaries(commands);
 }
 
 void AccelBackend::stage_scene(Commands& commands, Staged& staged, BoundOfSync& bound) {
@@ -205,7 +205,7 @@ void AccelBackend::commit(Staged&& staged, SyncPoint done) {
         staged.building[i]->built = std::move(staged.built[i]);
         staged.building[i]->built_at = done;
     }
-    const std::vector<VertexSlice*> moved = vertices_->commit(std::move(staged.vertices), done);
+    const std::vector<StoredMesh*> moved = meshes_->commit(std::move(staged.meshes), done);
     for (std::size_t i = 0; i < staged.is_rebuilt.size(); ++i) moved[i]->costs.commit(staged.is_rebuilt[i], done);
     for (HeldGeometry* held : staged.sources) held->has_source = true;
     if (refinement_) refinement_->commit(std::move(staged.refinement));
@@ -227,7 +227,7 @@ void AccelBackend::commit(Staged&& staged, SyncPoint done) {
         if (held->built && has_compaction(*held->built)) uncompacted_.push_back(held);
         if (held->built) held->geometry.welded = {};
         if (held->built && !options_.keeps_meshes && works_on_device())
-            held->geometry.forget_mesh(held->vertices.on_device());
+            held->geometry.forget_mesh(held->stored.on_device());
     }
     edited_.clear();
     edited_instances_.clear();

@@ -32,24 +32,13 @@ double largest_coordinate_of(const PlacedMeshes& placed, Face face) {
     return largest;
 }
 
-void upload_meshes(Context& context, Commands& commands, Faces::State& state) {
-    for (const MeshView& mesh : state.placed.meshes) {
-        const std::uint64_t bytes = mesh.positions.size_bytes();
-        state.meshes.emplace_back(context, BufferDesc{.name = text("faces of mesh '", mesh.name, "'"),
-                                                      .bytes = bytes + mesh.triangles.size_bytes()});
-        commands.upload(state.meshes.back(), mesh.positions);
-        commands.upload(state.meshes.back(), mesh.triangles, bytes);
-    }
-}
-
 void upload_instances(Context& context, Commands& commands, Faces::State& state) {
     std::vector<FacesOfInstance> instances;
     for (uint i = 0; i < state.placed.instances.size(); ++i) {
         const auto& [mesh, transform] = state.placed.instances[i];
         const auto& rows = transform.rows;
-        instances.push_back({{rows[0], rows[1], rows[2]},
-                             state.meshes[mesh].ref<float>(),
-                             state.meshes[mesh].ref<uint>(state.placed.meshes[mesh].positions.size_bytes()),
+        const MeshOnDevice& on_device = state.meshes[mesh];
+        instances.push_back({{scaled_map({rows[0], rows[1], rows[2]}, on_device.scale), on_device.mesh},
                              static_cast<uint>(state.faces.size()),
                              0});
         for (uint primitive = 0; primitive < state.triangle_counts[i]; ++primitive)
@@ -170,10 +159,12 @@ Faces::Faces(Context& context, const Scene& scene) : state_(std::make_unique<Sta
 void Faces::State::fill(Context& context) {
     triangle_counts = twinray::triangle_counts(placed);
     faces.reserve(count_faces(triangle_counts));
+    std::vector<uint> all(placed.meshes.size());
+    std::iota(all.begin(), all.end(), 0u);
     Commands commands(context, "faces");
+    meshes = placed.on_device(commands, all);
     {
         const auto pass = commands.pass("faces upload");
-        upload_meshes(context, commands, *this);
         upload_instances(context, commands, *this);
     }
     commands.submit();
@@ -268,9 +259,7 @@ std::vector<double> Faces::areas_of(const std::vector<std::vector<uint>>& groups
 }
 
 std::uint64_t Faces::bytes() const {
-    std::uint64_t sum = state_->instance_buffer.bytes() + state_->face_buffer.bytes();
-    for (const Buffer& mesh : state_->meshes) sum += mesh.bytes();
-    return sum;
+    return bytes_of(state_->meshes) + state_->instance_buffer.bytes() + state_->face_buffer.bytes();
 }
 
 }  // namespace twinray

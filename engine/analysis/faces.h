@@ -47,7 +47,7 @@ struct Faces::State {
         std::uint64_t at = 0;     // AccelBackend::edit_count()
     };
     std::optional<Held> held;
-    std::vector<Buffer> meshes;
+    std::vector<MeshOnDevice> meshes;
     Buffer instance_buffer, face_buffer;
 
     // Numbers the faces, computes their areas and copies their triangles to the device.

@@ -25,7 +25,8 @@ struct NarrowPhase::State {
           search(device),
           classifier(device) {}
 
-    std::vector<uint> taking_part(std::span<const MeshView> meshes, std::span<const MeshInstance> instances, bool self);
+    Contacts find(const PlacedMeshes& placed, const ContactOptions& options);
+    std::vector<uint> taking_part(const PlacedMeshes& placed, bool self);
     DevicePairs candidates(bool self);
     void list(Contacts& contacts, std::span<const ClassifiedPair> pairs, bool with_segments) const;
 
@@ -46,51 +47,48 @@ std::vector<PairClass> NarrowPhase::classify(std::span<const TrianglePair> pairs
 std::uint64_t NarrowPhase::max_pairs() const { return state_->search.max_pairs(); }
 void NarrowPhase::set_max_pairs(std::uint64_t count) { state_->search.set_max_pairs(count); }
 
-Contacts NarrowPhase::find(const Scene& scene, const ContactOptions& options) {
-    const PlacedMeshes placed(scene);
-    return find(placed.meshes, placed.instances, options);
-}
-
+Contacts NarrowPhase::find(const Scene& scene, const ContactOptions& options) { return state_->find(scene, options); }
 Contacts NarrowPhase::find(AbstractAccel& accel, const ContactOptions& options) {
-    const PlacedMeshes placed(accel);
-    return find(placed.meshes, placed.instances, options);
+    return state_->find(PlacedMeshes(accel), options);
 }
-
 Contacts NarrowPhase::find(std::span<const MeshView> meshes, std::span<const MeshInstance> instances,
                            const ContactOptions& options) {
-    check_instances(meshes, instances, "collide");
-    TriangleSet& triangles = state_->triangles;
+    return state_->find({meshes, instances}, options);
+}
+
+Contacts NarrowPhase::State::find(const PlacedMeshes& placed, const ContactOptions& options) {
+    check_instances(placed.meshes, placed.instances, "collide");
     Contacts contacts;
     const Stopwatch search_start;
-    const std::vector<uint> chosen = state_->taking_part(meshes, instances, options.self);
-    triangles.set(meshes, instances, chosen, options.shared);
-    const DevicePairs pairs = state_->candidates(options.self);
+    const std::vector<uint> chosen = taking_part(placed, options.self);
+    triangles.set(placed, chosen, options.shared);
+    const DevicePairs pairs = candidates(options.self);
     contacts.instances = chosen.size();
     contacts.triangles = triangles.count();
     contacts.candidates = pairs.count;
     contacts.search_seconds = search_start.seconds();
 
     const Stopwatch classify_start;
-    const std::vector<ClassifiedPair> classified = state_->classifier.classify(
+    const std::vector<ClassifiedPair> classified = classifier.classify(
         pairs, {triangles.triangles_on_device(), triangles.names_on_device(),
                 [&](uint item) { return triangles.triangle(item); }, [&](uint item) { return triangles.name(item); }});
-    state_->list(contacts, classified, options.segments);
-    contacts.host_decided = state_->classifier.host_count();
-    contacts.host_seconds = state_->classifier.host_seconds();
+    list(contacts, classified, options.segments);
+    contacts.host_decided = classifier.host_count();
+    contacts.host_seconds = classifier.host_seconds();
     contacts.classify_seconds = classify_start.seconds();
     return contacts;
 }
 
 // Returns the instances whose boxes overlap that of another: triangles of others have nothing to touch.
-std::vector<uint> NarrowPhase::State::taking_part(std::span<const MeshView> meshes,
-                                                  std::span<const MeshInstance> instances, bool self) {
-    std::vector<uint> chosen(instances.size());
+std::vector<uint> NarrowPhase::State::taking_part(const PlacedMeshes& placed, bool self) {
+    std::vector<uint> chosen(placed.instances.size());
     std::iota(chosen.begin(), chosen.end(), 0u);
-    if (self || instances.empty()) return chosen;
+    if (self || chosen.empty()) return chosen;
     std::vector<Bounds> bounds;
-    for (const MeshView& mesh : meshes) bounds.push_back(bounds_of(mesh));
+    for (const MeshView& mesh : placed.meshes) bounds.push_back(bounds_of(mesh));
     std::vector<TreeBox> boxes;
-    for (const uint i : chosen) boxes.push_back(box_of_instance(bounds[instances[i].mesh], instances[i].transform, i));
+    for (const auto& [mesh, transform] : placed.instances)
+        boxes.push_back(box_of_instance(bounds[mesh], transform, static_cast<uint>(boxes.size())));
     tree.prepare(boxes.size());
     Commands commands(context, "collide instances");
     {
@@ -100,7 +98,7 @@ std::vector<uint> NarrowPhase::State::taking_part(std::span<const MeshView> mesh
     tree.record(commands);
     commands.submit();
     const DevicePairs pairs = search.find({.tree = tree.view()}, "contacts");
-    std::vector<bool> takes_part(instances.size(), false);
+    std::vector<bool> takes_part(chosen.size(), false);
     for (const auto column : {&DevicePairs::first, &DevicePairs::second})
         for (const uint i : download(context, pairs, column)) takes_part[i] = true;
     std::erase_if(chosen, [&](uint i) { return !takes_part[i]; });
@@ -109,10 +107,7 @@ std::vector<uint> NarrowPhase::State::taking_part(std::span<const MeshView> mesh
 
 DevicePairs NarrowPhase::State::candidates(bool self) {
     if (triangles.count() == 0) return {};
-    Commands commands(context, "collide triangles");
-    triangles.record(commands, tree.prepare(triangles.count()));
-    tree.record(commands);
-    commands.submit();
+    triangles.build(tree);
     return search.find({.tree = tree.view(), .other_groups = !self}, "contacts");
 }
 

@@ -13,7 +13,7 @@ namespace twinray {
 #include "shaders/collide/pair_class.h"
 #include "twinray/glsl/cpp_end.h"
 
-static_assert(sizeof(WorldTriangle) == 72 && sizeof(InstancedMesh) == 80 && sizeof(TriangleName) == 16);
+static_assert(sizeof(WorldTriangle) == 72 && sizeof(TriangleRun) == 88 && sizeof(TriangleName) == 16);
 
 constexpr uint class_number(PairClass pair_class) { return static_cast<uint>(pair_class); }
 static_assert(class_number(PairClass::separate) == PAIR_SEPARATE && class_number(PairClass::crossing) == PAIR_CROSSING);

@@ -4,10 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
+#include <set>
 
 #include "collide_world_triangles.spv.h"
-#include "engine/collide/box_tree.h"
 #include "engine/core/error.h"
 
 namespace twinray {
@@ -45,48 +44,29 @@ std::vector<uint> ids_by_position(std::span<const vec3> positions) {
     return ids;
 }
 
-// The data of a mesh for the device, one after the other.
-struct Upload {
-    std::vector<Commands::Region> regions;
-    std::uint64_t bytes = 0;
-
-    template <class T>
-    std::uint64_t add(std::span<const T> values) {
-        const std::uint64_t at = bytes;
-        if (!values.empty()) regions.push_back({at, std::as_bytes(values)});
-        bytes += values.size_bytes();
-        return at;
-    }
-};
-
-// Addresses are offsets in the uploaded data.
-InstancedMesh added_to(Upload& upload, const MeshView& mesh, std::span<const uint> ids) {
-    InstancedMesh added{};
-    added.positions.address = upload.add(mesh.positions);
-    added.indices.address = upload.add(mesh.triangles);
-    added.vertex_ids.address = upload.add(ids);
-    return added;
+template <class T>
+std::uint64_t address_of(std::span<const T> values) {
+    return reinterpret_cast<std::uint64_t>(values.data());
 }
 
-void move_to(const Context& context, std::uint64_t address, InstancedMesh& mesh, SharedVertices shared) {
-    mesh.positions.address += address;
-    mesh.indices.address += address;
-    mesh.vertex_ids.address = shared == SharedVertices::by_index ? context.absent() : mesh.vertex_ids.address + address;
+// Returns the meshes of the instances, ascending, each once.
+std::vector<uint> meshes_of(const PlacedMeshes& placed, std::span<const uint> instances) {
+    std::set<uint> meshes;
+    for (const uint instance : instances) meshes.insert(placed.instances[instance].mesh);
+    return {meshes.begin(), meshes.end()};
 }
 
-InstancedMesh on_host(const MeshView& mesh, std::span<const uint> ids) {
-    InstancedMesh host{};
-    host.positions = {reinterpret_cast<std::uint64_t>(mesh.positions.data())};
-    host.indices = {reinterpret_cast<std::uint64_t>(mesh.triangles.data())};
-    host.vertex_ids = {reinterpret_cast<std::uint64_t>(ids.data())};
-    return host;
+TriangleRun make_run(const MeshOnDevice& on_device, Uints vertex_ids, const Transform& transform, std::size_t first) {
+    return {{{transform.rows[0], transform.rows[1], transform.rows[2]}, on_device.mesh},
+            vertex_ids,
+            static_cast<uint>(first),
+            determinant(transform) < 0 ? 1u : 0u,
+            on_device.scale,
+            0};
 }
 
-InstancedMesh instanced(InstancedMesh mesh, const Transform& transform, std::size_t first_triangle) {
-    mesh.object_to_world = {transform.rows[0], transform.rows[1], transform.rows[2]};
-    mesh.first_triangle = static_cast<uint>(first_triangle);
-    mesh.is_mirrored = determinant(transform) < 0 ? 1 : 0;
-    return mesh;
+MeshOnDevice on_host(const MeshView& mesh) {
+    return {{}, {{address_of(mesh.positions)}, {address_of(mesh.triangles)}}, 1};
 }
 
 }  // namespace
@@ -114,74 +94,84 @@ TriangleSet::TriangleSet(Context& context)
     : context_(context),
       kernel_(context, {.name = "collide_world_triangles", .spirv = collide_world_triangles_spirv}) {}
 
-void TriangleSet::set(std::span<const MeshView> meshes, std::span<const MeshInstance> instances,
-                      std::span<const uint> chosen, SharedVertices shared) {
+void TriangleSet::set(const PlacedMeshes& placed, std::span<const uint> chosen, SharedVertices shared) {
     count_ = 0;
     std::uint64_t total = 0;
-    for (const uint index : chosen) total += meshes[instances[index].mesh].triangles.size();
+    for (const uint index : chosen) total += placed.mesh_of(index).triangles.size();
     if (total > BoxTree::max_count)
         fail("the instances in question have ", total, " triangles; at most ", BoxTree::max_count, " fit");
-    instanced_.clear();
-    vertex_ids_.assign(meshes.size(), {});
+    runs_.clear();
     chosen_.assign(chosen.begin(), chosen.end());
-    Upload upload;
-    std::vector<std::optional<InstancedMesh>> uploaded(meshes.size());
-    std::vector<InstancedMesh> table;
-    for (const uint index : chosen) {
-        const MeshInstance& instance = instances[index];
-        const MeshView& mesh = meshes[instance.mesh];
-        std::vector<uint>& ids = vertex_ids_[instance.mesh];
-        std::optional<InstancedMesh>& of_mesh = uploaded[instance.mesh];
-        if (!of_mesh) {
-            if (shared == SharedVertices::by_position) ids = ids_by_position(mesh.positions);
-            of_mesh = added_to(upload, mesh, ids);
-        }
-        table.push_back(instanced(*of_mesh, instance.transform, count_));
-        instanced_.push_back(instanced(on_host(mesh, ids), instance.transform, count_));
-        count_ += mesh.triangles.size();
-    }
-    if (count_ == 0) return;
-    allocate(upload.bytes);
-    for (InstancedMesh& mesh : table) move_to(context_, data_.address(), mesh, shared);
+    vertex_ids_.assign(placed.meshes.size(), {});
+    if (total == 0) return;
+    const std::vector<uint> used = meshes_of(placed, chosen);
+    if (shared == SharedVertices::by_position)
+        for (const uint mesh : used) vertex_ids_[mesh] = ids_by_position(placed.meshes[mesh].positions);
     Commands commands(context_, "collide meshes");
+    meshes_ = placed.on_device(commands, used);
+    const std::vector<Uints> ids = upload_vertex_ids(commands);
+    std::vector<TriangleRun> table;
+    for (const uint index : chosen) {
+        const auto& [mesh, transform] = placed.instances[index];
+        const auto place = static_cast<std::size_t>(std::ranges::lower_bound(used, mesh) - used.begin());
+        table.push_back(make_run(meshes_[place], ids[mesh], transform, count_));
+        runs_.push_back(make_run(on_host(placed.meshes[mesh]), {address_of(std::span<const uint>(vertex_ids_[mesh]))}, transform, count_));
+        count_ += placed.meshes[mesh].triangles.size();
+    }
+    table_ = Buffer(context_, {.name = "collide runs", .bytes = table.size() * sizeof(TriangleRun)});
+    world_triangles_ = Buffer(context_, {.name = "collide triangles", .bytes = count_ * sizeof(WorldTriangle)});
+    names_ = Buffer(context_, {.name = "collide names", .bytes = count_ * sizeof(TriangleName)});
     {
-        const auto pass = commands.pass("collide meshes");
-        commands.upload_regions(data_, upload.regions);
-        commands.upload(table_, std::span<const InstancedMesh>(table));
+        const auto pass = commands.pass("collide runs");
+        commands.upload(table_, std::span<const TriangleRun>(table));
     }
     commands.submit();
 }
 
-void TriangleSet::allocate(std::uint64_t mesh_bytes) {
-    data_ = Buffer(context_, {.name = "collide meshes", .bytes = mesh_bytes});
-    table_ = Buffer(context_, {.name = "collide instanced meshes", .bytes = instanced_.size() * sizeof(InstancedMesh)});
-    world_triangles_ = Buffer(context_, {.name = "collide triangles", .bytes = count_ * sizeof(WorldTriangle)});
-    names_ = Buffer(context_, {.name = "collide names", .bytes = count_ * sizeof(TriangleName)});
+// Returns where they are, by mesh; absent where vertices are not shared by position.
+std::vector<Uints> TriangleSet::upload_vertex_ids(Commands& commands) {
+    std::vector<Uints> addresses(vertex_ids_.size(), {context_.absent()});
+    std::vector<Commands::Region> regions;
+    std::uint64_t bytes = 0;
+    for (const std::vector<uint>& ids : vertex_ids_) {
+        regions.push_back({bytes, std::as_bytes(std::span(ids))});
+        bytes += regions.back().data.size();
+    }
+    vertex_ids_on_device_ = Buffer(context_, {.name = "collide vertex ids", .bytes = bytes});
+    if (bytes == 0) return addresses;
+    const auto pass = commands.pass("collide vertex ids");
+    commands.upload_regions(vertex_ids_on_device_, regions);
+    for (std::size_t mesh = 0; mesh < regions.size(); ++mesh)
+        if (!regions[mesh].data.empty()) addresses[mesh] = vertex_ids_on_device_.ref<uint>(regions[mesh].offset);
+    return addresses;
 }
 
-void TriangleSet::record(Commands& commands, Ref<TreeBox> boxes) const {
-    if (count_ == 0) return;
-    const WorldTrianglesArgs args{table_.ref<InstancedMesh>(),           boxes,
+void TriangleSet::build(BoxTree& tree) {
+    Commands commands(context_, "collide triangles");
+    const WorldTrianglesArgs args{table_.ref<TriangleRun>(),             tree.prepare(count_),
                                   world_triangles_.ref<WorldTriangle>(), names_.ref<TriangleName>(),
-                                  static_cast<uint>(instanced_.size()),  static_cast<uint>(count_)};
-    kernel_.dispatch(commands, args, count_);
+                                  static_cast<uint>(runs_.size()),       static_cast<uint>(count_)};
+    if (count_ != 0) kernel_.dispatch(commands, args, count_);
+    tree.record(commands);
+    commands.submit();
+    meshes_.clear();
 }
 
-std::size_t TriangleSet::mesh_of(uint item) const {
-    const auto after = std::upper_bound(instanced_.begin(), instanced_.end(), item,
-                                        [](uint i, const InstancedMesh& mesh) { return i < mesh.first_triangle; });
-    return static_cast<std::size_t>(after - instanced_.begin()) - 1;
+std::size_t TriangleSet::run_of(uint item) const {
+    const auto after = std::upper_bound(runs_.begin(), runs_.end(), item,
+                                        [](uint i, const TriangleRun& run) { return i < run.first_triangle; });
+    return static_cast<std::size_t>(after - runs_.begin()) - 1;
 }
 
 WorldTriangle TriangleSet::triangle(uint item) const {
-    return world_triangle(instanced_[mesh_of(item)], indices_of(instanced_[mesh_of(item)], primitive(item)));
+    return world_triangle(runs_[run_of(item)], indices_of(runs_[run_of(item)], primitive(item)));
 }
 
 TriangleName TriangleSet::name(uint item) const {
-    const std::size_t index = mesh_of(item);
-    const InstancedMesh& mesh = instanced_[index];
-    uvec3 ids = indices_of(mesh, primitive(item));
-    if (mesh.vertex_ids.address) ids = {mesh.vertex_ids[ids.x], mesh.vertex_ids[ids.y], mesh.vertex_ids[ids.z]};
+    const std::size_t index = run_of(item);
+    const TriangleRun& run = runs_[index];
+    uvec3 ids = indices_of(run, primitive(item));
+    if (run.vertex_ids.address) ids = {run.vertex_ids[ids.x], run.vertex_ids[ids.y], run.vertex_ids[ids.z]};
     return {ids, static_cast<uint>(index)};
 }
 

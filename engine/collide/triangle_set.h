@@ -5,9 +5,10 @@
 #include <span>
 #include <vector>
 
+#include "engine/accel/placed_meshes.h"
+#include "engine/collide/box_tree.h"
 #include "engine/collide/pair_class.h"
 #include "engine/core/kernel.h"
-#include <twinray/geometry.h>
 #include "engine/scene/mesh.h"
 
 namespace twinray {
@@ -24,36 +25,39 @@ class TriangleSet {
   public:
     explicit TriangleSet(Context& context);
 
-    // Uploads the meshes. `chosen`: indices of the instances that take part, ascending. The spans, and the data that
-    // they refer to, must outlive the use of this.
-    void set(std::span<const MeshView> meshes, std::span<const MeshInstance> instances, std::span<const uint> chosen,
-             SharedVertices shared);
+    // `chosen`: indices of the instances that take part, ascending. The data that the views refer to must outlive the
+    // use of this.
+    void set(const PlacedMeshes& placed, std::span<const uint> chosen, SharedVertices shared);
     std::size_t count() const { return count_; }
-    // Writes boxes, triangles and names of all; items are grouped by instance.
-    void record(Commands& commands, Ref<TreeBox> boxes) const;
+    // Writes triangles and names of all, and builds a tree of their boxes, which are grouped by instance. The meshes
+    // themselves are not needed after that.
+    void build(BoxTree& tree);
     Ref<WorldTriangle> triangles_on_device() const { return world_triangles_.ref<WorldTriangle>(); }
     Ref<TriangleName> names_on_device() const { return names_.ref<TriangleName>(); }
-    Ref<InstancedMesh> meshes_on_device() const { return table_.ref<InstancedMesh>(); }  // by group of the boxes
+    Ref<TriangleRun> runs_on_device() const { return table_.ref<TriangleRun>(); }  // by group of the boxes
 
     // Computes one item on the host: the same bits.
     WorldTriangle triangle(uint item) const;
     TriangleName name(uint item) const;
-    uint instance(uint item) const { return chosen_[mesh_of(item)]; }
-    uint primitive(uint item) const { return item - instanced_[mesh_of(item)].first_triangle; }
-    bool is_mirrored(uint item) const { return instanced_[mesh_of(item)].is_mirrored != 0; }
-    std::uint64_t bytes() const { return data_.bytes() + table_.bytes() + world_triangles_.bytes() + names_.bytes(); }
+    uint instance(uint item) const { return chosen_[run_of(item)]; }
+    uint primitive(uint item) const { return item - runs_[run_of(item)].first_triangle; }
+    bool is_mirrored(uint item) const { return runs_[run_of(item)].is_mirrored != 0; }
+    std::uint64_t bytes() const {
+        return vertex_ids_on_device_.bytes() + table_.bytes() + world_triangles_.bytes() + names_.bytes();
+    }
 
   private:
-    void allocate(std::uint64_t mesh_bytes);
-    std::size_t mesh_of(uint item) const;
+    std::vector<Uints> upload_vertex_ids(Commands& commands);
+    std::size_t run_of(uint item) const;
 
     Context& context_;
     Kernel<WorldTrianglesArgs> kernel_;
-    std::vector<InstancedMesh> instanced_;       // with addresses of the host
+    std::vector<TriangleRun> runs_;              // with addresses of the host
+    std::vector<MeshOnDevice> meshes_;           // those that take part, until build()
     std::vector<std::vector<uint>> vertex_ids_;  // by mesh, where they are not the indices
     std::vector<uint> chosen_;
     std::size_t count_ = 0;
-    Buffer data_, table_, world_triangles_, names_;
+    Buffer vertex_ids_on_device_, table_, world_triangles_, names_;
 };
 
 }  // namespace twinray

@@ -131,11 +131,8 @@ void PointQuery::State::set(PlacedMeshes&& given) {
     scale = scale_for(placed.meshes, placed.instances);
     std::vector<uint> all(placed.instances.size());
     std::iota(all.begin(), all.end(), 0u);
-    triangles.set(placed.meshes, placed.instances, all, SharedVertices::by_index);
-    Commands commands(context, "points tree");
-    triangles.record(commands, tree.prepare(triangles.count()));
-    tree.record(commands);
-    commands.submit();
+    triangles.set(placed, all, SharedVertices::by_index);
+    triangles.build(tree);
 }
 
 PointSearchArgs PointQuery::State::upload(std::span<const dvec3> some, std::uint64_t result_bytes) {
@@ -146,7 +143,7 @@ PointSearchArgs PointQuery::State::upload(std::span<const dvec3> some, std::uint
     const BoxTreeView view = tree.view();
     PointSearchArgs args{.nodes = view.nodes,
                          .triangles = triangles.triangles_on_device(),
-                         .meshes = triangles.meshes_on_device(),
+                         .runs = triangles.runs_on_device(),
                          .points = points.ref<SearchPoint>(),
                          .boxes = point_boxes.ref<TreeBox>(),
                          .order = {},

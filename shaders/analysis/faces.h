@@ -7,10 +7,8 @@
 
 struct FacesOfInstance
 {
-    Rows object_to_world;
-    Floats positions; // 3 tightly packed floats a vertex, in object space
-    Uints indices;    // 3 a triangle
-    uint first;       // face of triangle 0
+    InstancedMesh placed;
+    uint first; // face of triangle 0
     uint reserved;
 };
 BUFFER_OF(FacesOfInstance, 8);
@@ -33,8 +31,9 @@ FUNC SurfacePoint point_on_face(FaceTable table, uint face, vec2 uv)
 {
     Face which = AT(table.faces, face);
     FacesOfInstance instance = AT(table.instances, which.instance);
-    return surface_point(placement_of(instance.object_to_world),
-                         vertices_of(instance.positions, instance.indices, which.primitive), uv);
+    PackedMesh mesh = instance.placed.mesh;
+    return surface_point(placement_of(instance.placed.object_to_world),
+                         vertices_of(mesh.positions, mesh.indices, which.primitive), uv);
 }
 
 // Returns whether a direction comes from the side on which the vertices turn counter-clockwise in object space.
@@ -42,11 +41,12 @@ FUNC bool meets_front(FaceTable table, uint face, vec3 direction)
 {
     Face which = AT(table.faces, face);
     FacesOfInstance instance = AT(table.instances, which.instance);
-    TriangleVertices vertices = vertices_of(instance.positions, instance.indices, which.primitive);
+    PackedMesh mesh = instance.placed.mesh;
+    TriangleVertices vertices = vertices_of(mesh.positions, mesh.indices, which.primitive);
     vec3 edge1 = vertices.b - vertices.a;
     vec3 edge2 = vertices.c - vertices.a;
     float scale = power_of_two_below(max(largest_entry(edge1), largest_entry(edge2)));
     vec3 normal = cross_precise(edge1 / scale, edge2 / scale);
-    return dot(transform_vector(inverse_of(instance.object_to_world), direction), normal) < 0.0f;
+    return dot(transform_vector(inverse_of(instance.placed.object_to_world), direction), normal) < 0.0f;
 }
 #endif

@@ -67,7 +67,7 @@ FUNC uint class_of_neighbours(WorldTriangle t, uvec3 t_ids, WorldTriangle u, uve
 
 FUNC uint class_of_pair(WorldTriangle t, TriangleName t_name, WorldTriangle u, TriangleName u_name)
 {
-    if (t_name.mesh != u_name.mesh || count_shared(t_name.vertices, u_name.vertices) == 0u) return class_of(t, u);
+    if (t_name.run != u_name.run || count_shared(t_name.vertices, u_name.vertices) == 0u) return class_of(t, u);
     return class_of_neighbours(t, t_name.vertices, u, u_name.vertices);
 }
 #endif

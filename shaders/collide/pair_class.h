@@ -20,31 +20,31 @@ const uint PAIR_UNDECIDED = 6u;        // float64 cannot tell
 BUFFER_OF(WorldTriangle, 8);
 
 // A mesh as an instance places it, and the range of its triangles.
-struct InstancedMesh
+struct TriangleRun
 {
-    Rows object_to_world;
-    Floats positions;
-    Uints indices;
-    Uints vertex_ids;    // of each vertex: those with one id are one; absent: each is its own
-    uint first_triangle; // ascending from one instanced mesh to the next
-    uint is_mirrored;    // 1 where the map turns triangles round
+    InstancedMesh placed; // positions in units of `scale`
+    Uints vertex_ids;     // of each vertex: those with one id are one; absent: each is its own
+    uint first_triangle;  // ascending from one run to the next
+    uint is_mirrored;     // 1 where the map turns triangles round
+    float scale;          // a power of two
+    uint reserved;
 };
-BUFFER_OF(InstancedMesh, 8);
+BUFFER_OF(TriangleRun, 8);
 
 struct TriangleName
 {
     uvec3 vertices; // their ids
-    uint mesh;      // index of its instanced mesh
+    uint run;       // index of its run
 };
 BUFFER_OF(TriangleName, 16);
 
 struct WorldTrianglesArgs
 {
-    REF(InstancedMesh) meshes;
+    REF(TriangleRun) runs;
     REF(TreeBox) boxes;      // written, as the next two
     REF(WorldTriangle) triangles;
     REF(TriangleName) names;
-    uint mesh_count;
+    uint run_count;
     uint count;
 };
 

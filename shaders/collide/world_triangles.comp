@@ -9,15 +9,15 @@
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { WorldTrianglesArgs args; };
 
-// Returns the last mesh that does not begin after `triangle`.
-uint mesh_of(uint triangle)
+// Returns the last run that does not begin after `triangle`.
+uint run_of(uint triangle)
 {
     uint low = 0u;
-    uint high = args.mesh_count;
+    uint high = args.run_count;
     while (high - low > 1u)
     {
         uint middle = (low + high) / 2u;
-        if (AT(args.meshes, middle).first_triangle <= triangle) low = middle;
+        if (AT(args.runs, middle).first_triangle <= triangle) low = middle;
         else high = middle;
     }
     return low;
@@ -27,16 +27,16 @@ void main()
 {
     uint i = global_index();
     if (i >= args.count) return;
-    uint index = mesh_of(i);
-    InstancedMesh mesh = AT(args.meshes, index);
-    uvec3 indices = indices_of(mesh, i - mesh.first_triangle);
-    WorldTriangle triangle = world_triangle(mesh, indices);
+    uint index = run_of(i);
+    TriangleRun run = AT(args.runs, index);
+    uvec3 indices = indices_of(run, i - run.first_triangle);
+    WorldTriangle triangle = world_triangle(run, indices);
     TriangleName name;
     name.vertices = indices;
-    if (!is_absent(mesh.vertex_ids))
+    if (!is_absent(run.vertex_ids))
         name.vertices =
-            uvec3(AT(mesh.vertex_ids, indices.x), AT(mesh.vertex_ids, indices.y), AT(mesh.vertex_ids, indices.z));
-    name.mesh = index;
+            uvec3(AT(run.vertex_ids, indices.x), AT(run.vertex_ids, indices.y), AT(run.vertex_ids, indices.z));
+    name.run = index;
     AT(args.triangles, i) = triangle;
     AT(args.names, i) = name;
     AT(args.boxes, i) = box_around(triangle, i, index);

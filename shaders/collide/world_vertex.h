@@ -14,26 +14,28 @@ FUNC double world_coordinate(vec4 row, dvec3 p)
     return x;
 }
 
-FUNC dvec3 world_vertex(InstancedMesh mesh, uint vertex)
+FUNC dvec3 world_vertex(TriangleRun run, uint vertex)
 {
-    dvec3 p = dvec3(widened(AT(mesh.positions, 3u * vertex)), widened(AT(mesh.positions, 3u * vertex + 1u)),
-                    widened(AT(mesh.positions, 3u * vertex + 2u)));
-    Rows rows = mesh.object_to_world;
+    Floats positions = run.placed.mesh.positions;
+    dvec3 given = dvec3(widened(AT(positions, 3u * vertex)), widened(AT(positions, 3u * vertex + 1u)),
+                        widened(AT(positions, 3u * vertex + 2u)));
+    PRECISE dvec3 p = given * double(run.scale);
+    Rows rows = run.placed.object_to_world;
     return dvec3(world_coordinate(rows.r0, p), world_coordinate(rows.r1, p), world_coordinate(rows.r2, p));
 }
 
-FUNC uvec3 indices_of(InstancedMesh mesh, uint primitive)
+FUNC uvec3 indices_of(TriangleRun run, uint primitive)
 {
-    return uvec3(AT(mesh.indices, 3u * primitive), AT(mesh.indices, 3u * primitive + 1u),
-                 AT(mesh.indices, 3u * primitive + 2u));
+    Uints indices = run.placed.mesh.indices;
+    return uvec3(AT(indices, 3u * primitive), AT(indices, 3u * primitive + 1u), AT(indices, 3u * primitive + 2u));
 }
 
-FUNC WorldTriangle world_triangle(InstancedMesh mesh, uvec3 indices)
+FUNC WorldTriangle world_triangle(TriangleRun run, uvec3 indices)
 {
     WorldTriangle triangle;
-    triangle.a = world_vertex(mesh, indices.x);
-    triangle.b = world_vertex(mesh, indices.y);
-    triangle.c = world_vertex(mesh, indices.z);
+    triangle.a = world_vertex(run, indices.x);
+    triangle.b = world_vertex(run, indices.y);
+    triangle.c = world_vertex(run, indices.z);
     return triangle;
 }
 

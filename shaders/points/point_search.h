@@ -36,7 +36,7 @@ struct PointSearchArgs
 {
     REF(TreeBox) nodes;
     REF(WorldTriangle) triangles;
-    REF(InstancedMesh) meshes;   // by TreeBox::group
+    REF(TriangleRun) runs;    // by TreeBox::group
     REF(SearchPoint) points;
     REF(TreeBox) boxes;       // of the points, to be sorted
     Uints order;              // of the points, for neighbours to search together

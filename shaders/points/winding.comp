@@ -43,7 +43,7 @@ void main()
             }
             int crossing = crossing_of(point, AT(args.triangles, box.item));
             if (crossing == UNKNOWN_SIGN) append(args, i, box.item, double(0.0f));
-            else if (AT(args.meshes, box.group).is_mirrored != 0u) winding -= crossing;
+            else if (AT(args.runs, box.group).is_mirrored != 0u) winding -= crossing;
             else winding += crossing;
         }
         node = next_subtree(node);

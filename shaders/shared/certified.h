@@ -38,7 +38,7 @@ FUNC CertifiedRay certified_ray(RefineInstance instance, Ray ray, bool is_moved)
     const double MOVING = double(HALF_ULP);
     RowsDouble to_object = instance.world_to_object;
     RowsDouble magnitude = absolute(to_object);
-    Rows to_world = instance.mesh.object_to_world;
+    Rows to_world = instance.placed.object_to_world;
     dvec3 translation = abs(dvec3(double(to_world.r0.w), double(to_world.r1.w), double(to_world.r2.w)));
     dvec3 o = dvec3(double(ray.origin.x), double(ray.origin.y), double(ray.origin.z));
     dvec3 d = dvec3(double(ray.direction.x), double(ray.direction.y), double(ray.direction.z));
@@ -119,15 +119,15 @@ FUNC bool intersect_in_world(uint primitive_index, uint instance_index, TraceOpt
 {
     const double LEAST_NORMAL = double(uintBitsToFloat(0x00800000u));
     const double ROUNDINGS = double(1.4210854715202004e-14f); // 2^-46
-    GivenMesh mesh = load_given_mesh(options.instances, instance_index);
+    InstancedMesh placed = AT(options.instances, instance_index).placed;
     vec3 o = options.given.origin;
     vec3 w = options.given.direction;
     dvec3 origin = dvec3(double(o.x), double(o.y), double(o.z));
     uint axis = dominant_axis(w);
     dvec3 d = dominant_last_double(dvec3(double(w.x), double(w.y), double(w.z)), axis);
-    dvec3 a = sheared_double(vertex_from(origin, mesh, 3u * primitive_index), d, axis);
-    dvec3 b = sheared_double(vertex_from(origin, mesh, 3u * primitive_index + 1u), d, axis);
-    dvec3 c = sheared_double(vertex_from(origin, mesh, 3u * primitive_index + 2u), d, axis);
+    dvec3 a = sheared_double(vertex_from(origin, placed, 3u * primitive_index), d, axis);
+    dvec3 b = sheared_double(vertex_from(origin, placed, 3u * primitive_index + 1u), d, axis);
+    dvec3 c = sheared_double(vertex_from(origin, placed, 3u * primitive_index + 2u), d, axis);
     int side_a = 0;
     int side_b = 0;
     int side_c = 0;

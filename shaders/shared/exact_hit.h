@@ -30,9 +30,9 @@ FUNC HitDouble exact_hit(REF(RefineInstance) instances, Ray64 ray, Hit hit)
     exact.t = double(hit.t);
     exact.u = double(hit.u);
     exact.v = double(hit.v);
-    GivenMesh mesh = load_given_mesh(instances, hit.instance_index);
-    if (is_absent(mesh.indices)) return exact;
-    PlaneHit met = meet_plane(ray.origin, ray.direction, mesh, hit.primitive_index);
+    InstancedMesh placed = AT(instances, hit.instance_index).placed;
+    if (is_absent(placed.mesh.indices)) return exact;
+    PlaneHit met = meet_plane(ray.origin, ray.direction, placed, hit.primitive_index);
     if (met.det == double(0.0f)) return exact;
     exact.t = met.t;
     exact.u = met.u;

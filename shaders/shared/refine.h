@@ -67,14 +67,14 @@ FUNC Ray searched_ray(vec3 lo, vec3 hi, INOUT(TraceOptions) options)
 }
 
 // A vertex in world space, seen from the origin.
-FUNC dvec3 vertex_from(dvec3 origin, GivenMesh mesh, uint vertex)
+FUNC dvec3 vertex_from(dvec3 origin, InstancedMesh placed, uint vertex)
 {
-    uint at = 3u * AT(mesh.indices, vertex); // load_position costs AMD's compilers up to 40 registers here
-    dvec3 v = dvec3(double(AT(mesh.positions, at)), double(AT(mesh.positions, at + 1u)),
-                    double(AT(mesh.positions, at + 2u)));
-    vec4 r0 = mesh.object_to_world.r0;
-    vec4 r1 = mesh.object_to_world.r1;
-    vec4 r2 = mesh.object_to_world.r2;
+    Floats positions = placed.mesh.positions;
+    uint at = 3u * AT(placed.mesh.indices, vertex); // load_position costs AMD's compilers up to 40 registers here
+    dvec3 v = dvec3(double(AT(positions, at)), double(AT(positions, at + 1u)), double(AT(positions, at + 2u)));
+    vec4 r0 = placed.object_to_world.r0;
+    vec4 r1 = placed.object_to_world.r1;
+    vec4 r2 = placed.object_to_world.r2;
     PRECISE double x = product_sum(dvec3(double(r0.x), double(r0.y), double(r0.z)), v) + (double(r0.w) - origin.x);
     PRECISE double y = product_sum(dvec3(double(r1.x), double(r1.y), double(r1.z)), v) + (double(r1.w) - origin.y);
     PRECISE double z = product_sum(dvec3(double(r2.x), double(r2.y), double(r2.z)), v) + (double(r2.w) - origin.z);
@@ -127,13 +127,13 @@ FUNC double sum_of_sizes(dvec3 v)
     return sum;
 }
 
-FUNC PlaneHit meet_plane(dvec3 origin, dvec3 direction, GivenMesh mesh, uint primitive)
+FUNC PlaneHit meet_plane(dvec3 origin, dvec3 direction, InstancedMesh placed, uint primitive)
 {
     const double ROUNDINGS = double(1.4210854715202004e-14f); // 2^-46
     PlaneHit met;
-    dvec3 a = vertex_from(origin, mesh, 3u * primitive);
-    dvec3 b = vertex_from(origin, mesh, 3u * primitive + 1u);
-    dvec3 c = vertex_from(origin, mesh, 3u * primitive + 2u);
+    dvec3 a = vertex_from(origin, placed, 3u * primitive);
+    dvec3 b = vertex_from(origin, placed, 3u * primitive + 1u);
+    dvec3 c = vertex_from(origin, placed, 3u * primitive + 2u);
     dvec3 e1 = b - a;
     dvec3 e2 = c - a;
     dvec3 normal = cross_product(e1, e2);
@@ -187,10 +187,10 @@ FUNC bool refine(INOUT(Hit) hit, INOUT(Ray) near, INOUT(float) step, TraceOption
     traced.u = double(hit.u);
     traced.v = double(hit.v);
     PlaneHit met = traced;
-    GivenMesh mesh = load_given_mesh(options.instances, hit.instance_index);
+    InstancedMesh placed = AT(options.instances, hit.instance_index).placed;
     dvec3 origin = dvec3(double(ray.origin.x), double(ray.origin.y), double(ray.origin.z));
     dvec3 direction = dvec3(double(ray.direction.x), double(ray.direction.y), double(ray.direction.z));
-    if (!is_absent(mesh.indices)) met = meet_plane(origin, direction, mesh, hit.primitive_index);
+    if (!is_absent(placed.mesh.indices)) met = meet_plane(origin, direction, placed, hit.primitive_index);
     if (met.det == double(0.0f)) met = traced;
     if (options.level != LEVEL_CERTIFIED && !is_between_ends(met.t, met.rounding, ray))
     {

@@ -5,18 +5,10 @@
 #include "shaders/shared/transform_double.h"
 #include "shaders/shared/world_bound.h"
 
-// The triangles of an instance as they were given, positions in units of a power of two, which the map contains.
-struct GivenMesh
-{
-    Rows object_to_world;
-    Floats positions; // 3 a vertex
-    Uints indices;    // 3 a triangle, in the user's numbering; absent: boxes
-};
-
 // An instance of what was built.
 struct RefineInstance
 {
-    GivenMesh mesh;
+    InstancedMesh placed; // as given, in units of a power of two, which the map contains; absent: boxes
     RowsDouble world_to_object;
     float residual;   // the relative error of vectors that it maps, at most
     float extent;     // the largest coordinate of the geometry's box
@@ -31,8 +23,6 @@ struct RefineScene
     REF(RefineInstance) instances; // in the order of Hit::instance_index
 };
 BUFFER_OF(RefineScene, 8);
-
-FUNC GivenMesh load_given_mesh(REF(RefineInstance) instances, uint index) { return AT(instances, index).mesh; }
 
 struct RefineGatherArgs
 {
@@ -49,16 +39,14 @@ FUNC RefineInstance refine_instance(InstanceRecord record, Address absent)
     const float UP = 1.00000095367431640625f; // 1 + 2^-20: more than rounding to float32 takes
     Rows to_world = to_world_of(record);
     RefineInstance instance;
-    instance.mesh.object_to_world = to_world;
-    instance.mesh.positions = Floats(absent);
-    instance.mesh.indices = Uints(absent);
+    instance.placed.object_to_world = to_world;
+    instance.placed.mesh.positions = Floats(absent);
+    instance.placed.mesh.indices = Uints(absent);
     instance.extent = 0.0f;
     if (has_geometry(record))
     {
-        GeometrySource mesh = AT(REF(GeometrySource)(address_after(record.geometry, GEOMETRY_SOURCE_OFFSET)), 0);
+        instance.placed.mesh = AT(REF(GeometrySource)(address_after(record.geometry, GEOMETRY_SOURCE_OFFSET)), 0).mesh;
         GeometryBox box = AT(REF(GeometryBox)(record.geometry), 0);
-        instance.mesh.positions = mesh.positions;
-        instance.mesh.indices = mesh.indices;
         instance.extent = box.lo.x <= box.hi.x ? max(largest_entry(box.lo), largest_entry(box.hi)) : 0.0f;
     }
     instance.world_to_object = inverse_double(to_world);

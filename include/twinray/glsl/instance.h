@@ -21,12 +21,23 @@ struct GeometryBox {
 };
 BUFFER_OF(GeometryBox, 8);
 
+// A mesh in device memory: 3 floats a vertex, 3 indices a triangle.
+struct PackedMesh {
+    Floats positions;
+    Uints indices;
+};
+
+// A mesh as an instance places it.
+struct InstancedMesh {
+    Rows object_to_world;
+    PackedMesh mesh;
+};
+
 // The next part of every geometry's block, at GEOMETRY_SOURCE_OFFSET, for both accelerators. Meshes are built in units
 // of `scale`, a power of two near their size, so that neither tiny nor huge ones leave the range of float32; the map to
 // world space includes the unit.
 struct GeometrySource {
-    Floats positions;  // the mesh's, in units of scale; absent unless AccelOptions keep level refined or surfaces
-    Uints indices;
+    PackedMesh mesh;  // in units of scale; absent unless AccelOptions keep level refined or surfaces
     float scale;
     uint reserved;
 };

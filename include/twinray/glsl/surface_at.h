@@ -69,14 +69,14 @@ FUNC SurfaceGeometry surface_geometry(SurfaceTable table, uint instance_index) {
 FUNC SurfacePlace surface_place(SurfaceTable table, Ray ray, Hit hit) {
     uint number = AT(table.geometry_of_instance, hit.instance_index);
     InstanceRecord record = AT(table.instances, hit.instance_index);
-    GeometrySource mesh = AT(REF(GeometrySource)(address_after(record.geometry, GEOMETRY_SOURCE_OFFSET)), 0);
+    GeometrySource source = AT(REF(GeometrySource)(address_after(record.geometry, GEOMETRY_SOURCE_OFFSET)), 0);
     SurfacePlace place;
     place.placement = placement_of(in_built_units(record));
-    place.unit = mesh.scale;
-    place.indices = load_indices(mesh.indices, hit.primitive_index);
-    place.vertices.a = load_position(mesh.positions, place.indices.x);
-    place.vertices.b = load_position(mesh.positions, place.indices.y);
-    place.vertices.c = load_position(mesh.positions, place.indices.z);
+    place.unit = source.scale;
+    place.indices = load_indices(source.mesh.indices, hit.primitive_index);
+    place.vertices.a = load_position(source.mesh.positions, place.indices.x);
+    place.vertices.b = load_position(source.mesh.positions, place.indices.y);
+    place.vertices.c = load_position(source.mesh.positions, place.indices.z);
     place.crossing = crossing_of(ray, place.placement, place.vertices);
     place.primitive_index = hit.primitive_index;
     place.instance_flags = flags_of(record);

@@ -62,7 +62,7 @@ Sample sample(Draws& draws, double stretch, double place, double distance) {
 RefineInstance instance_of(const Transform& transform) {
     const Rows rows{transform.rows[0], transform.rows[1], transform.rows[2]};
     RefineInstance instance{};
-    instance.mesh.object_to_world = rows;
+    instance.placed.object_to_world = rows;
     instance.world_to_object = inverse_double(rows);
     instance.residual = static_cast<float>(residual_of(instance.world_to_object, rows) * (1 + 0x1p-20));
     instance.extent = 1;
