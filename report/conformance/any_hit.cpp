@@ -62,19 +62,19 @@ std::vector<Case> any_hit_cases() {
     constexpr Topic topic = Topic::any_hit;
     return {
         {"K57", topic, "all candidates refused", "VK-GL-CTS any hit", "every triangle on the ray is offered",
-         Demand::must, loses_candidates, offered},
+         loses_candidates, offered},
         {"K58", topic, "NO_DUPLICATE_ANY_HIT_INVOCATION", "VK-GL-CTS any hit invocations",
-         "every triangle on the ray is offered once", Demand::must, doubles_candidates, offered_once},
+         "every triangle on the ray is offered once", doubles_candidates, offered_once},
         {"K59", topic, "the same in instances", "VK-GL-CTS any hit invocations",
-         "every triangle on the ray is offered once", Demand::must, doubles_candidates, offered_of_instances},
+         "every triangle on the ray is offered once", doubles_candidates, offered_of_instances},
         {"K60", topic, "opaque geometries beside others", "VK-GL-CTS opacity", "only the others are offered",
-         Demand::must, forgets_geometry_flags, opaque_and_not},
+         forgets_geometry_flags, opaque_and_not},
         {"K61", topic, "random refusals", "VK-GL-CTS any hit, slang-rhi any hit",
-         "the nearest that was not refused is hit", Demand::must, forgets_refusals, next_after_refusal},
-        {"K62", topic, "all refused, some opaque", "VK-GL-CTS any hit", "only opaque triangles are hit", Demand::must,
+         "the nearest that was not refused is hit", forgets_refusals, next_after_refusal},
+        {"K62", topic, "all refused, some opaque", "VK-GL-CTS any hit", "only opaque triangles are hit",
          forgets_refusals, all_refused},
-        {"K63", topic, "one of 24 layers confirmed", "VK-GL-CTS any hit", "that triangle is hit", Demand::must,
-         forgets_refusals, through_layers},
+        {"K63", topic, "one of 24 layers confirmed", "VK-GL-CTS any hit", "that triangle is hit", forgets_refusals,
+         through_layers},
     };
 }
 

@@ -107,6 +107,12 @@ std::vector<Shot> layer_shots(Draws& draws, std::size_t count) {
     return shots;
 }
 
+std::vector<Shot> box_shots(Draws& draws, std::size_t count) {
+    std::vector<Shot> shots = layer_shots(draws, count);
+    for (Shot& shot : shots) shot.box_t = 1.5f, shot.box_step = 2;
+    return shots;
+}
+
 Transform random_instance_transform(Draws& draws) {
     for (;;) {
         Transform placement;

@@ -43,6 +43,8 @@ SceneInput scene_of_both(std::vector<GeometryInput> triangles, std::vector<Geome
 std::vector<Shot> random_shots(Draws& draws, std::size_t count, float extent = 1);
 // Along z through x, y in (-0.75, 0.75), from z = -1; of layered scenes.
 std::vector<Shot> layer_shots(Draws& draws, std::size_t count);
+// The same, which meet each box in its middle.
+std::vector<Shot> box_shots(Draws& draws, std::size_t count);
 Shot shot_of(const Ray& ray);
 // Rotations, scales, shears and mirrors, of which no inverse loses much.
 Transform random_instance_transform(Draws& draws);

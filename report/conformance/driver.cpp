@@ -157,6 +157,13 @@ void Driver::record_build(Commands& commands, std::span<const BuildInput> inputs
         commands.handle(), static_cast<std::uint32_t>(infos.size()), infos.data(), ranges.data());
 }
 
+void Driver::submit_build(Commands& commands, const BuildInput& input, const AccelerationStructure& target,
+                          const AccelerationStructure* updated_from) {
+    const AccelerationStructure* const structure = &target;
+    record_build(commands, std::span(&input, 1), std::span(&structure, 1), updated_from);
+    commands.submit();
+}
+
 Bottom Driver::build(const BottomInput& input) { return std::move(build_together(std::span(&input, 1)).front()); }
 
 std::vector<Bottom> Driver::build_together(std::span<const BottomInput> inputs) {
@@ -185,9 +192,7 @@ Top Driver::build(const TopInput& input, const std::vector<BottomRef>& bottoms) 
     Commands commands(context_, "conformance top level");
     const BuildInput uploaded = upload(commands, told(input, bottoms), bottoms);
     Top top{new_structure("conformance top level", uploaded), input, bottoms};
-    const AccelerationStructure* target = &top.structure;
-    record_build(commands, std::span(&uploaded, 1), std::span(&target, 1));
-    commands.submit();
+    submit_build(commands, uploaded, top.structure);
     return top;
 }
 
@@ -198,23 +203,11 @@ DriverScene Driver::build(const SceneInput& scene) {
     return built;
 }
 
-void Driver::rebuild(Bottom& bottom, const BottomInput& input) {
+void Driver::rebuild(Bottom& bottom, const BottomInput& input, const char* name, bool is_update) {
     if (misdeed_ == Misdeed::forgets_updates) return;
-    Commands commands(context_, "conformance rebuild");
+    Commands commands(context_, name);
     const BuildInput uploaded = upload(commands, spoiled(misdeed_, input));
-    const AccelerationStructure* target = &bottom.structure;
-    record_build(commands, std::span(&uploaded, 1), std::span(&target, 1));
-    commands.submit();
-    bottom.input = input;
-}
-
-void Driver::update(Bottom& bottom, const BottomInput& input) {
-    if (misdeed_ == Misdeed::forgets_updates) return;
-    Commands commands(context_, "conformance update");
-    const BuildInput uploaded = upload(commands, spoiled(misdeed_, input));
-    const AccelerationStructure* target = &bottom.structure;
-    record_build(commands, std::span(&uploaded, 1), std::span(&target, 1), target);
-    commands.submit();
+    submit_build(commands, uploaded, bottom.structure, is_update ? &bottom.structure : nullptr);
     bottom.input = input;
 }
 
@@ -222,9 +215,7 @@ void Driver::update(Top& top, const TopInput& input) {
     if (misdeed_ == Misdeed::forgets_updates) return;
     Commands commands(context_, "conformance update of a top level");
     const BuildInput uploaded = upload(commands, told(input, top.bottoms), top.bottoms);
-    const AccelerationStructure* target = &top.structure;
-    record_build(commands, std::span(&uploaded, 1), std::span(&target, 1), target);
-    commands.submit();
+    submit_build(commands, uploaded, top.structure, &top.structure);
     top.input = input;
 }
 
@@ -233,9 +224,7 @@ Bottom Driver::updated(const Bottom& source, const BottomInput& input) {
     Commands commands(context_, "conformance update into another");
     const BuildInput uploaded = upload(commands, spoiled(misdeed_, input));
     Bottom updated{new_structure("conformance updated", uploaded), input};
-    const AccelerationStructure* target = &updated.structure;
-    record_build(commands, std::span(&uploaded, 1), std::span(&target, 1), &source.structure);
-    commands.submit();
+    submit_build(commands, uploaded, updated.structure, &source.structure);
     return updated;
 }
 

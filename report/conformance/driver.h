@@ -90,9 +90,9 @@ class Driver {
     Top build(const TopInput& input, const std::vector<BottomRef>& bottoms);
     DriverScene build(const SceneInput& scene);
     // Into the memory of another build, which took as many primitives or more.
-    void rebuild(Bottom& bottom, const BottomInput& input);
+    void rebuild(Bottom& bottom, const BottomInput& input) { rebuild(bottom, input, "conformance rebuild", false); }
     // In place.
-    void update(Bottom& bottom, const BottomInput& input);
+    void update(Bottom& bottom, const BottomInput& input) { rebuild(bottom, input, "conformance update", true); }
     void update(Top& top, const TopInput& input);
     // Into another structure; the source stays as it was.
     Bottom updated(const Bottom& source, const BottomInput& input);
@@ -116,6 +116,10 @@ class Driver {
     void record_build(Commands& commands, std::span<const BuildInput> inputs,
                       std::span<const AccelerationStructure* const> targets,
                       const AccelerationStructure* updated_from = nullptr);
+    // Records the build of one structure and submits.
+    void submit_build(Commands& commands, const BuildInput& input, const AccelerationStructure& target,
+                      const AccelerationStructure* updated_from = nullptr);
+    void rebuild(Bottom& bottom, const BottomInput& input, const char* name, bool is_update);
     // The result of Misdeed::copies_in_part.
     Bottom shortened(BottomInput input);
     Top shortened(TopInput input, const std::vector<BottomRef>& bottoms);

@@ -134,21 +134,21 @@ std::vector<Case> edge_cases() {
     using enum Misdeed;
     return {
         {"K79", Topic::edges, "rays at edges and vertices from inside a closed mesh", "VK-GL-CTS watertightness",
-         "every ray hits a triangle", Demand::should, leaks, closed_mesh},
+         "every ray hits a triangle", leaks, closed_mesh, Demand::should},
         {"K80", Topic::edges, "the same in an instance that is turned and sheared", "VK-GL-CTS watertightness",
-         "every ray hits a triangle", Demand::should, leaks, closed_instance},
+         "every ray hits a triangle", leaks, closed_instance, Demand::should},
         {"K81", Topic::edges, "rays straight at edges and vertices of a flat grid of one winding",
-         "VK-GL-CTS single hit", "one triangle each, whichever", Demand::should, leaks, single_flat},
+         "VK-GL-CTS single hit", "one triangle each, whichever", leaks, single_flat, Demand::should},
         {"K82", Topic::edges, "rays aslant at edges and vertices of a rough field of one winding",
-         "VK-GL-CTS single hit", "one triangle each, whichever", Demand::should, leaks, single_rough},
+         "VK-GL-CTS single hit", "one triangle each, whichever", leaks, single_rough, Demand::should},
         {"K83", Topic::edges, "rays at edges and vertices, and between", "VK-GL-CTS, slang-rhi closest hits",
-         "hits are those of float64, of either owner at an edge", Demand::must, forgets_later_half, owners},
-        {"K84", Topic::determinism, "the same rays twice", "repeated commands", "the same bits", Demand::should, wavers,
-         same_trace},
-        {"K85", Topic::determinism, "the same scene built twice", "repeated commands", "the same bits", Demand::should,
-         wavers, same_build},
-        {"K86", Topic::determinism, "the same rays in reversed order", "order of invocations", "the same bits",
-         Demand::should, wavers, other_order},
+         "hits are those of float64, of either owner at an edge", forgets_later_half, owners},
+        {"K84", Topic::determinism, "the same rays twice", "repeated commands", "the same bits", wavers, same_trace,
+         Demand::should},
+        {"K85", Topic::determinism, "the same scene built twice", "repeated commands", "the same bits", wavers,
+         same_build, Demand::should},
+        {"K86", Topic::determinism, "the same rays in reversed order", "order of invocations", "the same bits", wavers,
+         other_order, Demand::should},
     };
 }
 

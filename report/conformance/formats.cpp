@@ -80,14 +80,12 @@ std::vector<Case> format_cases() {
     constexpr Misdeed control = Misdeed::forgets_later_half;
     const std::string same = "hits are those of float64";
     return {
-        {"K14", topic, "indices of 16 and 32 bits, and none", "VK-GL-CTS index formats", same, Demand::must, control,
-         index_formats},
-        {"K15", topic, "the six vertex formats that every driver has", "VK-GL-CTS vertex formats", same, Demand::must,
-         control, vertex_formats},
-        {"K16", topic, "vertices with bytes between them", "VK-GL-CTS vertex strides", same, Demand::must, control,
-         vertex_strides},
+        {"K14", topic, "indices of 16 and 32 bits, and none", "VK-GL-CTS index formats", same, control, index_formats},
+        {"K15", topic, "the six vertex formats that every driver has", "VK-GL-CTS vertex formats", same, control,
+         vertex_formats},
+        {"K16", topic, "vertices with bytes between them", "VK-GL-CTS vertex strides", same, control, vertex_strides},
         {"K17", topic, "boxes with bytes between them", "VK-GL-CTS box strides",
-         "the boxes that a ray meets are offered", Demand::must, control, box_strides},
+         "the boxes that a ray meets are offered", control, box_strides},
     };
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "report/conformance/case_run.h"
-#include "report/conformance/rules.h"
 #include "report/conformance/suite.h"
 
 namespace twinray::conformance {
@@ -124,29 +123,28 @@ std::vector<Case> instance_cases() {
     const std::string same = "hits are those of float64";
     return {
         {"K34", topic, "custom indices and record offsets of 24 bits", "VK-GL-CTS instance ids, slang-rhi instances",
-         "hits return the given values", Demand::must, forgets_instance_ids, ids},
+         "hits return the given values", forgets_instance_ids, ids},
         {"K35", topic, "masks of instances, 0 and 0xff too", "VK-GL-CTS masks, slang-rhi masks",
-         "instances that share no bit are not hit", Demand::must, forgets_instance_masks, masks},
+         "instances that share no bit are not hit", forgets_instance_masks, masks},
         {"K36", topic, "masks of rays of a single bit", "VK-GL-CTS masks", "instances without it are not hit",
-         Demand::must, forgets_ray_masks, single_bits},
+         forgets_ray_masks, single_bits},
         {"K37", topic, "masks of rays with bits above the eighth", "VK-GL-CTS masks", "the higher bits are ignored",
-         Demand::must, forgets_ray_masks, mask_above_8_bits},
+         forgets_ray_masks, mask_above_8_bits},
         {"K38", topic, "FACING_CULL_DISABLE against rays that cull", "VK-GL-CTS instance flags, culling",
-         "nothing is culled there", Demand::must, forgets_instance_flags, cull_disable},
+         "nothing is culled there", forgets_instance_flags, cull_disable},
         {"K39", topic, "FLIP_FACING against rays that cull", "VK-GL-CTS instance flags, culling",
-         "front and back are swapped", Demand::must, forgets_instance_flags, flip_facing},
+         "front and back are swapped", forgets_instance_flags, flip_facing},
         {"K40", topic, "both of these", "VK-GL-CTS instance flags, culling", "nothing is culled, and facing is swapped",
-         Demand::must, forgets_instance_flags, both_facing},
+         forgets_instance_flags, both_facing},
         {"K41", topic, "FORCE_OPAQUE", "VK-GL-CTS instance flags, opacity", "no candidate is offered there",
-         Demand::must, forgets_instance_flags, force_opaque},
+         forgets_instance_flags, force_opaque},
         {"K42", topic, "FORCE_NO_OPAQUE", "VK-GL-CTS instance flags, opacity", "every candidate is offered there",
-         Demand::must, forgets_instance_flags, force_no_opaque},
+         forgets_instance_flags, force_no_opaque},
         {"K43", topic, "rotation, scale and shear", "VK-GL-CTS transforms, slang-rhi transforms",
-         same + ", and so are the ray and transform in object space", Demand::must, forgets_transforms, transforms},
+         same + ", and so are the ray and transform in object space", forgets_transforms, transforms},
         {"K44", topic, "mirrors, against rays that cull", "VK-GL-CTS culling under transforms",
-         "facing is that of the object's space", Demand::must, forgets_transforms, mirrors},
-        {"K45", topic, "48 instances of one bottom level", "VK-GL-CTS many instances", same, Demand::must,
-         forgets_transforms, many},
+         "facing is that of the object's space", forgets_transforms, mirrors},
+        {"K45", topic, "48 instances of one bottom level", "VK-GL-CTS many instances", same, forgets_transforms, many},
     };
 }
 

@@ -3,7 +3,6 @@
 #include <array>
 
 #include "report/conformance/case_run.h"
-#include "report/conformance/rules.h"
 #include "report/conformance/suite.h"
 
 namespace twinray::conformance {
@@ -65,12 +64,8 @@ SceneInput mixed_layers() {
 }
 
 std::vector<Shot> mixed_shots(CaseRun& run, std::size_t count) {
-    std::vector<Shot> shots = layer_shots(run.draws(), count);
-    for (Shot& shot : shots) {
-        shot.refused = run.draws().below(32);
-        shot.box_t = 1.5f;
-        shot.box_step = 2;
-    }
+    std::vector<Shot> shots = box_shots(run.draws(), count);
+    for (Shot& shot : shots) shot.refused = run.draws().below(32);
     return shots;
 }
 
@@ -113,24 +108,22 @@ std::vector<Case> ray_flag_cases() {
     constexpr Topic topic = Topic::ray_flags;
     const std::string kind = "VK-GL-CTS ray flags";
     return {
-        {"K46", topic, "Opaque", kind, "nothing is offered", Demand::must, forgets_ray_flags, opaque},
-        {"K47", topic, "NoOpaque", kind, "every triangle is offered", Demand::must, forgets_ray_flags, no_opaque},
-        {"K48", topic, "CullOpaque", kind, "no opaque triangle is hit", Demand::must, forgets_ray_flags, culls_opaque},
-        {"K49", topic, "CullNoOpaque", kind, "only opaque triangles are hit", Demand::must, forgets_ray_flags,
-         culls_no_opaque},
-        {"K50", topic, "CullBackFacingTriangles", kind + ", culling", "backs are not hit", Demand::must,
-         forgets_ray_flags, culls_back},
-        {"K51", topic, "CullFrontFacingTriangles", kind + ", culling", "fronts are not hit", Demand::must,
-         forgets_ray_flags, culls_front},
-        {"K52", topic, "TerminateOnFirstHit", kind, "any hit, and no candidate after it", Demand::must,
-         forgets_ray_flags, terminates},
-        {"K53", topic, "SkipClosestHitShader", kind, "hits of a query do not change", Demand::must, leaks,
-         skips_closest_hit, false, "the flag skips the stage that reports hits"},
-        {"K54", topic, "SkipTriangles", kind, "no triangle is hit", Demand::must, forgets_ray_flags, skips_triangles,
+        {"K46", topic, "Opaque", kind, "nothing is offered", forgets_ray_flags, opaque},
+        {"K47", topic, "NoOpaque", kind, "every triangle is offered", forgets_ray_flags, no_opaque},
+        {"K48", topic, "CullOpaque", kind, "no opaque triangle is hit", forgets_ray_flags, culls_opaque},
+        {"K49", topic, "CullNoOpaque", kind, "only opaque triangles are hit", forgets_ray_flags, culls_no_opaque},
+        {"K50", topic, "CullBackFacingTriangles", kind + ", culling", "backs are not hit", forgets_ray_flags,
+         culls_back},
+        {"K51", topic, "CullFrontFacingTriangles", kind + ", culling", "fronts are not hit", forgets_ray_flags,
+         culls_front},
+        {"K52", topic, "TerminateOnFirstHit", kind, "any hit, and no candidate after it", forgets_ray_flags,
+         terminates},
+        {"K53", topic, "SkipClosestHitShader", kind, "hits of a query do not change", leaks, skips_closest_hit,
+         Demand::must, false, "the flag skips the stage that reports hits"},
+        {"K54", topic, "SkipTriangles", kind, "no triangle is hit", forgets_ray_flags, skips_triangles, Demand::must,
          true},
-        {"K55", topic, "SkipAABBs", kind, "no box is offered", Demand::must, forgets_ray_flags, skips_boxes, true},
-        {"K56", topic, "flags that may be combined", kind, "each works as it does alone", Demand::must,
-         forgets_ray_flags, together},
+        {"K55", topic, "SkipAABBs", kind, "no box is offered", forgets_ray_flags, skips_boxes, Demand::must, true},
+        {"K56", topic, "flags that may be combined", kind, "each works as it does alone", forgets_ray_flags, together},
     };
 }
 

@@ -42,7 +42,7 @@ class CaseRun;
 struct Case : frame::Case {
     // `kind`: public conformance suites that ask the like, or the relation's name.
     Case(const std::string& id, Topic topic, const std::string& what, const std::string& kind,
-         const std::string& demanded, Demand demand, Misdeed control, std::function<void(CaseRun&)> run,
+         const std::string& demanded, Misdeed control, std::function<void(CaseRun&)> run, Demand demand = Demand::must,
          bool culls_primitives = false, const std::string& not_by_pipeline = {})
         : frame::Case{id, what, kind, demanded},
           topic(topic),

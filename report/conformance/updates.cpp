@@ -26,13 +26,18 @@ void check_updated(CaseRun& run, const SceneInput& scene, const Bottom& bottom, 
     run.check_hits(scene, top, random_shots(run.draws(), rays));
 }
 
-void vertices_in_place(CaseRun& run) {
+void check_in_place(CaseRun& run, uint times) {
     SceneInput scene = updatable(random_triangles(run.draws(), moved_triangles));
     Bottom bottom = run.driver().build(scene.bottoms[0]);
-    move_triangles(run, scene);
-    run.driver().update(bottom, scene.bottoms[0]);
+    for (uint i = 0; i < times; ++i) {
+        move_triangles(run, scene);
+        run.driver().update(bottom, scene.bottoms[0]);
+    }
     check_updated(run, scene, bottom, run.rays());
 }
+
+void vertices_in_place(CaseRun& run) { check_in_place(run, 1); }
+void many_times(CaseRun& run) { check_in_place(run, 8); }
 
 void vertices_elsewhere(CaseRun& run) {
     const SceneInput before = updatable(random_triangles(run.draws(), moved_triangles));
@@ -44,28 +49,16 @@ void vertices_elsewhere(CaseRun& run) {
     check_updated(run, before, source, run.rays() / 2 + 1);
 }
 
-void many_times(CaseRun& run) {
-    SceneInput scene = updatable(random_triangles(run.draws(), moved_triangles));
-    Bottom bottom = run.driver().build(scene.bottoms[0]);
-    for (uint i = 0; i < 8; ++i) {
-        move_triangles(run, scene);
-        run.driver().update(bottom, scene.bottoms[0]);
-    }
-    check_updated(run, scene, bottom, run.rays());
-}
-
 void boxes_in_place(CaseRun& run) {
     SceneInput scene = updatable(layered_boxes(5));
     Bottom bottom = run.driver().build(scene.bottoms[0]);
     const vec3 shift(4, run.draws().coordinate(1), 0);
     for (Bounds& box : scene.bottoms[0].geometries[0].boxes) box = {box.lo + shift, box.hi + shift};
     run.driver().update(bottom, scene.bottoms[0]);
-    std::vector<Shot> shots = layer_shots(run.draws(), run.rays());
+    std::vector<Shot> shots = box_shots(run.draws(), run.rays());
     for (Shot& shot : shots) {
         shot.ray.origin = shot.ray.origin + shift;
         shot.refused = run.draws().below(32);
-        shot.box_t = 1.5f;
-        shot.box_step = 2;
     }
     const Top top = run.driver().build(scene.top, std::span(&bottom, 1));
     run.check_hits(scene, top, shots);
@@ -113,18 +106,16 @@ std::vector<Case> update_cases() {
     constexpr Misdeed control = Misdeed::forgets_updates;
     const std::string same = "hits are those of float64 after the update";
     return {
-        {"K18", topic, "all vertices moved, in place", "VK-GL-CTS updates, slang-rhi refit", same, Demand::must,
-         control, vertices_in_place},
+        {"K18", topic, "all vertices moved, in place", "VK-GL-CTS updates, slang-rhi refit", same, control,
+         vertices_in_place},
         {"K19", topic, "all vertices moved, into another structure", "VK-GL-CTS updates",
-         same + ", and the source's are as before", Demand::must, control, vertices_elsewhere},
-        {"K20", topic, "eight updates in a row", "VK-GL-CTS updates", same, Demand::must, control, many_times},
-        {"K21", topic, "boxes moved, in place", "VK-GL-CTS updates", same, Demand::must, control, boxes_in_place},
-        {"K22", topic, "another transform of a geometry", "VK-GL-CTS updates", same, Demand::must, control,
-         geometry_transforms},
+         same + ", and the source's are as before", control, vertices_elsewhere},
+        {"K20", topic, "eight updates in a row", "VK-GL-CTS updates", same, control, many_times},
+        {"K21", topic, "boxes moved, in place", "VK-GL-CTS updates", same, control, boxes_in_place},
+        {"K22", topic, "another transform of a geometry", "VK-GL-CTS updates", same, control, geometry_transforms},
         {"K23", topic, "transforms, masks, indices and flags of instances, in place", "VK-GL-CTS updates", same,
-         Demand::must, control, instances_in_place},
-        {"K24", topic, "another build into the same memory", "VK-GL-CTS builds", same, Demand::must, control,
-         over_another},
+         control, instances_in_place},
+        {"K24", topic, "another build into the same memory", "VK-GL-CTS builds", same, control, over_another},
     };
 }
 

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <optional>
 
-#include "report/conformance/rules.h"
-
 namespace twinray::conformance {
 namespace {
 

@@ -10,7 +10,6 @@
 #include "engine/core/error.h"
 #include "report/conformance/draws.h"
 #include "report/conformance/driver_input.h"
-#include "report/conformance/rules.h"
 #include "validation/reference/reference_scene.h"
 
 namespace twinray::conformance {

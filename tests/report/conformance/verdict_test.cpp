@@ -9,7 +9,6 @@
 
 #include "report/conformance/draws.h"
 #include "report/conformance/relation.h"
-#include "report/conformance/rules.h"
 
 namespace twinray::conformance {
 namespace {
