@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "report/suite/scenes.h"
-#include "report/suite/shapes.h"
+#include "report/suite/sections.h"
 #include <twinray/geometry.h>
 
 namespace twinray::suite {

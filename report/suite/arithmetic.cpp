@@ -11,10 +11,8 @@
 #include "report/suite/cpu_reference.h"
 #include "report/suite/demands.h"
 #include "validation/cpu_reference/flush_denormals.h"
-#include "report/suite/pictures.h"
 #include "report/suite/scenes.h"
-#include "report/suite/shapes.h"
-#include "report/suite/spawning.h"
+#include "report/suite/sections.h"
 #include "validation/reference/aimed_rays.h"
 #include "validation/reference/float_probe.h"
 

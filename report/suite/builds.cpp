@@ -6,11 +6,12 @@
 #include <map>
 #include <random>
 
-#include "report/suite/builds.h"
+#include "report/suite/sections.h"
 #include "report/suite/scenes.h"
 #include "engine/accel/geometry.h"
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
+#include <twinray/tlas.h>
 #include "validation/reference/aimed_rays.h"
 #include "swtlas/check.h"
 #include "validation/cpu_reference/reference.h"

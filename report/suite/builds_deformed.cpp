@@ -7,7 +7,7 @@
 
 #include "engine/core/error.h"
 #include "engine/scene/rig.h"
-#include "report/suite/builds.h"
+#include "report/suite/sections.h"
 #include "report/suite/scenes.h"
 
 namespace twinray::suite {

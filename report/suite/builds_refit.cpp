@@ -4,7 +4,7 @@
 #include <cstring>
 #include <random>
 
-#include "report/suite/builds.h"
+#include "report/suite/sections.h"
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
 #include "validation/reference/aimed_rays.h"

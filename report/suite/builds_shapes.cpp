@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "engine/core/context.h"
-#include "report/suite/builds.h"
+#include "report/suite/sections.h"
 #include "report/suite/scenes.h"
 #include <twinray/geometry.h>
 #include "validation/reference/aimed_rays.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Edges, vertices, watertightness: the catalogue, and rays from inside closed meshes.
 #include "report/suite/edge_meshes.h"
-#include "report/suite/edges.h"
+#include "report/suite/sections.h"
 #include <twinray/geometry.h>
 #include "validation/reference/aimed_rays.h"
 #include "validation/leaks/inside_rays.h"

@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "report/suite/edge_meshes.h"
-#include "report/suite/edges.h"
+#include "report/suite/sections.h"
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
 #include "validation/reference/draws.h"

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "report/suite/edge_meshes.h"
-#include "report/suite/edges.h"
+#include "report/suite/sections.h"
 #include <twinray/geometry.h>
 #include "validation/reference/aimed_rays.h"
 #include "validation/reference/draws.h"

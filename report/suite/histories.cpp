@@ -8,7 +8,7 @@
 #include <unordered_map>
 
 #include "validation/records/temporary_folder.h"
-#include "report/suite/builds.h"
+#include "report/suite/sections.h"
 #include "report/suite/scenes.h"
 
 namespace twinray::suite {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "report/suite/inputs.h"
+#include "report/suite/sections.h"
 #include "report/suite/scenes.h"
 #include <twinray/geometry.h>
 #include "validation/reference/aimed_rays.h"

@@ -9,7 +9,7 @@
 #include <glm/gtc/packing.hpp>
 
 #include "engine/core/uploaded.h"
-#include "report/suite/inputs.h"
+#include "report/suite/sections.h"
 #include "report/suite/scenes.h"
 
 namespace twinray::suite {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "report/suite/inputs.h"
+#include "report/suite/sections.h"
 #include "engine/core/vulkan.h"
 #include "report/suite/demands.h"
 #include "report/suite/scenes.h"

@@ -10,11 +10,10 @@
 
 #include "engine/core/error.h"
 #include "report/suite/demands.h"
-#include "report/suite/inputs.h"
+#include "report/suite/sections.h"
 #include "report/suite/scenes.h"
 #include <twinray/geometry.h>
 #include "validation/reference/aimed_rays.h"
-#include "report/suite/shapes.h"
 
 namespace twinray::suite {
 namespace {

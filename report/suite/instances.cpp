@@ -10,11 +10,10 @@
 #include "report/suite/case_run.h"
 #include "report/suite/demands.h"
 #include "report/suite/scenes.h"
-#include "report/suite/spawning.h"
+#include "report/suite/sections.h"
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
 #include "validation/reference/aimed_rays.h"
-#include "report/suite/shapes.h"
 
 namespace twinray::suite {
 namespace {

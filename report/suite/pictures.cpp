@@ -179,14 +179,4 @@ void set_efficiency(Record& record, std::span<const double> variances, std::span
     record.results.emplace("efficiency_high", interval.high);
 }
 
-std::vector<SuiteCase> picture_cases() {
-    std::vector<SuiteCase> all;
-    for (const auto& part :
-         {picture_energy_cases, picture_scattering_cases, picture_error_cases, picture_pixel_cases}) {
-        const std::vector<SuiteCase> cases = part();
-        all.insert(all.end(), cases.begin(), cases.end());
-    }
-    return all;
-}
-
 }  // namespace twinray::suite

@@ -91,14 +91,4 @@ void measure_flat(CaseRun& run, const Configuration& configuration, const FlatQu
 // are one a seed. Nothing where no picture varies.
 void set_efficiency(Record& record, std::span<const double> variances, std::span<const double> ms);
 
-// Cases in files of their own: F04 and P16.
-void shadow_terminator(CaseRun& run);
-void by_mitsuba(CaseRun& run);
-
-// The first cases of the section; suite.h has the others.
-std::vector<SuiteCase> picture_energy_cases();
-std::vector<SuiteCase> picture_scattering_cases();
-std::vector<SuiteCase> picture_pixel_cases();
-std::vector<SuiteCase> picture_error_cases();
-
 }  // namespace twinray::suite

@@ -8,6 +8,7 @@
 #include "report/suite/flip.h"
 #include "report/suite/pictures.h"
 #include "report/suite/queries.h"
+#include "report/suite/sections.h"
 #include <twinray/geometry.h>
 #include "renderer/camera.h"
 #include "renderer/cross_check.h"

@@ -13,6 +13,7 @@
 #include "report/suite/estimators.h"
 #include "report/suite/pictures.h"
 #include "report/suite/queries.h"
+#include "report/suite/sections.h"
 #include "renderer/camera.h"
 #include "renderer/reference.h"
 #include "engine/core/error.h"

@@ -9,6 +9,7 @@
 #include "report/suite/estimators.h"
 #include "report/suite/pictures.h"
 #include "report/suite/scenes.h"
+#include "report/suite/sections.h"
 
 namespace twinray::suite {
 namespace {

@@ -13,7 +13,6 @@
 #include "engine/core/error.h"
 #include "engine/core/uploaded.h"
 #include "feature_costs_program.trace_program.h"
-#include "report/suite/shapes.h"
 #include "validation/reference/aimed_rays.h"
 
 namespace twinray::suite {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Scale and position: sizes of meshes. Positions are in position.cpp, rays in scale_rays.cpp.
-#include "report/suite/scale.h"
+#include "report/suite/sections.h"
 
 #include <cmath>
 #include <cstring>
@@ -13,7 +13,6 @@
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
 #include "validation/reference/aimed_rays.h"
-#include "report/suite/shapes.h"
 
 namespace twinray::suite {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "report/suite/demands.h"
-#include "report/suite/scale.h"
+#include "report/suite/sections.h"
 #include "report/suite/scenes.h"
 #include "engine/core/error.h"
 #include <twinray/geometry.h>

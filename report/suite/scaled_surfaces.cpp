@@ -7,6 +7,7 @@
 
 #include "engine/core/error.h"
 #include "report/suite/scenes.h"
+#include "report/suite/sections.h"
 #include "report/suite/spawning.h"
 
 namespace twinray::suite {

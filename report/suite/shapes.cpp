@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Triangle shape: thin, degenerate and huge. The order of hits is in shapes_order.cpp, rays in planes and along edges
 // are in shapes_planes.cpp.
-#include "report/suite/shapes.h"
+#include "report/suite/sections.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,6 @@
 
 #include <twinray/scene.h>
 
-#include "report/suite/builds.h"
 #include "report/suite/demands.h"
 #include "report/suite/scenes.h"
 #include "engine/core/error.h"

@@ -6,7 +6,7 @@
 
 #include "report/suite/demands.h"
 #include "report/suite/scenes.h"
-#include "report/suite/shapes.h"
+#include "report/suite/sections.h"
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
 #include "validation/reference/aimed_rays.h"

@@ -8,6 +8,7 @@
 #include <twinray/geometry.h>
 #include "engine/core/uploaded.h"
 #include "report/suite/scenes.h"
+#include "report/suite/sections.h"
 #include "suite_spawn.spv.h"
 
 namespace twinray::suite {

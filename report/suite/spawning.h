@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Cases about points of surfaces and rays that leave them: rows F01 to F05, I10 and I15.
+// Points of surfaces and rays that leave them, for cases F01 to F05, I10 and I15.
 #pragma once
 
 #include "engine/core/kernel.h"
@@ -29,14 +29,6 @@ class Spawner {
     Context& context_;
     Kernel<SpawnArgs> kernel_;
 };
-
-void leave_a_sphere(CaseRun& run);
-void leave_triangles_of_all_kinds(CaseRun& run);
-void leave_cancelled_offsets(CaseRun& run);
-void leave_between_plates(CaseRun& run);
-void leave_a_concave_corner(CaseRun& run);
-// scaled_surfaces.cpp
-void surfaces_of_scaled_instances(CaseRun& run);
 
 // The outcome of a ray that left a surface.
 enum class SpawnOutcome : std::uint8_t {

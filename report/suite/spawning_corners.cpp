@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "report/suite/scenes.h"
+#include "report/suite/sections.h"
 #include "report/suite/spawning.h"
 #include <twinray/geometry.h>
 

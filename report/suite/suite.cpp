@@ -111,9 +111,10 @@ class SuiteRun {
 
 std::vector<SuiteCase> catalogue() {
     std::vector<SuiteCase> all;
-    for (const auto& section : {edge_cases, scale_cases, shape_cases, input_cases, instance_cases, build_cases,
-                                arithmetic_cases, price_cases, view_factor_cases, hidden_factor_cases, radiosity_cases,
-                                light_cases, collision_cases, distance_cases, picture_cases}) {
+    for (const auto& section :
+         {edge_cases, scale_cases, shape_cases, input_cases, instance_cases, build_cases, arithmetic_cases, price_cases,
+          view_factor_cases, hidden_factor_cases, radiosity_cases, light_cases, collision_cases, distance_cases,
+          picture_energy_cases, picture_scattering_cases, picture_error_cases, picture_pixel_cases}) {
         const std::vector<SuiteCase> cases = section();
         all.insert(all.end(), cases.begin(), cases.end());
     }

@@ -41,7 +41,7 @@ struct SuiteCase : Case {
     std::function<void(CaseRun&)> run;
 };
 
-// The catalogue, a function and a file for each section.
+// The catalogue, a function and a file for each section or part of one.
 std::vector<SuiteCase> edge_cases();         // W: edges, vertices, watertightness
 std::vector<SuiteCase> scale_cases();        // S: scale and position
 std::vector<SuiteCase> shape_cases();        // T: triangle shape
@@ -52,12 +52,15 @@ std::vector<SuiteCase> arithmetic_cases();   // F: self-intersection, arithmetic
 std::vector<SuiteCase> price_cases();        // L: what levels cost
 std::vector<SuiteCase> view_factor_cases();  // V: view factors
 std::vector<SuiteCase> hidden_factor_cases();
-std::vector<SuiteCase> radiosity_cases();  // R: radiosity
-std::vector<SuiteCase> light_cases();      // G: light and centroids
-std::vector<SuiteCase> collision_cases();  // C: collisions
-std::vector<SuiteCase> distance_cases();   // D: distances
-std::vector<SuiteCase> picture_cases();    // P: pictures
-std::vector<SuiteCase> catalogue();        // all of them
+std::vector<SuiteCase> radiosity_cases();       // R: radiosity
+std::vector<SuiteCase> light_cases();           // G: light and centroids
+std::vector<SuiteCase> collision_cases();       // C: collisions
+std::vector<SuiteCase> distance_cases();        // D: distances
+std::vector<SuiteCase> picture_energy_cases();  // P: pictures
+std::vector<SuiteCase> picture_scattering_cases();
+std::vector<SuiteCase> picture_error_cases();
+std::vector<SuiteCase> picture_pixel_cases();
+std::vector<SuiteCase> catalogue();  // all of them
 // The same as L for scenes of the user's, from L11 on.
 std::vector<SuiteCase> scene_cases(std::span<const std::filesystem::path> files);
 // The section of a case id, by its letter: "edges, vertices, watertightness". K are those of validation/conformance.

@@ -11,7 +11,7 @@
 
 #include "validation/reference/aimed_rays.h"
 #include "validation/reference/reference_scene.h"
-#include "report/suite/shapes.h"
+#include "report/suite/case_run.h"
 
 namespace twinray::bench {
 namespace {

@@ -11,7 +11,7 @@
 #include "validation/reference/classify.h"
 #include "tests/validation/reference/meshes.h"
 #include "validation/exact/exact_reference.h"
-#include "report/suite/shapes.h"
+#include "report/suite/case_run.h"
 
 namespace twinray::exact {
 namespace {
