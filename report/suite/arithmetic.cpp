@@ -158,10 +158,7 @@ void denormals(CaseRun& run) {
             const Difference changed =
                 difference(rays, flushed, trace_cpu_reference(*on_cpu, rays, configuration.level));
             CheckResult checked = check(world.reference, rays, flushed, configuration.backend);
-            const CheckResult of_device = check(world.reference, rays, traced.front().hits, configuration.backend);
-            checked.classes += of_device.classes;
-            checked.faults += of_device.faults;
-            if (checked.example.empty()) checked.example = of_device.example;
+            checked += check(world.reference, rays, traced.front().hits, configuration.backend);
             run.add_checked(configuration, checked,
                             {.params = {{"scene", name}}, .results = {{"changed_by_flushing", changed.decisions}}});
         }

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstring>
 #include <map>
-#include <random>
 
 #include "report/suite/sections.h"
 #include "report/suite/scenes.h"
@@ -115,11 +114,11 @@ void morton_cluster(CaseRun& run) {
 void huge_extents(CaseRun& run) {
     for (const float extent : {1e18f, 3e38f}) {
         Mesh mesh;
-        std::mt19937 random(4);
-        const auto coordinate = [&] { return extent * (static_cast<float>(random() >> 8) * 0x1p-23f - 1.0f); };
+        Random random(4);
+        const auto coordinate = [&] { return extent * random.between(-1, 1); };
         for (int i = 0; i < 64; ++i) {
             vec3 vertices[3];
-            for (vec3& vertex : vertices) vertex.x = coordinate(), vertex.y = coordinate(), vertex.z = coordinate();
+            for (vec3& vertex : vertices) vertex = extent * random.in_box(1);
             add_triangle(mesh, vertices[0], vertices[1], vertices[2]);
         }
         std::vector<Ray> rays;
@@ -219,7 +218,7 @@ void quantised_nodes(CaseRun& run) {
 
 // Each of these sizes has another shape of tree.
 void small_sizes(CaseRun& run) {
-    std::map<std::string, CheckResult> sums;
+    std::map<std::pair<Backend, Level>, CheckResult> sums;
     std::vector<Configuration> configurations = run.configurations();
     const uint step = static_cast<uint>(run.amount(7, 1));
     for (uint n = 1; n <= 300; n += n < 16 ? 1 : step) {
@@ -227,17 +226,12 @@ void small_sizes(CaseRun& run) {
         const World world = world_of(soup);
         const std::vector<Ray> rays = random_rays(bounds_of(soup), 64, run.seed() + n);
         for (const Traced& traced : trace(run.devices(), configurations, world, {.rays = rays, .reps = 0})) {
-            const CheckResult checked = check(world.reference, rays, traced.hits, traced.configuration.backend);
-            CheckResult& sum = sums[std::string(name_of(traced.configuration.backend)) +
-                                    std::string(name_of(traced.configuration.level))];
-            sum.classes += checked.classes;
-            sum.faults += checked.faults;
-            if (sum.example.empty()) sum.example = checked.example;
+            const auto& [backend, level] = traced.configuration;
+            sums[{backend, level}] += check(world.reference, rays, traced.hits, backend);
         }
     }
     for (const Configuration& configuration : configurations)
-        run.add_checked(configuration,
-                        sums[std::string(name_of(configuration.backend)) + std::string(name_of(configuration.level))]);
+        run.add_checked(configuration, sums[{configuration.backend, configuration.level}]);
 }
 
 // Hits do not depend on the tree.

@@ -2,8 +2,8 @@
 // Refits: an accelerator that has moved many times answers like a new one.
 #include <cmath>
 #include <cstring>
-#include <random>
 
+#include "report/suite/scenes.h"
 #include "report/suite/sections.h"
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
@@ -11,19 +11,6 @@
 
 namespace twinray::suite {
 namespace {
-
-class RandomWalk {
-  public:
-    explicit RandomWalk(std::uint64_t seed) : random_(static_cast<std::uint32_t>(seed)) {}
-    vec3 step(float size) {
-        const float x = uniform(), y = uniform();
-        return size * vec3(x, y, uniform());
-    }
-
-  private:
-    float uniform() { return static_cast<float>(random_() >> 8) * 0x1p-23f - 1.0f; }
-    std::mt19937 random_;
-};
 
 // Ties may be decided differently by a refit and a rebuild of a driver's tree, but t may not differ.
 bool is_same(const Hit& a, const Hit& b, bool exactly) {
@@ -59,14 +46,14 @@ std::optional<double> ratio(std::optional<double> refitted, std::optional<double
 
 Refitted refit_vertices(CaseRun& run, const Configuration& configuration, Mesh mesh, std::size_t steps,
                         std::span<const Ray> rays) {
-    RandomWalk walk(run.seed());
+    Random random(run.seed());
     AbstractAccel& accel = run.devices().empty_accel(configuration);
     accel.set_rebuild_ratio(INFINITY);
     const AccelHandle handle = accel.push(mesh);
     accel.sync();
     Refitted result;
     for (std::size_t i = 0; i < steps; ++i) {
-        for (vec3& position : mesh.positions) position += walk.step(0.01f);
+        for (vec3& position : mesh.positions) position += 0.01f * random.in_box(1);
         accel.update_vertices(handle, mesh.positions);
         accel.sync();
         result.refit_ms.push_back(total_ms(accel.build_timings()));
@@ -86,9 +73,9 @@ Refitted refit_vertices(CaseRun& run, const Configuration& configuration, Mesh m
 Refitted refit_instances(CaseRun& run, const Configuration& configuration, std::size_t steps,
                          std::span<const Ray> rays) {
     const Mesh mesh = make_icosphere(1, 0.05f);
-    RandomWalk walk(run.seed());
+    Random random(run.seed());
     std::vector<vec3> centers(200);
-    for (vec3& center : centers) center = walk.step(1);
+    for (vec3& center : centers) center = random.in_box(1);
     const auto transforms = [&] {
         std::vector<Transform> all;
         for (const vec3& center : centers) all.push_back(Transform::translation(center));
@@ -100,7 +87,7 @@ Refitted refit_instances(CaseRun& run, const Configuration& configuration, std::
     accel.sync();
     Refitted result;
     for (std::size_t i = 0; i < steps; ++i) {
-        for (vec3& center : centers) center += walk.step(0.05f);
+        for (vec3& center : centers) center += 0.05f * random.in_box(1);
         accel.update_transforms(handle, transforms());
         accel.sync();
         result.refit_ms.push_back(total_ms(accel.build_timings()));

@@ -30,26 +30,14 @@ void decide(Record& record, const Configuration& configuration, const Measuremen
         return;
     }
     if (is_ours(configuration.backend) && configuration.level == Level::fast) {
-        if (!measurement.fast_is_control) {
+        if (measurement.fast_is_control)
+            set_control(record, "fast");
+        else
             record.criterion = "none: fast promises nothing at edges";
-            return;
-        }
-        set_control(record, "fast");
         return;
     }
     frame::decide(record, is_ours(configuration.backend) ? "twinray" : "driver");
 }
-
-}  // namespace
-
-std::size_t CaseRun::amount(std::size_t least, std::size_t full) {
-    depends_on_effort_ = true;
-    if (least == 0) return settings_.effort < 1 ? least : full;
-    const double ratio = static_cast<double>(full) / static_cast<double>(least);
-    return static_cast<std::size_t>(std::llround(static_cast<double>(least) * std::pow(ratio, settings_.effort)));
-}
-
-namespace {
 
 // How the trees differ from the default ones.
 std::string variant_of(const AccelOptions& trees) {
@@ -62,6 +50,13 @@ std::string variant_of(const AccelOptions& trees) {
 }
 
 }  // namespace
+
+std::size_t CaseRun::amount(std::size_t least, std::size_t full) {
+    depends_on_effort_ = true;
+    if (least == 0) return settings_.effort < 1 ? least : full;
+    const double ratio = static_cast<double>(full) / static_cast<double>(least);
+    return static_cast<std::size_t>(std::llround(static_cast<double>(least) * std::pow(ratio, settings_.effort)));
+}
 
 Record CaseRun::record(const Configuration& configuration) const {
     Record record = blank();
@@ -91,11 +86,10 @@ std::vector<Configuration> CaseRun::configurations() {
             const Configuration configuration{backend, level};
             if (!is_ours(backend) && level == Level::fast) continue;
             const std::string reason = devices_.why_not(configuration);
-            if (reason.empty()) {
+            if (reason.empty())
                 able.push_back(configuration);
-            } else if (!has_told_) {
+            else if (!has_told_)
                 add_not_run(reason, &configuration);
-            }
         }
     has_told_ = true;
     return able;
@@ -110,10 +104,8 @@ std::vector<Configuration> CaseRun::one_configuration_each() {
 }
 
 std::vector<Configuration> CaseRun::control_configuration() {
-    const Configuration software{Backend::software, Level::watertight};
-    const auto& wanted = settings_.backends;
-    if (std::find(wanted.begin(), wanted.end(), Backend::software) == wanted.end()) return {};
-    return {software};
+    if (std::ranges::count(settings_.backends, Backend::software) == 0) return {};
+    return {Configuration{Backend::software, Level::watertight}};
 }
 
 std::string CaseRun::write_replay(const World& world, std::span<const Ray> rays, const Traced& traced,
@@ -136,6 +128,16 @@ std::string CaseRun::write_replay(const World& world, std::span<const Ray> rays,
     return "replays/" + file;
 }
 
+Record CaseRun::checked_record(const Configuration& configuration, const CheckResult& checked,
+                               const Measurement& measurement) const {
+    Record result = record(configuration);
+    result.params = measurement.params;
+    result.results = measurement.results;
+    result.reference = "f64";
+    set_check_result(result, checked);
+    return result;
+}
+
 Measured CaseRun::measure(const World& world, std::span<const Ray> rays, const Measurement& measurement) {
     if (!measurement.control) check_claim(Subject::hits);
     const std::vector<Configuration> able = measurement.control ? control_configuration() : configurations();
@@ -148,12 +150,8 @@ Measured CaseRun::measure(const World& world, std::span<const Ray> rays, const M
               {.rays = rays, .reps = reps, .control = measurement.control ? &*measurement.control : nullptr});
     std::vector<ReferenceHit> references = references_of(world.reference, rays);
     for (const Traced& traced : traces) {
-        Record result = record(traced.configuration);
-        result.params = measurement.params;
-        result.results = measurement.results;
-        result.reference = "f64";
         const CheckResult checked = check(world.reference, rays, traced.hits, traced.configuration.backend);
-        set_check_result(result, checked);
+        Record result = checked_record(traced.configuration, checked, measurement);
         result.error = t_error(references, traced.hits);
         if (reps > 0) result.time = time_figures(traced);
         decide(result, traced.configuration, measurement);
@@ -196,11 +194,7 @@ void CaseRun::count_crossings(const World& world, std::span<const Ray> rays, con
 void CaseRun::add_checked(const Configuration& configuration, const CheckResult& checked,
                           const Measurement& measurement) {
     check_claim(Subject::hits);
-    Record result = record(configuration);
-    result.params = measurement.params;
-    result.results = measurement.results;
-    result.reference = "f64";
-    set_check_result(result, checked);
+    Record result = checked_record(configuration, checked, measurement);
     decide(result, configuration, measurement);
     add(result);
 }
@@ -214,17 +208,13 @@ void CaseRun::expect(const Configuration& configuration, const Outcome& outcome)
     result.time = outcome.time;
     if (!outcome.control.empty()) {
         set_control(result, outcome.control);
-        add(result);
-        return;
-    }
-    if (!outcome.only_measured.empty()) {
+    } else if (!outcome.only_measured.empty()) {
         result.criterion = "none: " + outcome.only_measured;
-        add(result);
-        return;
+    } else {
+        const std::string of_backend = is_ours(configuration.backend) ? "twinray" : "driver";
+        frame::decide(result, outcome.fault_of.empty() ? of_backend : outcome.fault_of);
+        if (!*result.pass) result.reason = outcome.what;
     }
-    const std::string of_backend = is_ours(configuration.backend) ? "twinray" : "driver";
-    frame::decide(result, outcome.fault_of.empty() ? of_backend : outcome.fault_of);
-    if (!*result.pass) result.reason = outcome.what;
     add(result);
 }
 

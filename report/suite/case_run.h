@@ -90,6 +90,9 @@ class CaseRun {
 
   private:
     Record blank() const { return record_of(row_, settings_.seed); }
+    // A record of answers that the reference has checked, not decided yet.
+    Record checked_record(const Configuration& configuration, const CheckResult& checked,
+                          const Measurement& measurement) const;
     // Writes the ray of checked.first_fault, if there is one, and returns the file as Record::replay wants it.
     std::string write_replay(const World& world, std::span<const Ray> rays, const Traced& traced,
                              const CheckResult& checked) const;

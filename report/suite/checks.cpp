@@ -73,6 +73,13 @@ std::optional<ErrorFigures> t_error(std::span<const ReferenceHit> references, st
     return error_figures("t_ulp", std::move(errors), 0.5);
 }
 
+CheckResult& CheckResult::operator+=(const CheckResult& other) {
+    classes += other.classes;
+    faults += other.faults;
+    if (example.empty()) example = other.example;
+    return *this;
+}
+
 CheckResult check(const ReferenceScene& reference, std::span<const Ray> rays, std::span<const Hit> hits,
                   Backend backend) {
     const std::vector<RayResult> ray_results =

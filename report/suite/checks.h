@@ -27,6 +27,8 @@ struct CheckResult {
     std::uint64_t faults = 0;                     // of twinray or of the driver; includes hits of invalid rays
     std::string example;                          // see Record::example
     std::optional<std::size_t> first_fault = {};  // its ray
+
+    CheckResult& operator+=(const CheckResult& other);  // which has rays of its own
 };
 CheckResult check(const ReferenceScene& reference, std::span<const Ray> rays, std::span<const Hit> hits,
                   Backend backend);

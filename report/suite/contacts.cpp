@@ -20,9 +20,8 @@ void measure_host(CaseRun& run, const std::string& lattice, std::span<const Tria
         wrong = 0;
         for (std::size_t i = 0; i < pairs.size(); ++i) wrong += class_of(pairs[i].a, pairs[i].b) != known[i];
     });
-    Record record = query_record(run, "exact", variant);
+    Record record = cpu_record(run, "exact", variant);
     record.params = {{"lattice", lattice}, {"pairs", pairs.size()}};
-    record.backend = "cpu";
     set_faults(record, wrong, pairs.size());
     record.time = time_figures("ns_per_pair", times);
     record.criterion = "none: for comparison";

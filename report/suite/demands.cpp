@@ -23,15 +23,6 @@ std::string why_bits_may_differ(CaseRun& run, const Configuration& configuration
     return error <= 0.5 ? "" : "this device's division is not correctly rounded";
 }
 
-std::string refusal(const std::function<void()>& use) {
-    try {
-        use();
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return "";
-}
-
 CaseRun::Outcome ask_each(const Traced& traced, std::span<const Ray> rays,
                           const std::function<std::string(std::size_t, const Hit&)>& complaint) {
     CaseRun::Outcome outcome{.n = rays.size()};

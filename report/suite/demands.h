@@ -11,9 +11,6 @@ namespace twinray::suite {
 CaseRun::Outcome ask_each(const Traced& traced, std::span<const Ray> rays,
                           const std::function<std::string(std::size_t i, const Hit& hit)>& complaint);
 
-// The Error that a use gives; "" where there is none.
-std::string refusal(const std::function<void()>& use);
-
 // Why SwTlas's hits may differ in their last bits from those of other devices; "" where they may not.
 std::string why_bits_may_differ(CaseRun& run, const Configuration& configuration);
 

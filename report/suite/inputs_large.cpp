@@ -5,7 +5,7 @@
 
 #include "report/suite/sections.h"
 #include "engine/core/vulkan.h"
-#include "report/suite/demands.h"
+#include "report/faults/fault_injection.h"
 #include "report/suite/scenes.h"
 #include "engine/core/context.h"
 #include <twinray/geometry.h>
@@ -38,7 +38,8 @@ void refuse_what_no_device_has(CaseRun& run, const Configuration& configuration)
     AbstractAccel& accel = run.devices().empty_accel(configuration);
     accel.push(make_box(vec3(0), vec3(1)));
     const Seen before = look_at(accel);
-    const std::string error = refusal([&] { const Buffer buffer(accel.context(), {.name = "huge", .bytes = bytes}); });
+    const std::string error =
+        faults::what_is_thrown_by([&] { const Buffer buffer(accel.context(), {.name = "huge", .bytes = bytes}); });
     CaseRun::Outcome outcome{.params = {{"asked", "a buffer of 2^44 bytes"}}, .fault_of = "twinray"};
     if (error.find(std::to_string(bytes)) == std::string::npos)
         outcome.what = error.empty() ? "not refused" : "refused without its size: " + error;

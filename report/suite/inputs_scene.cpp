@@ -9,7 +9,7 @@
 #include <twinray/scene.h>
 
 #include "engine/core/error.h"
-#include "report/suite/demands.h"
+#include "report/faults/fault_injection.h"
 #include "report/suite/sections.h"
 #include "report/suite/scenes.h"
 #include <twinray/geometry.h>
@@ -119,7 +119,7 @@ void expect_refused(CaseRun& run, const std::vector<WrongUse>& uses) {
         CaseRun::Outcome outcome{.n = uses.size(), .fault_of = "twinray"};
         for (const WrongUse& wrong : uses) {
             AbstractAccel& accel = run.devices().empty_accel(configuration);
-            const std::string error = refusal([&] { wrong.use(accel); });
+            const std::string error = faults::what_is_thrown_by([&] { wrong.use(accel); });
             if (error.find(wrong.named) == std::string::npos && outcome.faults++ == 0)
                 outcome.what = text(wrong.what, ": ", error.empty() ? "not refused" : error);
         }

@@ -8,6 +8,7 @@
 #include <twinray/scene.h>
 
 #include "report/suite/case_run.h"
+#include "report/faults/fault_injection.h"
 #include "report/suite/demands.h"
 #include "report/suite/scenes.h"
 #include "report/suite/sections.h"
@@ -23,22 +24,35 @@ void measure_instances(CaseRun& run, const Scene& scene, std::size_t rays, const
     run.measure(world, mixed_rays(world, bounds_of(scene), rays, run.seed()), {.params = params});
 }
 
+// Turned at random, and moved to places in a box.
+std::vector<Transform> rotations(std::uint64_t seed, std::size_t count, float extent) {
+    Random random(seed);
+    std::vector<Transform> transforms(count);
+    for (Transform& transform : transforms)
+        transform = Transform::translation(random.in_box(extent)) * random.rotation();
+    return transforms;
+}
+
+// Scaled between two rotations.
+std::vector<Transform> stretches(std::uint64_t seed, std::size_t count, vec3 factors) {
+    Random random(seed);
+    std::vector<Transform> transforms(count);
+    for (Transform& transform : transforms)
+        transform = Transform::translation(random.in_box(5)) * random.rotation() * Transform::scaling(factors) *
+                    random.rotation();
+    return transforms;
+}
+
 void random_rigid(CaseRun& run) {
-    Random random(run.seed());
-    std::vector<Transform> transforms(run.amount(500, 10'000));
-    for (Transform& transform : transforms) transform = Transform::translation(random.in_box(10)) * random.rotation();
+    const std::vector<Transform> transforms = rotations(run.seed(), run.amount(500, 10'000), 10);
     measure_instances(run, instances_of(make_icosphere(2), transforms), run.amount(4'096, 500'000));
 }
 
 void instances_stretched(CaseRun& run) {
     for (const float ratio : {1e3f, 1e6f}) {
-        Random random(run.seed());
-        std::vector<Transform> transforms(64);
-        for (Transform& transform : transforms)
-            transform = Transform::translation(random.in_box(5)) * random.rotation() *
-                        Transform::scaling({1, 1 / std::sqrt(ratio), std::sqrt(ratio)}) * random.rotation();
-        measure_instances(run, instances_of(make_icosphere(2), transforms), run.amount(2'048, 500'000),
-                          {{"ratio", ratio}});
+        const vec3 factors(1, 1 / std::sqrt(ratio), std::sqrt(ratio));
+        measure_instances(run, instances_of(make_icosphere(2), stretches(run.seed(), 64, factors)),
+                          run.amount(2'048, 500'000), {{"ratio", ratio}});
     }
 }
 
@@ -78,15 +92,9 @@ void mirrored(CaseRun& run) {
 }
 
 void nearly_singular(CaseRun& run) {
-    for (const float condition : {1e2f, 1e4f, 1e6f, 1e8f, 1e10f, 1e12f}) {
-        Random random(run.seed());
-        std::vector<Transform> transforms(16);
-        for (Transform& transform : transforms)
-            transform = Transform::translation(random.in_box(5)) * random.rotation() *
-                        Transform::scaling({1, 1, 1 / condition}) * random.rotation();
-        measure_instances(run, instances_of(make_icosphere(2), transforms), run.amount(256, 100'000),
-                          {{"condition", condition}});
-    }
+    for (const float condition : {1e2f, 1e4f, 1e6f, 1e8f, 1e10f, 1e12f})
+        measure_instances(run, instances_of(make_icosphere(2), stretches(run.seed(), 16, {1, 1, 1 / condition})),
+                          run.amount(256, 100'000), {{"condition", condition}});
 }
 
 void refused_transforms(CaseRun& run) {
@@ -101,7 +109,7 @@ void refused_transforms(CaseRun& run) {
     for (const Configuration& configuration : run.one_configuration_each()) {
         CaseRun::Outcome outcome{.n = bad.size(), .fault_of = "twinray"};
         for (const auto& [what, transform] : bad) {
-            const std::string error = refusal([&, &placed = transform] {
+            const std::string error = faults::what_is_thrown_by([&, &placed = transform] {
                 run.devices().empty_accel(configuration).push(make_box(vec3(0), vec3(1)), placed);
             });
             if (error.find("instance") == std::string::npos && outcome.faults++ == 0)
@@ -232,20 +240,13 @@ void instances_far_away(CaseRun& run) {
 }
 
 // A flat geometry's box has no thickness until it is rotated; what of it rounding takes away loses rays.
-std::vector<Transform> rotations(std::uint64_t seed, std::size_t count) {
-    Random random(seed);
-    std::vector<Transform> transforms(count);
-    for (Transform& transform : transforms) transform = Transform::translation(random.in_box(20)) * random.rotation();
-    return transforms;
-}
-
 void flat_and_rotated(CaseRun& run) {
-    measure_instances(run, instances_of(make_grid(4, 4), rotations(run.seed(), 100)), run.amount(8'192, 1'000'000));
+    measure_instances(run, instances_of(make_grid(4, 4), rotations(run.seed(), 100, 20)), run.amount(8'192, 1'000'000));
 }
 
 void box_touched_by_rounding(CaseRun& run) {
     const Mesh square = make_quad(vec3(0), vec3(1, 0, 0), vec3(0, 1, 0));
-    Scene scene = instances_of(square, rotations(run.seed() + 1, 100));
+    Scene scene = instances_of(square, rotations(run.seed() + 1, 100, 20));
     // Two halves of one plane share an edge within the geometry: rays at it may not slip through the box's rim.
     const World world = world_of(scene);
     run.measure(world, edge_aimed_rays(world.reference, run.amount(8'192, 1'000'000), run.seed()));

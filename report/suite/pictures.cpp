@@ -24,7 +24,7 @@ struct FlatPicture {
 FlatPicture checked(const HdrImage& picture, double truth) {
     const auto n = static_cast<double>(picture.rgb.size());
     FlatPicture result;
-    for (const vec3& pixel : picture.rgb) result.mean += static_cast<double>(pixel.y) / n;
+    result.mean = mean_of(picture);
     double squares = 0;
     for (const vec3& pixel : picture.rgb) {
         result.variance += std::pow(static_cast<double>(pixel.y) - result.mean, 2) / (n - 1);
@@ -58,6 +58,20 @@ path_tracer::CameraRays look(vec3 from, vec3 at, float half_height) {
     Camera camera = look_camera(from, at, std::abs(way.y) > 0.9f ? vec3(0, 0, 1) : vec3(0, 1, 0), 45);
     camera.vertical_fov = 2 * std::atan(half_height);
     return path_tracer::camera_rays(camera, 1);
+}
+
+RenderDesc cornell_box_shot(uint side) {
+    RenderDesc desc{.scene = cornell_box_scene()};
+    desc.settings.width = desc.settings.height = side;
+    desc.settings.camera = path_tracer::camera_rays(desc.scene.cameras[0], 1);
+    return desc;
+}
+
+double mean_of(const HdrImage& picture) {
+    const auto n = static_cast<double>(picture.rgb.size());
+    double mean = 0;
+    for (const vec3& pixel : picture.rgb) mean += static_cast<double>(pixel.y) / n;
+    return mean;
 }
 
 void add(Scene& scene, Mesh mesh, const Material& material) {

@@ -20,6 +20,10 @@ struct RenderDesc {
 
 // A pinhole camera whose picture is 2 half_height high at distance 1.
 path_tracer::CameraRays look(vec3 from, vec3 at, float half_height);
+// The built-in Cornell box in so many pixels a side.
+RenderDesc cornell_box_shot(uint side);
+// The mean of the green channel, in which grey light is told.
+double mean_of(const HdrImage& picture);
 // Adds an instance of a mesh of one material.
 void add(Scene& scene, Mesh mesh, const Material& material);
 // Nothing but Lambert: an index of refraction of 1 reflects nothing.

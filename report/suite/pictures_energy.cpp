@@ -8,7 +8,6 @@
 #include "report/suite/estimators.h"
 #include "report/suite/pictures.h"
 #include <twinray/geometry.h>
-#include "renderer/camera.h"
 
 namespace twinray::suite {
 namespace {
@@ -157,9 +156,8 @@ void tiny_lights(CaseRun& run) {
 }
 
 RenderDesc lit_box(float scale) {
-    RenderDesc desc{.scene = cornell_box_scene()};
+    RenderDesc desc = cornell_box_shot(16);
     for (Material& material : desc.scene.materials) material.emission *= scale;
-    desc.settings.camera = path_tracer::camera_rays(desc.scene.cameras[0], 1);
     return desc;
 }
 

@@ -10,20 +10,12 @@
 #include "report/suite/queries.h"
 #include "report/suite/sections.h"
 #include <twinray/geometry.h>
-#include "renderer/camera.h"
 #include "renderer/cross_check.h"
 #include "renderer/reference.h"
 #include "engine/core/error.h"
 
 namespace twinray::suite {
 namespace {
-
-RenderDesc box_shot(uint side) {
-    RenderDesc desc{.scene = cornell_box_scene()};
-    desc.settings.width = desc.settings.height = side;
-    desc.settings.camera = path_tracer::camera_rays(desc.scene.cameras[0], 1);
-    return desc;
-}
 
 // Of disagreeing rays, those that SwTlas is wrong about.
 std::uint64_t faults_of_ours_in(const Scene& scene, std::span<const path_tracer::Disagreement> rays) {
@@ -42,7 +34,7 @@ void by_both_accelerators(CaseRun& run) {
     const std::vector<Configuration> configurations = analysis_configurations(run);
     if (configurations.size() < 2 || configurations[1].backend != Backend::ray_query)
         return run.add_not_run("needs SwTlas and ray queries, to trace each ray on both");
-    RenderDesc desc = box_shot(48);
+    RenderDesc desc = cornell_box_shot(48);
     desc.settings.samples = static_cast<uint>(run.amount(4, 64));
     desc.settings.seed = static_cast<uint>(run.seed());
     RenderFixture software(run, configurations[0], desc), hardware(run, configurations[1], desc);
@@ -177,7 +169,7 @@ void work_and_precision(CaseRun& run) {
     std::vector<ExposureSeries> all;
     for (const Configuration& configuration : analysis_configurations(run))
         for (std::size_t method = 0; method < methods.size(); ++method) {
-            RenderDesc desc = box_shot(32);
+            RenderDesc desc = cornell_box_shot(32);
             desc.settings.strategy = methods[method].strategy;
             desc.settings.block_size = methods[method].block_size;
             RenderFixture fixture(run, configuration, desc);

@@ -9,7 +9,6 @@
 #include "report/suite/pictures.h"
 #include "report/suite/queries.h"
 #include <twinray/geometry.h>
-#include "renderer/camera.h"
 #include "engine/core/error.h"
 
 namespace twinray::suite {
@@ -17,9 +16,7 @@ namespace {
 
 void census(CaseRun& run) {
     std::uint64_t faults = 0;
-    Record record = run.record({});
-    record.backend = record.level = record.variant = "";
-    record.reference = "specification";
+    Record record = query_record(run, "specification");
     for (const Record& earlier : run.earlier()) {
         if (!earlier.case_id.starts_with('P') || !earlier.counts.contains("PIXELS")) continue;
         for (const char* kind : {"PIXELS", "NOT_FINITE", "NEGATIVE", "DROPPED"})
@@ -33,10 +30,7 @@ void census(CaseRun& run) {
 
 void fireflies(CaseRun& run) {
     for (const Configuration& configuration : analysis_configurations(run)) {
-        RenderDesc desc{.scene = cornell_box_scene()};
-        desc.settings.width = desc.settings.height = 64;
-        desc.settings.camera = path_tracer::camera_rays(desc.scene.cameras[0], 1);
-        RenderFixture fixture(run, configuration, desc);
+        RenderFixture fixture(run, configuration, cornell_box_shot(64));
         const auto spp = static_cast<uint>(run.amount(4, 64));
         const Exposure exposure = fixture.expose(run.seed(), spp);
         const auto n = static_cast<double>(exposure.picture.rgb.size());
@@ -87,10 +81,7 @@ void tilted_normals(CaseRun& run) {
             }
             dark.census().add_to(record);
             RenderFixture bright(run, configuration, furnace);
-            const HdrImage picture = bright.expose(run.seed(), 64).picture;
-            double mean = 0;
-            for (const vec3& pixel : picture.rgb)
-                mean += static_cast<double>(pixel.y) / static_cast<double>(picture.rgb.size());
+            const double mean = mean_of(bright.expose(run.seed(), 64).picture);
             record.results = {{"mean_under_white_sky", mean}};
             record.faults += !(mean <= 1.01);
             record.bound95 = upper_bound_95(record.faults, record.n);
@@ -112,10 +103,7 @@ void sums_of_films(CaseRun& run) {
         sum += static_cast<double>(value);
         plain += value;
     }
-    Record record = run.record({});
-    record.backend = "cpu";
-    record.level = record.variant = "";
-    record.reference = "exact";
+    Record record = cpu_record(run, "exact");
     record.params = {{"blocks", blocks}};
     record.n = 1;
     record.error = error_figures("relative", {std::abs(path_tracer::sum_of(film.pixels[0], 0) - sum) / sum});
@@ -175,9 +163,7 @@ void seeds(CaseRun& run) {
         for (uint d = 0; d < 3; ++d)
             dimensions[d].push_back(
                 static_cast<double>(unit_float(sample_pair(i / 4, i % 4, d, static_cast<uint>(run.seed())).x)));
-    Record record = run.record({});
-    record.backend = "cpu";
-    record.level = record.variant = "";
+    const Record record = cpu_record(run, "analytic");
     add_correlation(run, record, "dimensions 0 and 1", dimensions[0], dimensions[1]);
     add_correlation(run, record, "dimensions 1 and 2", dimensions[1], dimensions[2]);
 }
@@ -187,9 +173,7 @@ void expect_within(CaseRun& run, const Configuration& configuration, const char*
                    double low, double high) {
     RenderFixture fixture(run, configuration, desc);
     const Exposure exposure = fixture.expose(run.seed(), 16);
-    double mean = 0;
-    for (const vec3& pixel : exposure.picture.rgb)
-        mean += static_cast<double>(pixel.y) / static_cast<double>(exposure.picture.rgb.size());
+    const double mean = mean_of(exposure.picture);
     Record record = run.record(configuration);
     record.params = {{"scene", what}};
     record.reference = "analytic";

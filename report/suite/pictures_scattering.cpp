@@ -43,13 +43,9 @@ Bsdf glass(float alpha, float eta) {
 
 vec3 direction(float cosine) { return {std::sqrt(1 - cosine * cosine), 0, cosine}; }
 
-// On the CPU, without an accelerator.
 Record record_of_cpu(CaseRun& run, const Values& params) {
-    Record record = run.record({});
-    record.backend = "cpu";
-    record.level = record.variant = "";
+    Record record = cpu_record(run, "analytic");
     record.params = params;
-    record.reference = "analytic";
     record.n = 1;
     return record;
 }

@@ -26,6 +26,12 @@ Record query_record(CaseRun& run, const std::string& reference, const std::strin
     return record;
 }
 
+Record cpu_record(CaseRun& run, const std::string& reference, const std::string& variant) {
+    Record record = query_record(run, reference, variant);
+    record.backend = "cpu";
+    return record;
+}
+
 void add_checked(CaseRun& run, Record record, std::uint64_t faults, const std::string& what) {
     set_faults(record, faults, record.n);
     add_judged(run, std::move(record), what);

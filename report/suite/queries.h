@@ -13,6 +13,8 @@ Context& query_context(CaseRun& run);
 
 // A record without a backend and a level.
 Record query_record(CaseRun& run, const std::string& reference, const std::string& variant = {});
+// The same of what the host computes.
+Record cpu_record(CaseRun& run, const std::string& reference, const std::string& variant = {});
 // With the ray_result: any fault is twinray's, and `what` it was.
 void add_checked(CaseRun& run, Record record, std::uint64_t faults, const std::string& what);
 // The same for a record whose faults are set; the bound of their rate stays as it is.
