@@ -37,6 +37,17 @@ double nearest_of_all(const Mesh& mesh, const dvec3& point) {
     return nearest;
 }
 
+// Medians of times, and the case's record, of one question to many points.
+void add_errors(CaseRun& run, const Values& params, const std::string& metric, std::vector<double> errors,
+                std::vector<double> times, std::uint64_t wrong, const std::string& what) {
+    Record record = query_record(run, "f64");
+    record.params = params;
+    record.n = errors.size();
+    record.error = error_figures(metric, std::move(errors), 0x1p-53);
+    record.time = time_figures("ns_per_point", std::move(times));
+    add_checked(run, record, wrong, what);
+}
+
 // Relative errors may be as large as what some roundings of the coordinates do to a distance.
 void measure_nearest(CaseRun& run, const Mesh& mesh, const std::vector<dvec3>& points, const Values& params) {
     PointQuery query(query_context(run));
@@ -57,12 +68,7 @@ void measure_nearest(CaseRun& run, const Mesh& mesh, const std::vector<dvec3>& p
     });
     std::uint64_t wrong = 0;
     for (std::size_t i = 0; i < errors.size(); ++i) wrong += !(errors[i] <= slack[i]);
-    Record record = query_record(run, "f64");
-    record.params = params;
-    record.n = errors.size();
-    record.error = error_figures("relative", errors, 0x1p-53);
-    record.time = time_figures("ns_per_point", times);
-    add_checked(run, record, wrong, "another triangle is nearer");
+    add_errors(run, params, "relative", errors, times, wrong, "another triangle is nearer");
 }
 
 void sizes(CaseRun& run) {
@@ -132,9 +138,7 @@ void radius(CaseRun& run) {
     std::uint64_t wrong = 0, count = 0;
     for (uint i = 0; i < points.size(); ++i)
         for (uint t = 0; t < ball.triangles.size(); ++t) {
-            const uvec3 of = ball.triangles[t];
-            const double distance = distance_to_triangle(
-                {dvec3(ball.positions[of.x]), dvec3(ball.positions[of.y]), dvec3(ball.positions[of.z])}, points[i]);
+            const double distance = distance_to(ball, ball.triangles[t], points[i]);
             const bool is_listed = next < near.size() && near[next].point == i && near[next].triangle == t;
             next += is_listed;
             count += is_listed;
@@ -172,17 +176,6 @@ void sides(CaseRun& run) {
     record.n = checked;
     record.results = {{"host_decided", query.host_decided()}};
     add_checked(run, record, wrong, "another winding number than the number of boxes around the point");
-}
-
-// Medians of times, and the case's record, of one question to many points.
-void add_errors(CaseRun& run, const Values& params, const std::string& metric, std::vector<double> errors,
-                std::vector<double> times, std::uint64_t wrong, const std::string& what) {
-    Record record = query_record(run, "f64");
-    record.params = params;
-    record.n = errors.size();
-    record.error = error_figures(metric, std::move(errors), 0x1p-53);
-    record.time = time_figures("ns_per_point", std::move(times));
-    add_checked(run, record, wrong, what);
 }
 
 void signed_by_spheres(CaseRun& run) {

@@ -14,10 +14,7 @@ void from_inside(CaseRun& run) {
     const std::size_t count = run.amount(4'096, 1'000'000);
     for (const uint subdivisions : {0u, 3u, 6u}) {
         const Mesh sphere = make_icosphere(subdivisions);
-        Bounds middle;
-        middle.include(vec3(-0.2f));
-        middle.include(vec3(0.2f));
-        run.measure(world_of(sphere), random_rays(middle, count, run.seed()),
+        run.measure(world_of(sphere), random_rays({vec3(-0.2f), vec3(0.2f)}, count, run.seed()),
                     {.params = {{"subdivisions", subdivisions}, {"triangles", sphere.triangles.size()}}});
     }
 }

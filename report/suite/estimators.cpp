@@ -217,6 +217,15 @@ std::vector<Configuration> analysis_configurations(CaseRun& run) {
     return chosen;
 }
 
+FactorRows rows_of(CaseRun& run, const Configuration& configuration, const Scene& scene, FaceGrouping grouping,
+                   std::uint64_t rays) {
+    AbstractAccel& accel = run.devices().empty_accel(configuration);
+    push_scene(accel, scene);
+    const Faces faces(accel.context(), scene);
+    ViewFactors factors(accel, faces, {.grouping = grouping, .rays = rays, .seed = static_cast<uint>(run.seed())});
+    return {factors.rows(0, factors.row_count()), factors.areas()};
+}
+
 void measure_factor(CaseRun& run, const FactorQuestion& question, std::span<const EstimatorMethod> methods) {
     const std::vector<Configuration> configurations = analysis_configurations(run);
     for (const Configuration& configuration : configurations) {

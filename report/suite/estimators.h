@@ -47,6 +47,14 @@ void measure_estimates(CaseRun& run, const Record& base, double truth, const cha
                        std::span<const std::uint64_t> amounts,
                        const std::function<Estimate(std::uint64_t amount, std::uint64_t seed)>& estimate);
 
+// All rows of a scene's view factors, by hits, and the areas of its groups.
+struct FactorRows {
+    std::vector<ViewFactorRow> rows;
+    std::vector<double> areas;
+};
+FactorRows rows_of(CaseRun& run, const Configuration& configuration, const Scene& scene, FaceGrouping grouping,
+                   std::uint64_t rays);
+
 // The configurations of these cases: software, and hardware once.
 std::vector<Configuration> analysis_configurations(CaseRun& run);
 

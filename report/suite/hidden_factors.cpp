@@ -17,19 +17,6 @@ namespace {
 constexpr std::array by_hits = {PairEstimator::hits};
 constexpr double most_sigma = 5;
 
-struct Rows {
-    std::vector<ViewFactorRow> rows;
-    std::vector<double> areas;
-};
-Rows rows_of(CaseRun& run, const Configuration& configuration, const Scene& scene, FaceGrouping grouping,
-             std::uint64_t rays) {
-    AbstractAccel& accel = run.devices().empty_accel(configuration);
-    push_scene(accel, scene);
-    const Faces faces(accel.context(), scene);
-    ViewFactors factors(accel, faces, {.grouping = grouping, .rays = rays, .seed = static_cast<uint>(run.seed())});
-    return {factors.rows(0, factors.row_count()), factors.areas()};
-}
-
 // 0, known without a doubt, where no ray told: a fault if it is wrong.
 ViewFactor factor_of(const ViewFactorRow& row, uint target) {
     for (const ViewFactor& factor : row.factors)

@@ -22,14 +22,15 @@ std::vector<Ray> every_second(const Mesh& mesh, std::size_t count, std::uint64_t
     return rays;
 }
 
+template <class Spoil>
+void measure_every_second(CaseRun& run, std::size_t least, const Spoil& spoil) {
+    const Mesh sphere = make_icosphere(4);
+    run.measure(world_of(sphere), every_second(sphere, run.amount(least, 1'000'000), run.seed(), spoil));
+}
+
 void spoil_component(Ray& ray, std::size_t i) {
     constexpr float bad[] = {nan, inf, -inf};
     (i % 6 < 3 ? ray.origin : ray.direction)[static_cast<int>(i % 3)] = bad[i / 6 % 3];
-}
-
-void non_finite_rays(CaseRun& run) {
-    const Mesh sphere = make_icosphere(4);
-    run.measure(world_of(sphere), every_second(sphere, run.amount(4'096, 1'000'000), run.seed(), spoil_component));
 }
 
 // NaN, infinite and zero rays alone, in turns with as many normal ones: they may not be a way to stall a device.
@@ -55,12 +56,11 @@ void time_of_bad_rays(CaseRun& run) {
 }
 
 void bad_rays(CaseRun& run) {
-    non_finite_rays(run);
+    measure_every_second(run, 4'096, spoil_component);
     time_of_bad_rays(run);
 }
 
 void intervals(CaseRun& run) {
-    const Mesh sphere = make_icosphere(4);
     const auto spoil = [](Ray& ray, std::size_t i) {
         constexpr std::array<std::array<float, 2>, 12> ends = {{{2, 1},
                                                                 {1, 1},
@@ -77,15 +77,13 @@ void intervals(CaseRun& run) {
         ray.t_min = ends[i % ends.size()][0];
         ray.t_max = ends[i % ends.size()][1];
     };
-    run.measure(world_of(sphere), every_second(sphere, run.amount(8'192, 1'000'000), run.seed(), spoil));
+    measure_every_second(run, 8'192, spoil);
 }
 
 void zero_directions(CaseRun& run) {
-    const Mesh sphere = make_icosphere(4);
-    const auto spoil = [](Ray& ray, std::size_t i) {
+    measure_every_second(run, 8'192, [](Ray& ray, std::size_t i) {
         for (int axis = 0; axis < 3; ++axis) ray.direction[axis] = i >> axis & 1 ? -0.0f : 0.0f;
-    };
-    run.measure(world_of(sphere), every_second(sphere, run.amount(8'192, 1'000'000), run.seed(), spoil));
+    });
 }
 
 // NaN, 1e38 and denormal numbers in origins and directions, which also affect the order of the rays.

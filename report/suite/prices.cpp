@@ -13,6 +13,7 @@
 #include "engine/core/error.h"
 #include "engine/core/uploaded.h"
 #include "feature_costs_program.trace_program.h"
+#include "report/suite/scenes.h"
 #include "validation/reference/aimed_rays.h"
 
 namespace twinray::suite {
@@ -120,9 +121,7 @@ void measure_scene(CaseRun& run, const Scene& scene, std::span<const Ray> rays, 
 }
 
 void closed_mesh(CaseRun& run) {
-    Scene scene;
-    scene.meshes = {make_icosphere(static_cast<uint>(run.amount(6, 8)))};
-    scene.instances = {{"", 0, Transform{}}};
+    const Scene scene = instances_of(make_icosphere(static_cast<uint>(run.amount(6, 8))));
     measure_scene(run, scene, camera_rays(run, bounds_of(scene)), "primary");
 }
 
@@ -132,15 +131,15 @@ void room(CaseRun& run) {
 }
 
 void instanced_spheres(CaseRun& run) {
-    Scene scene;
-    scene.meshes = {make_icosphere(3)};
+    std::vector<Transform> transforms;
     const int side = static_cast<int>(run.amount(8, 32));
     for (int x = 0; x < side; ++x)
         for (int y = 0; y < side; ++y) {
             const vec3 place(2.5f * static_cast<float>(x), static_cast<float>((x * 7 + y * 3) % 5),
                              2.5f * static_cast<float>(y));
-            scene.instances.push_back({"", 0, Transform::translation(place) * Transform::scaling({1, 0.7f, 1.3f})});
+            transforms.push_back(Transform::translation(place) * Transform::scaling({1, 0.7f, 1.3f}));
         }
+    const Scene scene = instances_of(make_icosphere(3), transforms);
     measure_scene(run, scene, camera_rays(run, bounds_of(scene)), "primary");
 }
 

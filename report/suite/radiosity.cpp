@@ -7,6 +7,7 @@
 #include <twinray/scene.h>
 
 #include "report/suite/estimators.h"
+#include "report/suite/factor_scenes.h"
 #include <twinray/geometry.h>
 
 namespace twinray::suite {
@@ -14,13 +15,9 @@ namespace {
 
 // Six walls of one mesh each that look inwards; 0 and 1 face each other.
 Scene cube() {
-    Scene scene;
-    scene.materials.resize(1);
     const vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
-    scene.meshes = {make_quad(vec3(0), x, y), make_quad(z, y, x),       make_quad(vec3(0), y, z),
-                    make_quad(x, z, y),       make_quad(vec3(0), z, x), make_quad(y, x, z)};
-    for (uint i = 0; i < 6; ++i) scene.instances.push_back({"", i, {}});
-    return scene;
+    return scene_of({make_quad(vec3(0), x, y), make_quad(z, y, x), make_quad(vec3(0), y, z), make_quad(x, z, y),
+                     make_quad(vec3(0), z, x), make_quad(y, x, z)});
 }
 
 // B of the wall that emits 1, of the one that faces it, and of the four beside, all of which reflect rho.

@@ -75,28 +75,18 @@ Traced trace_first(const Stage& stage, const Configuration& configuration, const
     return traced;
 }
 
+Control of_code(Control control, const char* name, std::span<const std::uint32_t> software) {
+    control.code.name = name;
+    control.code.software = software;
+    return control;
+}
+
 }  // namespace
 
-Control without_precise() {
-    Control control{{}, false};
-    control.code.name = "control: without precise";
-    control.code.software = control_without_precise_spirv;
-    return control;
-}
-
-Control contracted() {
-    Control control{{}, true};
-    control.code.name = "control: contracted";
-    control.code.software = control_contracted_spirv;
-    return control;
-}
-
+Control without_precise() { return of_code({{}, false}, "control: without precise", control_without_precise_spirv); }
+Control contracted() { return of_code({{}, true}, "control: contracted", control_contracted_spirv); }
 Control without_padding() {
-    Control control{{}, true, 0.01};
-    control.code.name = "control: without padding";
-    control.layout = Layout::bvh2;
-    control.code.software = control_without_padding_spirv;
-    return control;
+    return of_code({{}, true, 0.01, Layout::bvh2}, "control: without padding", control_without_padding_spirv);
 }
 
 World world_of(const Scene& scene) {

@@ -110,17 +110,13 @@ void tiny_faces(CaseRun& run) {
 void closed_room(CaseRun& run) {
     const Scene scene = scene_of({seen_from_inside(make_box(vec3(-2), vec3(2))), make_icosphere(2)}, vec3(0.5f));
     for (const Configuration& configuration : analysis_configurations(run)) {
-        AbstractAccel& accel = run.devices().empty_accel(configuration);
-        push_scene(accel, scene);
-        const Faces faces(accel.context(), scene);
-        ViewFactors factors(accel, faces, {.rays = run.amount(1024, 65'536), .seed = static_cast<uint>(run.seed())});
-        const std::vector<ViewFactorRow> rows = factors.rows(0, factors.row_count());
+        const auto [rows, areas] = rows_of(run, configuration, scene, FaceGrouping::face, run.amount(1024, 65'536));
         std::uint64_t rays = 0, lost = 0;
         for (const ViewFactorRow& row : rows) {
             rays += row.rays;
             lost += row.rays - row.hits;
         }
-        const ViewFactorResiduals residuals = residuals_of(rows, factors.areas());
+        const ViewFactorResiduals residuals = residuals_of(rows, areas);
         run.expect(configuration,
                    {.results = {{"closure", residuals.closure}, {"reciprocity_sigma", residuals.reciprocity_sigma}},
                     .n = rays,
