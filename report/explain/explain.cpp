@@ -141,18 +141,14 @@ void print_header(std::ostream& out, const Stage& stage) {
 
 const char* sign_of(int sign) { return sign > 0 ? "+" : sign < 0 ? "-" : "0"; }
 
-struct Box {
-    vec3 lo, hi;
-};
-
 // The boxes from the root to the leaf that is_wanted(leaf index), the root's first; false: there is no such leaf.
 template <class IsWanted>
-bool find_path(const Bvh& bvh, uint reference, const IsWanted& is_wanted, std::vector<Box>& path) {
+bool find_path(const Bvh& bvh, uint reference, const IsWanted& is_wanted, std::vector<Bounds>& path) {
     if (reference == NOTHING) return false;
     if (reference & LEAF_BIT) return is_wanted(reference & ~LEAF_BIT);
     const BvhNode& node = bvh.nodes[reference];
     for (const auto& [box, child] :
-         {std::pair(Box{node.lo0, node.hi0}, node.child0), {Box{node.lo1, node.hi1}, node.child1}}) {
+         {std::pair(Bounds{node.lo0, node.hi0}, node.child0), {Bounds{node.lo1, node.hi1}, node.child1}}) {
         path.push_back(box);
         if (find_path(bvh, child, is_wanted, path)) return true;
         path.pop_back();
@@ -161,7 +157,7 @@ bool find_path(const Bvh& bvh, uint reference, const IsWanted& is_wanted, std::v
 }
 
 // The slab test as it stands in textbooks, without padding.
-bool enters_unpadded(const Box& box, const RaySpace& space, float t_min, float t_max) {
+bool enters_unpadded(const Bounds& box, const RaySpace& space, float t_min, float t_max) {
     for (int axis = 0; axis < 3; ++axis) {
         const float inverse = 1.0f / space.direction[axis];
         const float a = (box.lo[axis] - space.origin[axis]) * inverse,
@@ -172,7 +168,7 @@ bool enters_unpadded(const Box& box, const RaySpace& space, float t_min, float t
     return t_min <= t_max;
 }
 
-void print_path(std::ostream& out, const char* tree, const std::vector<Box>& path, const RaySpace& space,
+void print_path(std::ostream& out, const char* tree, const std::vector<Bounds>& path, const RaySpace& space,
                 const Ray& ray) {
     out << "    " << tree << ": " << path.size() << (path.size() == 1 ? " box" : " boxes") << " below the root\n";
     const float t_min = std::max(ray.t_min, 0.0f);
@@ -255,7 +251,7 @@ void Explainer::print_test(std::ostream& out, exact::TriangleId triangle) const 
 
 void Explainer::print_boxes(std::ostream& out, exact::TriangleId triangle) const {
     out << "  boxes to triangle " << triangle.primitive << " of instance " << triangle.instance << '\n';
-    std::vector<Box> path;
+    std::vector<Bounds> path;
     const Bvh& top = on_cpu_->scene_tree().bvh;
     const RaySpace world = make_ray_space(searched_.origin, searched_.direction,
                                           world_pad(searched_.origin, largest_coordinate(top.lo, top.hi)));

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "report/page/compare.h"
 
-#include <algorithm>
 #include <iomanip>
 #include <set>
 
@@ -36,21 +35,16 @@ void print_rows(std::ostream& out, std::span<const Record> records) {
         out << "| " << records.front().device.name << ", " << records.front().device.driver << " | "
             << answerer(backend) << " | " << cases.size() << " |";
         for (const Mistake mistake : all_mistakes) {
-            const auto found = std::ranges::find_if(findings, [&](const Finding& finding) {
-                return finding.backend == backend && finding.mistake == mistake;
-            });
-            out << ' ' << (found == findings.end() ? "" : text_of(*found)) << " |";
+            const Finding* found = find(findings, backend, mistake);
+            out << ' ' << (found ? text_of(*found) : "") << " |";
         }
-        const auto speed = std::ranges::find_if(
-            speeds, [&](const Speed& one) { return one.backend == backend && one.level == "watertight"; });
+        const Speed* speed = find(speeds, backend, "watertight");
         out << ' '
             << (backend == "sw" || own.run.empty()
                     ? ""
                     : ids_text(own.failed_by_driver) + "; " + ids_text(own.not_as_advised))
             << " | "
-            << (speed == speeds.end()
-                    ? ""
-                    : with_interval(speed->ratio, speed->ratio_95) + (speed->is_disturbed ? " (disturbed)" : ""))
+            << (speed ? with_interval(speed->ratio, speed->ratio_95) + (speed->is_disturbed ? " (disturbed)" : "") : "")
             << " |\n";
     }
 }

@@ -174,6 +174,12 @@ Finding finding_at(std::span<const Record> records, std::string_view backend, st
     return finding;
 }
 
+const Finding* find(std::span<const Finding> findings, std::string_view backend, Mistake mistake) {
+    for (const Finding& finding : findings)
+        if (finding.backend == backend && finding.mistake == mistake) return &finding;
+    return nullptr;
+}
+
 std::vector<Finding> findings_of(std::span<const Record> records) {
     std::vector<Finding> findings;
     for (const char* backend : {"sw", "hw", "hw-pipeline"})

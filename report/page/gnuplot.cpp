@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <iomanip>
 #include <numeric>
 #include <sstream>
 
@@ -74,13 +75,9 @@ Axes axes_of(const Figure& figure) {
     return axes;
 }
 
-std::string quoted(const std::string& text) {
-    std::string result = "\"";
-    for (const char c : text) {
-        if (c == '"' || c == '\\') result += '\\';
-        result += c == '\n' ? ' ' : c;
-    }
-    return result + '"';
+std::string quoted(std::string words) {
+    std::ranges::replace(words, '\n', ' ');
+    return text(std::quoted(words));
 }
 
 struct Label {

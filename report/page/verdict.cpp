@@ -19,13 +19,6 @@ constexpr std::uint64_t fewest_rays = 2048;  // below, times are mostly those of
 
 std::string measurement_of(const Record& record) { return record.case_id + '|' + settings_text(record); }
 
-const Finding* find(std::span<const Finding> findings, std::string_view backend, Mistake mistake) {
-    const auto found = std::find_if(findings.begin(), findings.end(), [&](const Finding& finding) {
-        return finding.backend == backend && finding.mistake == mistake;
-    });
-    return found == findings.end() ? nullptr : &*found;
-}
-
 // The driver's way that most of its users take.
 std::string driver_backend(std::span<const Record> records) {
     for (const char* backend : {"hw", "hw-pipeline"})
@@ -102,18 +95,15 @@ std::string_view mark_of(const Speed& speed) {
 }
 
 void add_speed(Verdict& verdict, std::span<const Speed> speeds, std::string_view driver) {
-    const auto find = [&](std::string_view backend, std::string_view level) {
-        return std::find_if(speeds.begin(), speeds.end(),
-                            [&](const Speed& speed) { return speed.backend == backend && speed.level == level; });
-    };
-    const auto hardware = find(driver, "watertight"), refined = find("sw", "refined"), plain = find("sw", "watertight");
-    if (hardware != speeds.end())
+    const Speed *hardware = find(speeds, driver, "watertight"), *refined = find(speeds, "sw", "refined"),
+                *plain = find(speeds, "sw", "watertight");
+    if (hardware)
         verdict.sentences.push_back(
             {Sentence::Kind::measured, "Speed",
              text(answerer(driver), " take ", with_interval(hardware->ratio, hardware->ratio_95),
                   " times as long as SwTlas at watertight, over ", hardware->measurements,
                   " measurements of the same rays", mark_of(*hardware), '.')});
-    if (refined != speeds.end() && plain != speeds.end() && refined->median_p99_ulp > 0)
+    if (refined && plain && refined->median_p99_ulp > 0)
         verdict.sentences.push_back(
             {Sentence::Kind::measured, "Error against run time",
              text("99 % of the hits of SwTlas are within ", number(plain->median_p99_ulp, 2),
@@ -244,6 +234,12 @@ std::vector<Speed> speeds_of(std::span<const Record> records) {
         speeds.push_back(std::move(speed));
     }
     return speeds;
+}
+
+const Speed* find(std::span<const Speed> speeds, std::string_view backend, std::string_view level) {
+    for (const Speed& speed : speeds)
+        if (speed.backend == backend && speed.level == level) return &speed;
+    return nullptr;
 }
 
 Verdict verdict_of(std::span<const Record> records) {

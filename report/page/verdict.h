@@ -47,6 +47,8 @@ struct Finding {
 Finding finding_at(std::span<const Record> records, std::string_view backend, std::string_view level, Mistake mistake);
 // One for each mistake that a backend among the records was checked for.
 std::vector<Finding> findings_of(std::span<const Record> records);
+// The one of a backend; null where there is none.
+const Finding* find(std::span<const Finding> findings, std::string_view backend, Mistake mistake);
 // "0.27 % (0.25 to 0.3) over 17 cases; most in W04, 4.6 % (4.2 to 5)", "0 of 230,000 rays, 17 cases (below ...)".
 std::string text_of(const Finding& finding);
 
@@ -70,6 +72,7 @@ struct Speed {
     bool is_disturbed = false;  // TimeFigures::is_disturbed() of any
 };
 std::vector<Speed> speeds_of(std::span<const Record> records);
+const Speed* find(std::span<const Speed> speeds, std::string_view backend, std::string_view level);  // null: none
 
 // Cases by how they came out, over all who answer; those that Vulkan only advises apart.
 struct CaseResults {

@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <iomanip>
-#include <sstream>
 
 #include "engine/core/error.h"
 #include "report/frame/cases.h"
@@ -23,14 +22,9 @@ std::string escaped(std::string_view text) {
 }
 
 std::string number(double value, int digits) {
-    std::ostringstream out;
     // 99.6 too, of which two digits would be 1e+02.
     const bool is_long = std::abs(value) >= std::pow(10, digits) - 0.5 && std::abs(value) < 1e6;
-    if (is_long)
-        out << std::llround(value);
-    else
-        out << std::setprecision(digits) << value;
-    return out.str();
+    return is_long ? text(std::llround(value)) : text(std::setprecision(digits), value);
 }
 
 std::string count_text(std::uint64_t count) {

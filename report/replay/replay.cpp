@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <fstream>
 #include <map>
-#include <sstream>
 
 #include "engine/core/error.h"
 #include "engine/core/platform.h"
@@ -21,9 +20,7 @@ constexpr const char* schema = "twinray-replay/1";
 
 template <class Number>
 std::string hexadecimal(Number value) {
-    std::ostringstream out;
-    out << std::hexfloat << value;
-    return out.str();
+    return text(std::hexfloat, value);
 }
 
 double number(const json& word) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "report/reproducer/program.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <iomanip>
@@ -21,21 +22,15 @@ std::string literal(double value, const char* suffix) {
     if (std::isinf(value)) return value > 0 ? "INFINITY" : "-INFINITY";
     if (value == std::nearbyint(value) && std::abs(value) < 1e6 && !(value == 0 && std::signbit(value)))
         return text(static_cast<long>(value));
-    std::ostringstream out;
-    out << std::hexfloat << value << suffix;
-    return out.str();
+    return text(std::hexfloat, value, suffix);
 }
 std::string literal(float value) { return literal(double{value}, "f"); }
 std::string literals(const vec3& v) { return text(literal(v.x), ", ", literal(v.y), ", ", literal(v.z)); }
 std::string literals(const Interval& i) { return text("{", literal(i.low, ""), ", ", literal(i.high, ""), "}"); }
 
-std::string quoted(const std::string& words) {
-    std::string literal = "\"";
-    for (const char c : words) {
-        if (c == '"' || c == '\\') literal += '\\';
-        literal += c == '\n' ? ' ' : c;
-    }
-    return literal + '"';
+std::string quoted(std::string words) {
+    std::ranges::replace(words, '\n', ' ');
+    return text(std::quoted(words));
 }
 
 // Also in decimal if it is not.

@@ -115,10 +115,8 @@ bool is_allowed(const ReferenceScene& reference, const Ray& ray, const Hit& answ
 
 std::string words_of(const Hit& answer) {
     if (!answer.hit) return "a miss";
-    std::ostringstream out;
-    out << std::setprecision(9) << "triangle " << answer.primitive_index << " of instance " << answer.instance_index
-        << " at t = " << answer.t << ", u = " << answer.u << ", v = " << answer.v;
-    return out.str();
+    return text(std::setprecision(9), "triangle ", answer.primitive_index, " of instance ", answer.instance_index,
+                " at t = ", answer.t, ", u = ", answer.u, ", v = ", answer.v);
 }
 
 std::string page_text(const Reproduction& found, const replay::Replay& replay) {

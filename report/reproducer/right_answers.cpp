@@ -34,12 +34,9 @@ bool is_right(const ReferenceScene& reference, const Ray& ray, const Hit& hit) {
 
 // Also as a short fraction if the number has one.
 std::string words_of(const exact::Rational& value) {
-    const std::string fraction = value.get_str();
-    std::ostringstream out;
-    out << std::setprecision(17) << exact::rounded(value);
+    const std::string fraction = value.get_str(), decimal = text(std::setprecision(17), exact::rounded(value));
     constexpr std::size_t most_digits = 20;
-    if (fraction.size() <= most_digits && fraction != out.str()) return text(fraction, " = ", out.str());
-    return out.str();
+    return fraction.size() <= most_digits && fraction != decimal ? text(fraction, " = ", decimal) : decimal;
 }
 
 std::string words_of(const std::optional<exact::ClosestHit>& closest) {
