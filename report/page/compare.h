@@ -55,6 +55,17 @@ struct Comparison {
 // not, or all of a case, accelerator and level.
 Comparison compare(std::span<const Record> before, std::span<const Record> now);
 
+// Tests of the hypothesis that nothing changed.
+
+// P of a table at least as unlikely as this one, where both rates are the same: Fisher's exact test (1922), two-sided.
+double fisher_exact(std::uint64_t count_a, std::uint64_t n_a, std::uint64_t count_b, std::uint64_t n_b);
+
+// Which of the hypotheses with these p are refuted so that the chance to refute a true one is at most `level`.
+std::vector<bool> holm(std::span<const double> p, double level);
+
+// P of so many ups among ups and downs or more extreme, where both are as likely: the sign test, two-sided.
+double sign_test(std::size_t ups, std::size_t downs);
+
 // Reports beside each other, as text: compare_text.cpp.
 
 struct NamedReport {

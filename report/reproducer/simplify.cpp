@@ -2,18 +2,49 @@
 #include "report/reproducer/simplify.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <set>
 #include <span>
 #include <utility>
 
 #include "engine/accel/geometry.h"
-#include "report/reproducer/ddmin.h"
-#include "report/reproducer/short_numbers.h"
 
 namespace twinray::reproducer {
 namespace {
+
+// The first index of part `part` of `parts` nearly equal ones.
+std::ptrdiff_t begin_of(std::size_t part, std::size_t parts, std::size_t count) {
+    return static_cast<std::ptrdiff_t>(part * count / parts);
+}
+
+Indices part_of(const Indices& all, std::size_t part, std::size_t parts) {
+    return {all.begin() + begin_of(part, parts, all.size()), all.begin() + begin_of(part + 1, parts, all.size())};
+}
+
+Indices without(const Indices& all, std::size_t part, std::size_t parts) {
+    Indices rest(all.begin(), all.begin() + begin_of(part, parts, all.size()));
+    rest.insert(rest.end(), all.begin() + begin_of(part + 1, parts, all.size()), all.end());
+    return rest;
+}
+
+constexpr int significant_bits = std::numeric_limits<float>::digits;
+
+// The nearest number of so many significant bits.
+float rounded_to(float value, int bits) {
+    int exponent = 0;
+    const float fraction = std::frexp(value, &exponent);
+    return std::ldexp(std::nearbyint(std::ldexp(fraction, bits)), exponent - bits);
+}
+
+int bits_of(float value) {
+    for (int bits = 1; bits < significant_bits; ++bits)
+        if (rounded_to(value, bits) == value) return bits;
+    return significant_bits;
+}
 
 // Takes the change where the fault stays.
 bool accept(FaultCase& fault, FaultCase changed, const CaseTest& shows_fault) {
@@ -214,6 +245,51 @@ bool move_to_origin(FaultCase& fault, const CaseTest& shows_fault) {
 }
 
 }  // namespace
+
+Indices ddmin(std::size_t count, const ShowsFault& shows_fault) {
+    Indices kept(count);
+    std::iota(kept.begin(), kept.end(), std::size_t{0});
+    std::size_t parts = 2;
+    // One part of `parts`, or all but one; halves are each other's rest.
+    const auto reduced = [&](const auto& choose, std::size_t next_parts) {
+        for (std::size_t part = 0; part < parts; ++part)
+            if (Indices fewer = choose(kept, part, parts); shows_fault(fewer)) {
+                kept = std::move(fewer);
+                parts = next_parts;
+                return true;
+            }
+        return false;
+    };
+    while (kept.size() >= 2) {
+        parts = std::min(parts, kept.size());
+        if (reduced(part_of, 2)) continue;
+        if (parts > 2 && reduced(without, std::max<std::size_t>(parts - 1, 2))) continue;
+        if (parts == kept.size()) break;
+        parts = 2 * parts;
+    }
+    return kept;
+}
+
+int length_of(float value) {
+    if (value == 0 || std::isinf(value)) return 0;
+    if (std::isnan(value)) return std::numeric_limits<int>::max();
+    int exponent = 0;
+    static_cast<void>(std::frexp(value, &exponent));
+    constexpr int near_one = 8;  // exponents up to it cost nothing: 1/256 to 256
+    return 2 * bits_of(value) + std::max(std::abs(exponent) - near_one, 0) + (value < 0 ? 1 : 0);
+}
+
+std::vector<float> shorter_numbers(float value) {
+    if (!std::isfinite(value)) return {};
+    std::vector<float> candidates = {0};
+    for (int bits = 1; bits < significant_bits; ++bits) candidates.push_back(rounded_to(value, bits));
+    for (const float step : {1.0f, 0.5f, 0.25f, 0.125f, 0.0625f})
+        if (std::abs(value) < 0x1p20f) candidates.push_back(step * std::nearbyint(value / step));
+    std::erase_if(candidates, [&](float c) { return !std::isfinite(c) || length_of(c) >= length_of(value); });
+    std::ranges::stable_sort(candidates, {}, length_of);
+    candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
+    return candidates;
+}
 
 bool leave_out_instances(FaultCase& fault, const CaseTest& shows_fault) {
     const std::size_t before = fault.triangles.size();

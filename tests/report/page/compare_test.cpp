@@ -6,7 +6,6 @@
 #include <random>
 
 #include "engine/core/error.h"
-#include "report/page/significance.h"
 
 namespace twinray::report {
 namespace {

@@ -9,8 +9,6 @@
 #include <limits>
 
 #include <twinray/geometry.h>
-#include "report/reproducer/ddmin.h"
-#include "report/reproducer/short_numbers.h"
 
 namespace twinray::reproducer {
 namespace {
