@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "report/conformance/draws.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

@@ -2,7 +2,6 @@
 // Edges and vertices that triangles share, and answers that must not depend on when they are asked for.
 #include <algorithm>
 #include <cstring>
-#include <limits>
 #include <set>
 
 #include "report/conformance/case_run.h"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Instances: what they are called, masks, flags, transforms.
-#include <algorithm>
 
 #include "report/conformance/case_run.h"
 #include "report/conformance/suite.h"

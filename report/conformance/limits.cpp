@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // t_min and t_max, which triangles may not reach.
 #include <cmath>
-#include <limits>
 
 #include "report/conformance/case_run.h"
 #include "report/conformance/suite.h"

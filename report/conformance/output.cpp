@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "report/conformance/output.h"
 
-#include <algorithm>
 #include <iomanip>
 
 namespace twinray::conformance {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Relations between answers, which hold whatever the scene is.
-#include <algorithm>
 #include <numeric>
 
 #include "engine/core/parallel.h"

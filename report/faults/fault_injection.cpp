@@ -3,7 +3,6 @@
 
 #include <cstdlib>
 #include <tuple>
-#include <type_traits>
 
 #include "engine/core/error.h"
 #include "engine/core/vulkan.h"
@@ -87,8 +86,9 @@ struct Wrapper<Tag, VkResult(VKAPI_PTR*)(Args...)> {
         if (const VkResult fault = active->enter(Tag::function); fault != VK_SUCCESS) return fault;
         const VkResult result = next(args...);
         // The handle comes last, and twinray creates one object per call.
-        if constexpr (Tag::makes != nullptr)
-            if (result == VK_SUCCESS) active->created(Tag::makes, *std::get<sizeof...(Args) - 1>(std::tuple(args...)));
+        if constexpr (!Tag::makes.empty())
+            if (result == VK_SUCCESS)
+                active->created(Tag::makes.data(), *std::get<sizeof...(Args) - 1>(std::tuple(args...)));
         return result;
     }
 };
@@ -110,18 +110,12 @@ PFN_vkVoidFunction wrapped(PFN_vkVoidFunction real) {
     return reinterpret_cast<PFN_vkVoidFunction>(&Wrapping::call);
 }
 
-#define TWINRAY_TAG(name, error, may_lose_device)                                            \
+#define TWINRAY_TAG(name, error, may_lose_device, ...)                                       \
     struct Tag_##name {                                                                      \
         static constexpr FaultInjector::Function function = {#name, error, may_lose_device}; \
-        static constexpr const char* makes = nullptr;                                        \
+        static constexpr std::string_view makes = "" #__VA_ARGS__;                           \
     };
 TWINRAY_FALLIBLE(TWINRAY_TAG)
-#undef TWINRAY_TAG
-#define TWINRAY_TAG(name, error, may_lose_device, type)                                      \
-    struct Tag_##name {                                                                      \
-        static constexpr FaultInjector::Function function = {#name, error, may_lose_device}; \
-        static constexpr const char* makes = #type;                                          \
-    };
 TWINRAY_CREATING(TWINRAY_TAG)
 #undef TWINRAY_TAG
 #define TWINRAY_TAG(name, type)                        \

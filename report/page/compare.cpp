@@ -6,7 +6,6 @@
 #include <map>
 #include <numeric>
 #include <random>
-#include <set>
 
 #include "engine/core/error.h"
 #include "report/page/wording.h"

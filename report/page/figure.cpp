@@ -2,7 +2,6 @@
 #include "report/page/figure.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 #include "engine/accel/trace_desc.h"

@@ -12,13 +12,19 @@
 namespace twinray::report {
 namespace {
 
-suite::Subject subject_of(Mistake mistake) {
-    switch (mistake) {
-        case Mistake::leak: return suite::Subject::aimed_rays;
-        case Mistake::counted_wrong: return suite::Subject::crossings;
-        default: return suite::Subject::hits;
-    }
-}
+// By mistake, in their order: what is counted, what one does who makes it, and the cases that ask.
+struct MistakeRow {
+    std::string_view name, of_driver;
+    suite::Subject subject;
+};
+constexpr std::array<MistakeRow, all_mistakes.size()> mistakes = {{
+    {"rays lost at edges and vertices", "loses rays at edges and vertices", suite::Subject::aimed_rays},
+    {"hits that do not exist", "reports hits that do not exist", suite::Subject::hits},
+    {"distances beyond the error bound", "returns wrong distances", suite::Subject::hits},
+    {"hits that are not finite", "returns numbers that are not finite", suite::Subject::hits},
+    {"shared edges not counted exactly once", "does not count shared edges exactly once", suite::Subject::crossings},
+}};
+const MistakeRow& row_for(Mistake mistake) { return mistakes[static_cast<std::size_t>(mistake)]; }
 
 // Whether a class is this mistake: SwTlas and the driver have their own.
 bool is_class_of(Mistake mistake, std::string_view kind) {
@@ -146,19 +152,11 @@ std::string text_of(const Finding& finding) {
     return finding.level == "watertight" ? said : "at " + finding.level + ' ' + said;
 }
 
-std::string_view name_of(Mistake mistake) {
-    switch (mistake) {
-        case Mistake::leak: return "rays lost at edges and vertices";
-        case Mistake::false_hit: return "hits that do not exist";
-        case Mistake::wrong_distance: return "distances beyond the error bound";
-        case Mistake::not_finite: return "hits that are not finite";
-        case Mistake::counted_wrong: return "shared edges not counted exactly once";
-    }
-    return "";
-}
+std::string_view name_of(Mistake mistake) { return row_for(mistake).name; }
+std::string_view wrong_of(Mistake mistake) { return row_for(mistake).of_driver; }
 
 Finding finding_at(std::span<const Record> records, std::string_view backend, std::string_view level, Mistake mistake) {
-    const suite::Subject subject = subject_of(mistake);
+    const suite::Subject subject = row_for(mistake).subject;
     Finding finding{.backend = std::string(backend), .level = std::string(level), .mistake = mistake};
     for (const Record& record : records) {
         if (record.backend != backend || record.level != level || !can_show(mistake, record)) continue;

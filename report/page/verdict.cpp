@@ -116,17 +116,6 @@ std::size_t faults_of(std::span<const Record> records, std::string_view whose) {
     return static_cast<std::size_t>(std::ranges::count(records, whose, &Record::fault_of));
 }
 
-std::string_view wrong_of(Mistake mistake) {
-    switch (mistake) {
-        case Mistake::leak: return "loses rays at edges and vertices";
-        case Mistake::false_hit: return "reports hits that do not exist";
-        case Mistake::wrong_distance: return "returns wrong distances";
-        case Mistake::not_finite: return "returns numbers that are not finite";
-        case Mistake::counted_wrong: return "does not count shared edges exactly once";
-    }
-    return "";
-}
-
 // The mistakes of the driver, as the headline lists them; "" for none.
 std::string wrongs_of(std::span<const Record> records, std::span<const Finding> findings, std::string_view driver) {
     std::vector<std::string> wrongs;

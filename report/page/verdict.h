@@ -19,7 +19,8 @@ namespace twinray::report {
 enum class Mistake : std::uint8_t { leak, false_hit, wrong_distance, not_finite, counted_wrong };
 inline constexpr std::array all_mistakes = {Mistake::leak, Mistake::false_hit, Mistake::wrong_distance,
                                             Mistake::not_finite, Mistake::counted_wrong};
-std::string_view name_of(Mistake mistake);  // "rays lost at edges and vertices"
+std::string_view name_of(Mistake mistake);   // "rays lost at edges and vertices"
+std::string_view wrong_of(Mistake mistake);  // the same of who makes it: "loses rays at edges and vertices"
 
 // Rays of one case and kind.
 struct RayKind {

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cstring>
 #include <fstream>
-#include <iomanip>
-#include <sstream>
 
 #include "engine/core/error.h"
 #include "engine/core/fnv1a.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "report/reproducer/write.h"
 
-#include <algorithm>
 #include <fstream>
 #include <ostream>
 #include <set>

@@ -51,23 +51,27 @@ Mesh far_grid() {
     return grid;
 }
 
+// `excuse`: why nothing is demanded; "" = it is.
+void add_difference(CaseRun& run, Record record, const Difference& found, std::uint64_t faults, std::size_t count,
+                    const std::string& excuse) {
+    record.reference = "invariance";
+    set_faults(record, faults, count);
+    record.results.emplace("other_decisions", found.decisions);
+    record.results.emplace("other_bits", found.bits);
+    record.example = found.example;
+    if (excuse.empty())
+        frame::decide(record, "twinray");
+    else
+        record.criterion = "none: " + excuse;
+    run.add(record);
+}
+
 void record_contraction(CaseRun& run, const Configuration& configuration, const Difference& found, std::size_t count,
                         const std::optional<Control>& control) {
     Record record = run.record(configuration);
-    record.reference = "invariance";
-    set_faults(record, found.decisions, count);
-    record.results = {{"other_decisions", found.decisions}, {"other_bits", found.bits}};
-    record.example = found.example;
-    const std::string excuse = why_bits_may_differ(run, configuration);
-    if (control) {
-        record.variant = control->code.name;
-        record.criterion = "none: without `precise` the driver may contract";
-    } else if (!excuse.empty()) {
-        record.criterion = "none: " + excuse;
-    } else {
-        frame::decide(record, "twinray");
-    }
-    run.add(record);
+    if (control) record.variant = control->code.name;
+    add_difference(run, record, found, found.decisions, count,
+                   control ? "without `precise` the driver may contract" : why_bits_may_differ(run, configuration));
 }
 
 // Instances under rotations and uneven scales, so that the inverse and the transformed ray are also used.
@@ -175,16 +179,8 @@ void device_against_cpu(CaseRun& run) {
             const Difference found = compared(run, configuration, scene, rays);
             Record record = run.record(configuration);
             record.params = {{"scene", name}};
-            record.reference = "invariance";
-            record.results = {
-                {"other_decisions", found.decisions}, {"other_bits", found.bits}, {"worst_t_ulp", found.worst_ulp}};
-            set_faults(record, found.total(), rays.size());
-            record.example = found.example;
-            if (excuse.empty())
-                frame::decide(record, "twinray");
-            else
-                record.criterion = "none: " + excuse;
-            run.add(record);
+            record.results = {{"worst_t_ulp", found.worst_ulp}};
+            add_difference(run, record, found, found.total(), rays.size(), excuse);
         }
     }
 }

@@ -4,7 +4,6 @@
 
 #include "report/faults/fault_injection.h"
 #include "report/suite/sections.h"
-#include "report/suite/scenes.h"
 #include <twinray/geometry.h>
 #include "validation/reference/aimed_rays.h"
 

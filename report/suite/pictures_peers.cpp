@@ -16,7 +16,6 @@
 #include "report/suite/sections.h"
 #include "renderer/camera.h"
 #include "renderer/reference.h"
-#include "engine/core/error.h"
 
 namespace twinray::suite {
 namespace {

@@ -14,7 +14,6 @@
 #include "report/suite/scenes.h"
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
-#include "validation/reference/aimed_rays.h"
 
 namespace twinray::suite {
 namespace {

@@ -3,9 +3,7 @@
 #pragma once
 
 #include "engine/core/kernel.h"
-#include "engine/scene/mesh.h"
 #include "report/suite/case_run.h"
-#include "report/frame/devices.h"
 #include "twinray/glsl/cpp_spawn.h"
 
 namespace twinray::suite {
