@@ -15,7 +15,7 @@
 #include "validation/records/recorder.h"
 #include "validation/reference/float_probe.h"
 #include "report/page/ci_formats.h"
-#include "report/page/summary.h"
+#include "report/page/verdict.h"
 #include "report/suite/suite.h"
 
 namespace twinray::cli {

@@ -15,7 +15,6 @@
 #include "report/page/compare.h"
 #include "report/page/gnuplot.h"
 #include "report/page/page.h"
-#include "report/page/summary.h"
 #include "report/page/verdict.h"
 #include "report/reproducer/write.h"
 #include "report/suite/suite.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "validation/records/record.h"
+#include "validation/records/recorder.h"
 
 namespace twinray::report {
 
@@ -80,5 +80,8 @@ NamedReport read_report(const std::filesystem::path& path);
 void print_side_by_side(std::ostream& out, std::span<const NamedReport> reports);
 // The changes, the ratios of times, and a verdict with its probability of a false alarm.
 void print_comparison(std::ostream& out, const Comparison& comparison);
+
+// Lines of a baseline that are no records of a report.
+void print_other_lines(std::ostream& out, const JsonLines& baseline);
 
 }  // namespace twinray::report

@@ -5,7 +5,6 @@
 #include <set>
 
 #include "engine/core/error.h"
-#include "validation/records/recorder.h"
 #include "report/page/verdict.h"
 #include "report/page/wording.h"
 
@@ -91,6 +90,15 @@ void print_comparison(std::ostream& out, const Comparison& comparison) {
             : comparison.changes.empty() ? "verdict: no change beyond noise"
                                          : "verdict: changed, and nothing is worse")
         << '\n';
+}
+
+void print_other_lines(std::ostream& out, const JsonLines& baseline) {
+    const char* separator = "  not compared: ";
+    for (const auto& [kind, count] : baseline.others) {
+        out << separator << count << " of " << kind;
+        separator = ", ";
+    }
+    if (!baseline.others.empty()) out << '\n';
 }
 
 }  // namespace twinray::report

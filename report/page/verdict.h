@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <ostream>
 #include <set>
 #include <span>
 #include <string>
@@ -96,5 +97,8 @@ struct Verdict {
     std::vector<Sentence> sentences;
 };
 Verdict verdict_of(std::span<const Record> records);
+
+// A report as lines of text: the verdict, each fault of twinray, then how many records came to what.
+void print_summary(std::ostream& out, std::span<const Record> records);
 
 }  // namespace twinray::report

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Which case of the suite to run next, and how thoroughly: pure functions.
+// Which case of the suite to run next, and how thoroughly, by pure functions; which are done, as a file.
 #pragma once
 
+#include <filesystem>
+#include <map>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "validation/records/record.h"
@@ -34,5 +37,18 @@ std::optional<std::size_t> next_to_improve(std::span<const CaseProgress> cases, 
 // The order of a first round that reaches every section early: the first case of each, then the second, ... `sections`
 // is the section of each case; returns their indices.
 std::vector<std::size_t> by_turns(std::span<const char> sections);
+
+// Which cases of a run are done, so that a run that was cut short goes on where it was.
+struct SuiteState {
+    std::filesystem::path file = {};  // "" = kept in memory alone
+    std::string key = {};             // all that must be the same for a run to go on: version, device, suite, seed, ...
+    std::map<std::string, CaseProgress> cases = {};  // by id: those that are done
+    double seconds = 0;                              // that they took
+};
+
+// Throws Error naming the file where it cannot be read, or where its key is another.
+SuiteState read_state(const std::filesystem::path& file, const std::string& key);
+// Replaces the file at once. Throws Error naming it.
+void write_state(const SuiteState& state);
 
 }  // namespace twinray::suite

@@ -11,7 +11,7 @@
 
 #include "report/frame/cases.h"
 #include "report/frame/devices.h"
-#include "report/suite/suite_state.h"
+#include "report/suite/schedule.h"
 
 namespace twinray::suite {
 

@@ -8,7 +8,6 @@
 #include "engine/core/error.h"
 #include "report/suite/schedule.h"
 #include "report/suite/suite.h"
-#include "report/suite/suite_state.h"
 #include "tests/scene/temp_dir.h"
 
 namespace twinray::suite {
