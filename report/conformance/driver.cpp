@@ -27,6 +27,34 @@ KernelDesc query_desc(const Context& context) {
     return desc;
 }
 
+RayTracingPipelineDesc pipeline_desc(const Context& context) {
+    RayTracingPipelineDesc desc;
+    desc.name = "conformance_pipeline";
+    desc.ray_generation = conformance_pipeline_rgen_spirv;
+    if (context.properties().primitive_culling) desc.ray_generation = conformance_pipeline_rgen_culling_spirv;
+    desc.miss = conformance_pipeline_rmiss_spirv;
+    desc.closest_hit = conformance_pipeline_rchit_spirv;
+    desc.any_hit = conformance_pipeline_rahit_spirv;
+    desc.intersection = conformance_pipeline_rint_spirv;
+    return desc;
+}
+
+// Opens passes. The answers become zeros first.
+void record_trace(const RayTracingPipeline& pipeline, Commands& commands, const QueryArgs& args,
+                  const Buffer& answers) {
+    Buffer arguments(commands.context(), {.name = "conformance arguments", .bytes = sizeof(QueryArgs)});
+    {
+        const auto pass = commands.pass("conformance arguments");
+        commands.write(arguments, args);
+        commands.fill(answers, 0, answers.bytes(), 0);
+    }
+    TraceArgs launch{};
+    launch.user_data = arguments.address();
+    launch.count = args.count;
+    pipeline.trace(commands, launch);
+    commands.retain(std::move(arguments));
+}
+
 VkAccelerationStructureBuildGeometryInfoKHR build_info(const BuildInput& input) {
     VkAccelerationStructureBuildGeometryInfoKHR info{};
     info.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_GEOMETRY_INFO_KHR;
@@ -82,32 +110,6 @@ void Serialized::set_handles(std::span<const std::uint64_t> addresses) {
     std::memcpy(bytes.data() + header_bytes + 3 * sizeof(std::uint64_t), addresses.data(), addresses.size_bytes());
 }
 
-RayTracingPipelineDesc PipelineQuery::desc(const Context& context) {
-    RayTracingPipelineDesc desc;
-    desc.name = "conformance_pipeline";
-    desc.ray_generation = conformance_pipeline_rgen_spirv;
-    if (context.properties().primitive_culling) desc.ray_generation = conformance_pipeline_rgen_culling_spirv;
-    desc.miss = conformance_pipeline_rmiss_spirv;
-    desc.closest_hit = conformance_pipeline_rchit_spirv;
-    desc.any_hit = conformance_pipeline_rahit_spirv;
-    desc.intersection = conformance_pipeline_rint_spirv;
-    return desc;
-}
-
-void PipelineQuery::record(Commands& commands, const QueryArgs& args, const Buffer& answers) const {
-    Buffer arguments(commands.context(), {.name = "conformance arguments", .bytes = sizeof(QueryArgs)});
-    {
-        const auto pass = commands.pass("conformance arguments");
-        commands.write(arguments, args);
-        commands.fill(answers, 0, answers.bytes(), 0);
-    }
-    TraceArgs launch{};
-    launch.user_data = arguments.address();
-    launch.count = args.count;
-    pipeline_.trace(commands, launch);
-    commands.retain(std::move(arguments));
-}
-
 BottomRef Bottom::ref() const {
     const bool holds_boxes = std::ranges::any_of(input.geometries, &GeometryInput::is_boxes);
     return {structure.address(), holds_boxes};
@@ -117,7 +119,7 @@ Driver::Driver(Context& context, Backend way) : context_(context) {
     if (way == Backend::ray_query)
         query_ = std::make_unique<Kernel<QueryArgs>>(context, query_desc(context));
     else
-        pipeline_ = std::make_unique<PipelineQuery>(context);
+        pipeline_ = std::make_unique<RayTracingPipeline>(context, pipeline_desc(context));
 }
 
 TopInput Driver::told(const TopInput& input, const std::vector<BottomRef>& bottoms) const {
@@ -248,7 +250,7 @@ Traced Driver::trace(const Top& top, std::span<const Shot> given, uint slots) {
     if (query_)
         query_->dispatch(commands, args, shots.size());
     else
-        pipeline_->record(commands, args, answers);
+        record_trace(*pipeline_, commands, args, answers);
     commands.submit();
     Traced traced{download<Answer>(context_, answers, shots.size()),
                   download<uint>(context_, candidates, shots.size() * slots), slots};

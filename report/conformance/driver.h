@@ -40,21 +40,6 @@ struct Serialized {
     std::uint64_t word(std::size_t index) const;
 };
 
-// The shots of a query through a ray tracing pipeline: candidates come up in any-hit and intersection shaders.
-class PipelineQuery {
-  public:
-    // Instances of triangles are to take the first hit record, those of boxes the second.
-    explicit PipelineQuery(Context& context) : pipeline_(context, desc(context)) {}
-
-    // Opens passes. The answers become zeros first.
-    void record(Commands& commands, const QueryArgs& args, const Buffer& answers) const;
-
-  private:
-    static RayTracingPipelineDesc desc(const Context& context);
-
-    RayTracingPipeline pipeline_;
-};
-
 // A structure, and what it was made of.
 struct Bottom {
     AccelerationStructure structure;
@@ -130,8 +115,10 @@ class Driver {
     Context& context_;
     Misdeed misdeed_ = Misdeed::none;
     std::size_t traces_ = 0;
-    std::unique_ptr<Kernel<QueryArgs>> query_;  // one of these
-    std::unique_ptr<PipelineQuery> pipeline_;
+    // One of these. In a pipeline candidates come up in any-hit and intersection shaders; instances of triangles take
+    // its first hit record, those of boxes the second.
+    std::unique_ptr<Kernel<QueryArgs>> query_;
+    std::unique_ptr<RayTracingPipeline> pipeline_;
 };
 
 }  // namespace twinray::conformance
