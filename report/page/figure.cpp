@@ -40,6 +40,19 @@ void add_slopes(std::vector<FigureSeries>& all) {
     }
 }
 
+// The label of an estimate in the plot; "" for records that are not in it.
+std::string estimated_by(const Record& record) {
+    const auto is = [&](const char* id, const char* setting, std::string_view value) {
+        return record.case_id == id && (!setting || text_at(record.params, setting) == value);
+    };
+    if (is("V01", "distance", "1")) return "factor, " + record.variant;
+    if (is("G01", "light", "from above")) return "illumination";
+    if (is("G04", nullptr, "")) return "sky light";
+    if (is("G05", nullptr, "")) return "hours of sun";
+    if (is("G06", nullptr, "")) return "centroid";
+    return "";
+}
+
 }  // namespace
 
 std::size_t color_of(std::string_view backend) {
@@ -127,23 +140,6 @@ Figure paths_figure(std::span<const Record> records) {
     add_slopes(figure.series);
     return figure;
 }
-
-namespace {
-
-// The label of an estimate in the plot; "" for records that are not in it.
-std::string estimated_by(const Record& record) {
-    const auto is = [&](const char* id, const char* setting, std::string_view value) {
-        return record.case_id == id && (!setting || text_at(record.params, setting) == value);
-    };
-    if (is("V01", "distance", "1")) return "factor, " + record.variant;
-    if (is("G01", "light", "from above")) return "illumination";
-    if (is("G04", nullptr, "")) return "sky light";
-    if (is("G05", nullptr, "")) return "hours of sun";
-    if (is("G06", nullptr, "")) return "centroid";
-    return "";
-}
-
-}  // namespace
 
 Figure estimates_figure(std::span<const Record> records) {
     Figure figure{.id = "estimates",

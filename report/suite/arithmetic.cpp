@@ -45,11 +45,7 @@ std::vector<Configuration> precise_configurations(CaseRun& run) {
 }
 
 // Contraction does harm here: edges of cells far from the origin.
-Mesh far_grid() {
-    Mesh grid = make_grid(32, 32);
-    for (vec3& position : grid.positions) position = position * 32.0f + vec3(1e7f, 0, 1e7f);
-    return grid;
-}
+Mesh far_grid() { return moved(scaled(make_grid(32, 32), 32), vec3(1e7f, 0, 1e7f)); }
 
 // `excuse`: why nothing is demanded; "" = it is.
 void add_difference(CaseRun& run, Record record, const Difference& found, std::uint64_t faults, std::size_t count,

@@ -32,28 +32,6 @@ TreeCheck check_tree(const BuiltTree& tree, const Mesh& mesh) {
     return check_tree(tree.bvh, tree.nodes, boxes);
 }
 
-}  // namespace
-
-void expect_sound_tree(CaseRun& run, const Mesh& mesh, Values params) {
-    for (const Configuration& configuration : run.one_configuration_each()) {
-        if (!is_ours(configuration.backend)) continue;  // the driver shows no tree
-        auto& accel = dynamic_cast<SwTlas&>(run.devices().empty_accel(configuration));
-        const AccelHandle handle = accel.push(mesh);
-        accel.sync();
-        const TreeCheck tree = check_tree(download_geometry(accel, handle), mesh);
-        const bool is_deep = tree.depth > depth_limit(mesh.triangles.size());
-        params.insert_or_assign("measured", "tree");
-        run.expect(configuration,
-                   {.params = params,
-                    .results = {{"depth", tree.depth}, {"sah", tree.sah}},
-                    .n = mesh.triangles.size(),
-                    .faults = tree.violations.size() + (is_deep ? 1u : 0u),
-                    .what = tree.violations.empty() ? text("depth ", tree.depth) : tree.violations.front()});
-    }
-}
-
-namespace {
-
 void measure_and_check(CaseRun& run, const Mesh& mesh, std::span<const Ray> rays, const Values& params) {
     run.measure(world_of(mesh), rays, {.params = params});
     expect_sound_tree(run, mesh, params);
@@ -192,9 +170,9 @@ void sound_trees(CaseRun& run) {
 void quantised_nodes(CaseRun& run) {
     std::vector<std::pair<std::string, Mesh>> meshes = {{"height field", make_grid(60, 60, 0.2f, 3)}};
     for (const int exponent : {0, 8, 16, 22}) {
-        Mesh far = make_soup(static_cast<uint>(run.amount(1'000, 100'000)), 17, 0.1f);
-        for (vec3& position : far.positions) position += std::ldexp(1.0f, exponent) * vec3(1, -0.7f, 0.3f);
-        meshes.push_back({text("soup of size 2 near 2^", exponent), std::move(far)});
+        const Mesh soup = make_soup(static_cast<uint>(run.amount(1'000, 100'000)), 17, 0.1f);
+        meshes.push_back(
+            {text("soup of size 2 near 2^", exponent), moved(soup, std::ldexp(1.0f, exponent) * vec3(1, -0.7f, 0.3f))});
     }
     Mesh sizes = make_soup(static_cast<uint>(run.amount(1'000, 100'000)), 18);
     for (std::size_t i = 0; i < sizes.positions.size(); ++i)
@@ -268,6 +246,24 @@ void layouts_and_qualities(CaseRun& run) {
 }
 
 }  // namespace
+
+void expect_sound_tree(CaseRun& run, const Mesh& mesh, Values params) {
+    for (const Configuration& configuration : run.one_configuration_each()) {
+        if (!is_ours(configuration.backend)) continue;  // the driver shows no tree
+        auto& accel = dynamic_cast<SwTlas&>(run.devices().empty_accel(configuration));
+        const AccelHandle handle = accel.push(mesh);
+        accel.sync();
+        const TreeCheck tree = check_tree(download_geometry(accel, handle), mesh);
+        const bool is_deep = tree.depth > depth_limit(mesh.triangles.size());
+        params.insert_or_assign("measured", "tree");
+        run.expect(configuration,
+                   {.params = params,
+                    .results = {{"depth", tree.depth}, {"sah", tree.sah}},
+                    .n = mesh.triangles.size(),
+                    .faults = tree.violations.size() + (is_deep ? 1u : 0u),
+                    .what = tree.violations.empty() ? text("depth ", tree.depth) : tree.violations.front()});
+    }
+}
 
 std::vector<SuiteCase> build_cases() {
     return {

@@ -173,10 +173,9 @@ void within_a_mesh(CaseRun& run) {
 void baked(CaseRun& run) {
     const Mesh ball = make_icosphere(4);
     const vec3 by(0.5f, 0.25f, -0.125f);
-    Mesh rounded = ball, away = ball;
+    Mesh rounded = ball;
     for (vec3& p : rounded.positions) p = (p + 16.0f) - 16.0f;  // so that moved ones are exact
-    away.positions = rounded.positions;
-    for (vec3& p : away.positions) p += by;
+    const Mesh away = moved(rounded, by);
     ask_same_contacts(run, {rounded, away}, {{0, {}}, {0, Transform::translation(by)}}, {{0, {}}, {1, {}}});
 }
 

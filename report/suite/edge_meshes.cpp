@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include <twinray/geometry.h>
+#include "report/suite/scenes.h"
 #include "validation/reference/draws.h"
 
 namespace twinray::suite {
@@ -64,11 +65,7 @@ void add_fan(Mesh& mesh, const Fan& fan, Draws& draws) {
 
 }  // namespace
 
-Mesh make_integer_grid(uint n) {
-    Mesh grid = make_grid(n, n);
-    for (vec3& position : grid.positions) position *= static_cast<float>(n);
-    return grid;
-}
+Mesh make_integer_grid(uint n) { return scaled(make_grid(n, n), static_cast<float>(n)); }
 
 Mesh make_jittered_grid(uint n, float jitter, std::uint64_t seed) {
     Mesh grid = make_integer_grid(n);

@@ -2,6 +2,7 @@
 // Edges: rays that pass vertices, edges and boxes exactly, or as nearly as float32 can say.
 #include <algorithm>
 #include <cstring>
+#include <numeric>
 
 #include "report/suite/edge_meshes.h"
 #include "report/suite/sections.h"
@@ -14,13 +15,6 @@ namespace twinray::suite {
 namespace {
 
 constexpr uint grid_cells = 32;
-
-// 0, 1, ..., count.
-std::vector<float> whole_numbers(uint count) {
-    std::vector<float> numbers;
-    for (uint i = 0; i <= count; ++i) numbers.push_back(static_cast<float>(i));
-    return numbers;
-}
 
 }  // namespace
 
@@ -61,7 +55,9 @@ void straight_through_a_grid(CaseRun& run) {
 // From inside, to the wall, without leaving a plane in which the boxes of triangles end: 0 * infinity in the slab test.
 void within_a_plane_of_boxes(CaseRun& run) {
     constexpr int size = 16;
-    const Mesh box = make_cut_box({whole_numbers(size), whole_numbers(size), whole_numbers(size)});
+    std::vector<float> planes(size + 1);
+    std::iota(planes.begin(), planes.end(), 0.0f);
+    const Mesh box = make_cut_box({planes, planes, planes});
     std::vector<Ray> rays;
     for (std::size_t i = 0; i < run.amount(4'096, 1'000'000); ++i) {
         Draws draws(run.seed(), i);

@@ -56,6 +56,37 @@ void lengths_by_powers_of_two(CaseRun& run, const World& world, std::span<const 
     }
 }
 
+// Answers to `rays` in `world`, which have zeros where those of `expected` have denormal numbers.
+void expect_those_of_zeros(CaseRun& run, const Measured& measured, std::span<const Traced> expected,
+                           std::span<const Ray> rays, Values params) {
+    params.insert_or_assign("measured", "beside zeros");
+    for (std::size_t k = 0; k < measured.traces.size(); ++k) {
+        CaseRun::Outcome outcome =
+            ask_each(measured.traces[k], rays, [&](std::size_t i, const Hit& hit) -> std::string {
+                const Hit& zero = expected[k].hits[i];
+                return hit.hit == zero.hit && std::abs(hit.t - zero.t) <= 0x1p-20f * std::abs(zero.t)
+                           ? ""
+                           : text("t = ", hit.t, ", with zeros ", zero.t);
+            });
+        outcome.params = params;
+        outcome.reference = "invariance";
+        run.expect(measured.traces[k].configuration, outcome);
+    }
+}
+
+// A flat fan of which the hub is at (hub, -hub, 0).
+Mesh fan_about(float hub) {
+    Mesh fan;
+    fan.positions.push_back(vec3(hub, -hub, 0));
+    constexpr std::array<vec2, 7> rim = {vec2(1, 0),      vec2(0.75f, 1), vec2(-0.25f, 1),    vec2(-1, 0.5f),
+                                         vec2(-1, -0.5f), vec2(0, -1),    vec2(0.75f, -0.75f)};
+    for (uint i = 0; i < rim.size(); ++i) {
+        fan.positions.push_back(vec3(rim[i], 0));
+        fan.triangles.push_back({0, 1 + i, 1 + (i + 1) % static_cast<uint>(rim.size())});
+    }
+    return fan;
+}
+
 }  // namespace
 
 void lengths_of_directions(CaseRun& run) {
@@ -132,41 +163,6 @@ void largest_distances(CaseRun& run) {
         }
     }
 }
-
-namespace {
-
-// Answers to `rays` in `world`, which have zeros where those of `expected` have denormal numbers.
-void expect_those_of_zeros(CaseRun& run, const Measured& measured, std::span<const Traced> expected,
-                           std::span<const Ray> rays, Values params) {
-    params.insert_or_assign("measured", "beside zeros");
-    for (std::size_t k = 0; k < measured.traces.size(); ++k) {
-        CaseRun::Outcome outcome =
-            ask_each(measured.traces[k], rays, [&](std::size_t i, const Hit& hit) -> std::string {
-                const Hit& zero = expected[k].hits[i];
-                return hit.hit == zero.hit && std::abs(hit.t - zero.t) <= 0x1p-20f * std::abs(zero.t)
-                           ? ""
-                           : text("t = ", hit.t, ", with zeros ", zero.t);
-            });
-        outcome.params = params;
-        outcome.reference = "invariance";
-        run.expect(measured.traces[k].configuration, outcome);
-    }
-}
-
-// A flat fan of which the hub is at (hub, -hub, 0).
-Mesh fan_about(float hub) {
-    Mesh fan;
-    fan.positions.push_back(vec3(hub, -hub, 0));
-    constexpr std::array<vec2, 7> rim = {vec2(1, 0),      vec2(0.75f, 1), vec2(-0.25f, 1),    vec2(-1, 0.5f),
-                                         vec2(-1, -0.5f), vec2(0, -1),    vec2(0.75f, -0.75f)};
-    for (uint i = 0; i < rim.size(); ++i) {
-        fan.positions.push_back(vec3(rim[i], 0));
-        fan.triangles.push_back({0, 1 + i, 1 + (i + 1) % static_cast<uint>(rim.size())});
-    }
-    return fan;
-}
-
-}  // namespace
 
 void denormal_coordinates(CaseRun& run) {
     const std::size_t count = run.amount(512, 50'000);

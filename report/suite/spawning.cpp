@@ -256,8 +256,7 @@ void leave_cancelled_offsets(CaseRun& run) {
     const Spawner spawner(run.devices().context(Backend::software));
     Random random(run.seed());
     for (const float distance : {1e3f, 1e4f, 1e5f}) {
-        Departures departures{.mesh = make_icosphere(3), .params = {{"offset", distance}}};
-        for (vec3& position : departures.mesh.positions) position += vec3(distance);
+        Departures departures{.mesh = moved(make_icosphere(3), vec3(distance)), .params = {{"offset", distance}}};
         departures.transform = random.rotation() * Transform::translation(vec3(-distance));
         departures.items = leaving(random, departures.mesh, departures.transform, run.amount(2'048, 262'144));
         measure_self_hits(run, spawner, std::move(departures));
