@@ -26,8 +26,6 @@ Devices::Devices(ContextDesc desc, const AccelOptions& trees) : desc_(std::move(
     context_ = std::make_unique<Context>(desc_);
 }
 
-Devices::~Devices() = default;
-
 Context& Devices::context(Backend backend) {
     if (backend != Backend::pipeline) return *context_;
     if (!pipeline_context_) pipeline_context_ = std::make_unique<Context>(desc(backend));

@@ -41,7 +41,6 @@ class Devices {
     // Warnings go to take_warnings() in place of desc.log, unless desc.validation is set: then to both.
     // The software accelerators get the trees of `trees`.
     explicit Devices(ContextDesc desc, const AccelOptions& trees = {});
-    ~Devices();
     Devices(const Devices&) = delete;
     Devices& operator=(const Devices&) = delete;
 

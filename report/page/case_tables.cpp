@@ -19,12 +19,8 @@ using Key = std::array<std::string, 3>;  // backend, level, variant
 struct Group {
     std::vector<const Record*> records;
 
-    std::uint64_t n() const {
-        return sum([](const Record& record) { return record.n; });
-    }
-    std::uint64_t faults() const {
-        return sum([](const Record& record) { return record.faults; });
-    }
+    std::uint64_t n() const { return sum(&Record::n); }
+    std::uint64_t faults() const { return sum(&Record::faults); }
     bool is_disturbed() const {
         return std::ranges::any_of(records, [](const Record* r) { return r->time && r->time->is_disturbed(); });
     }
@@ -33,15 +29,13 @@ struct Group {
         const auto rank = [](const Record* record) {
             return !record->pass ? 0 : *record->pass ? 1 : record->fault_of == "twinray" ? 3 : 2;
         };
-        return **std::max_element(records.begin(), records.end(),
-                                  [&](const Record* a, const Record* b) { return rank(a) < rank(b); });
+        return **std::ranges::max_element(records, {}, rank);
     }
 
   private:
-    template <class Of>
-    std::uint64_t sum(const Of& of) const {
+    std::uint64_t sum(std::uint64_t Record::*of) const {
         std::uint64_t total = 0;
-        for (const Record* record : records) total += of(*record);
+        for (const Record* record : records) total += record->*of;
         return total;
     }
 };
@@ -75,9 +69,9 @@ std::string classes_of(const Group& group) {
     for (const Record* record : group.records)
         for (const auto& [kind, count] : record->counts)
             if (kind != "AGREE" && kind != "TIE") sums[kind] += count;
-    std::string text;
-    for (const auto& [kind, count] : sums) text += (text.empty() ? "" : ", ") + kind + ' ' + count_text(count);
-    return text;
+    std::vector<std::string> parts;
+    for (const auto& [kind, count] : sums) parts.push_back(kind + ' ' + count_text(count));
+    return joined(parts);
 }
 
 std::string fault_text(const Record& record) {
@@ -188,13 +182,11 @@ void write_not_run(std::ostream& out, const PageInput& input) {
         return;
     }
     out << "<div class=\"wide\"><table><tr><th>on</th><th>cases</th><th>why</th></tr>\n";
-    for (const auto& [key, cases] : groups) {
-        std::string ids;
-        for (const std::string& id : cases) ids += (ids.empty() ? "" : " ") + id;
+    for (const auto& [key, cases] : groups)
         out << "<tr><td>" << escaped(key.first == " " ? "all" : key.first) << "</td><td>"
-            << (cases.size() > 12 ? count_text(cases.size()) + " cases" : escaped(ids)) << "</td><td>"
-            << escaped(key.second) << "</td></tr>\n";
-    }
+            << (cases.size() > 12 ? count_text(cases.size()) + " cases"
+                                  : escaped(joined({cases.begin(), cases.end()}, " ")))
+            << "</td><td>" << escaped(key.second) << "</td></tr>\n";
     out << "</table></div>\n";
 }
 

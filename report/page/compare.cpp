@@ -2,6 +2,7 @@
 #include "report/page/compare.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -84,9 +85,8 @@ Suspicion suspicion_of_cases(const std::string& what, const std::string& kind,
 
 // Any answer that Vulkan and rounding allow.
 bool is_right(std::string_view kind) {
-    for (const char* right : {"AGREE", "TIE", "BOUNDARY", "BOUNDARY_HW_MISS", "UNSPECIFIED"})
-        if (kind == right) return true;
-    return false;
+    constexpr std::array<std::string_view, 5> right = {"AGREE", "TIE", "BOUNDARY", "BOUNDARY_HW_MISS", "UNSPECIFIED"};
+    return std::ranges::count(right, kind) > 0;
 }
 
 // Whether its counts are those of classes, one for each item.
@@ -293,9 +293,8 @@ double sign_test(std::size_t ups, std::size_t downs) {
 }
 
 bool Comparison::is_worse() const {
-    return std::any_of(changes.begin(), changes.end(), [](const Change& change) {
-        return change.kind == Change::Kind::worse || change.kind == Change::Kind::slower;
-    });
+    using enum Change::Kind;
+    return std::ranges::any_of(changes, [](const Change& c) { return c.kind == worse || c.kind == slower; });
 }
 
 Comparison compare(std::span<const Record> before, std::span<const Record> now) {

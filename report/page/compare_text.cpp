@@ -93,12 +93,9 @@ void print_comparison(std::ostream& out, const Comparison& comparison) {
 }
 
 void print_other_lines(std::ostream& out, const JsonLines& baseline) {
-    const char* separator = "  not compared: ";
-    for (const auto& [kind, count] : baseline.others) {
-        out << separator << count << " of " << kind;
-        separator = ", ";
-    }
-    if (!baseline.others.empty()) out << '\n';
+    std::vector<std::string> parts;
+    for (const auto& [kind, count] : baseline.others) parts.push_back(text(count, " of ", kind));
+    if (!parts.empty()) out << "  not compared: " << joined(parts) << '\n';
 }
 
 }  // namespace twinray::report

@@ -52,8 +52,8 @@ struct Axes {
 };
 
 bool labels_points(const Figure& figure) {
-    return std::any_of(figure.series.begin(), figure.series.end(), [](const FigureSeries& series) {
-        return std::any_of(series.points.begin(), series.points.end(), [](const auto& p) { return !p.label.empty(); });
+    return std::ranges::any_of(figure.series, [](const FigureSeries& series) {
+        return std::ranges::any_of(series.points, [](const auto& p) { return !p.label.empty(); });
     });
 }
 
@@ -95,8 +95,7 @@ std::vector<Label> labels_of(const Figure& figure, const Axes& axes) {
         for (const FigurePoint& point : series.points)
             add(point.label, figure.rows.empty() ? point.x : std::max(point.x, point.x_95.high), point.y, series.color);
         if (series.points.empty()) continue;
-        const auto last = std::max_element(series.points.begin(), series.points.end(),
-                                           [](const auto& a, const auto& b) { return a.x < b.x; });
+        const auto last = std::ranges::max_element(series.points, {}, &FigurePoint::x);
         // Beside the plot, where no other line passes.
         add(series.label, labels_points(figure) ? last->x : axes.x.high, last->y, series.color);
     }

@@ -92,12 +92,9 @@ void write_method(std::ostream& out, const PageInput& input) {
         << "Suite " << escaped(input.suite);
     if (input.seconds > 0) out << ", " << number(input.seconds, 3) << " s";
     out << ". By accelerator and level, measurements: ";
-    const char* separator = "";
-    for (const auto& [kind, count] : sums) {
-        out << separator << count_text(count) << ' ' << escaped(kind);
-        separator = ", ";
-    }
-    out << '.';
+    std::vector<std::string> parts;
+    for (const auto& [kind, count] : sums) parts.push_back(count_text(count) + ' ' + escaped(kind));
+    out << joined(parts) << '.';
     if (const double others = most_of_others(input.records); others > 0)
         out << " Times with &#8224; were disturbed: other programs used up to " << number(100 * others, 2)
             << " % of the processors at that time.";

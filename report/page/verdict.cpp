@@ -273,13 +273,9 @@ void print_summary(std::ostream& out, std::span<const Record> records) {
                 << ": " << record.faults << " of " << record.n << (record.reason.empty() ? "" : "; ") << record.reason
                 << (record.example.empty() ? "" : "; ") << record.example << '\n';
     }
-    out << "  ";
-    const char* separator = "";
-    for (const auto& [kind, count] : sums) {
-        out << separator << kind << ' ' << count;
-        separator = ", ";
-    }
-    out << '\n';
+    std::vector<std::string> parts;
+    for (const auto& [kind, count] : sums) parts.push_back(text(kind, ' ', count));
+    out << "  " << joined(parts) << '\n';
 }
 
 }  // namespace twinray::report

@@ -34,8 +34,7 @@ std::optional<double> t_of_plane(const ReferenceScene& reference, const Ray& ray
             glm::mat<3, 3, long double>(placement.to_world) * vertex + Vector(placement.offset) - Vector(ray.origin);
     }
     const Vector normal = cross(vertices[1] - vertices[0], vertices[2] - vertices[0]);
-    const Vector& nearest = *std::min_element(vertices.begin(), vertices.end(),
-                                              [](const Vector& a, const Vector& b) { return dot(a, a) < dot(b, b); });
+    const Vector& nearest = *std::ranges::min_element(vertices, {}, [](const Vector& v) { return dot(v, v); });
     const long double t = dot(normal, nearest) / dot(normal, Vector(ray.direction));
     return std::isfinite(t) ? std::optional(static_cast<double>(t)) : std::nullopt;
 }

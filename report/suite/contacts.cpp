@@ -29,10 +29,9 @@ void measure_host(CaseRun& run, const std::string& lattice, std::span<const Tria
 }
 
 std::string told(const ContactCounts& counts) {
-    std::string list;
-    for (const auto& [pair_class, count] : counts)
-        list += (list.empty() ? "" : ", ") + std::to_string(count) + ' ' + std::string(name_of(pair_class));
-    return list.empty() ? "none" : list;
+    std::vector<std::string> parts;
+    for (const auto& [pair_class, count] : counts) parts.push_back(text(count, ' ', name_of(pair_class)));
+    return parts.empty() ? "none" : joined(parts);
 }
 
 }  // namespace
