@@ -10,12 +10,8 @@
 namespace twinray::frame {
 
 std::string_view name_of(Backend backend) {
-    switch (backend) {
-        case Backend::software: return "sw";
-        case Backend::ray_query: return "hw";
-        case Backend::pipeline: return "hw-pipeline";
-    }
-    return "";
+    constexpr std::array<std::string_view, 3> names = {"sw", "hw", "hw-pipeline"};
+    return names[static_cast<std::size_t>(backend)];
 }
 
 Devices::Devices(ContextDesc desc, const AccelOptions& trees) : desc_(std::move(desc)), trees_(trees) {

@@ -12,13 +12,8 @@ namespace twinray::report {
 namespace {
 
 std::string_view word_of(Change::Kind kind) {
-    switch (kind) {
-        case Change::Kind::worse: return "worse";
-        case Change::Kind::better: return "better";
-        case Change::Kind::slower: return "slower";
-        case Change::Kind::faster: return "faster";
-    }
-    return "";
+    constexpr std::array<std::string_view, 4> words = {"worse", "better", "slower", "faster"};
+    return words[static_cast<std::size_t>(kind)];
 }
 
 // One for SwTlas, one for each way of the driver.

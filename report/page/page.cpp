@@ -49,13 +49,8 @@ dt { color: var(--soft); } dd { margin: 0; }
 constexpr std::array<std::string_view, 6> exact_cases = {"B06", "C05", "D01", "D07", "D08", "T15"};
 
 std::string_view mark_of(Sentence::Kind kind) {
-    switch (kind) {
-        case Sentence::Kind::right: return "&#10003;";
-        case Sentence::Kind::wrong: return "&#10007;";
-        case Sentence::Kind::measured: return "&#183;";
-        case Sentence::Kind::not_measured: return "?";
-    }
-    return "";
+    constexpr std::array<std::string_view, 4> marks = {"&#10003;", "&#10007;", "&#183;", "?"};  // as word_of()
+    return marks[static_cast<std::size_t>(kind)];
 }
 
 void write_verdict(std::ostream& out, const PageInput& input, const Verdict& verdict) {

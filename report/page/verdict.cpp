@@ -153,13 +153,8 @@ std::string headline_of(const Verdict& verdict, const std::string& wrongs, std::
 }  // namespace
 
 std::string_view word_of(Sentence::Kind kind) {
-    switch (kind) {
-        case Sentence::Kind::right: return "right";
-        case Sentence::Kind::wrong: return "wrong";
-        case Sentence::Kind::measured: return "measured";
-        case Sentence::Kind::not_measured: return "not measured";
-    }
-    return "";
+    constexpr std::array<std::string_view, 4> words = {"right", "wrong", "measured", "not measured"};
+    return words[static_cast<std::size_t>(kind)];
 }
 
 bool is_only_advised(const Record& record) {

@@ -83,40 +83,35 @@ void light_on_all_sizes(CaseRun& run) {
 
 // The mean of the first two faces: triangles of one area, which are the square. `light` computes the SkyLight.
 template <class Light>
-Estimate of_square(const Light& light, std::uint64_t samples, std::uint64_t seed) {
-    const Stopwatch start;
-    const SkyLight found =
-        light(SkyRaysDesc{.samples = static_cast<uint>(samples), .sides = Sides::front, .seed = seed});
-    const double ms = start.ms();
-    const Received &a = found.faces[0], &b = found.faces[1];
-    return {(a.value + b.value) / 2, (a.interval.low + b.interval.low) / 2, (a.interval.high + b.interval.high) / 2, ms,
-            found.ray_count};
+void measure_sky(CaseRun& run, const Scene& scene, double truth, const Light& light) {
+    measure_light(
+        run, scene, {}, truth, "samples", sky_samples, [&](Stage& stage, std::uint64_t samples, std::uint64_t seed) {
+            const Stopwatch start;
+            const SkyLight found =
+                light(stage, SkyRaysDesc{.samples = static_cast<uint>(samples), .sides = Sides::front, .seed = seed});
+            const double ms = start.ms();
+            const Received &a = found.faces[0], &b = found.faces[1];
+            return Estimate{(a.value + b.value) / 2, (a.interval.low + b.interval.low) / 2,
+                            (a.interval.high + b.interval.high) / 2, ms, found.ray_count};
+        });
 }
 
 // 1 minus the view factor of parallel squares (Howell C-11), one of which hides the sky from the other.
 void hidden_sky(CaseRun& run) {
     constexpr double hidden = 0.199824895698387383;
     const Scene scene = scene_of({square(0, true), square(1, false)});
-    measure_light(run, scene, {}, 1 - hidden, "samples", sky_samples,
-                  [&](Stage& stage, std::uint64_t samples, std::uint64_t seed) {
-                      const auto light = [&](const SkyRaysDesc& desc) {
-                          return sky_light(stage.accel, stage.faces, {0, 0, 1}, desc);
-                      };
-                      return of_square(light, samples, seed);
-                  });
+    measure_sky(run, scene, 1 - hidden, [&](Stage& stage, const SkyRaysDesc& desc) {
+        return sky_light(stage.accel, stage.faces, {0, 0, 1}, desc);
+    });
 }
 
 // The sun above for an hour, then aslant for two: as much of the square is lit each time.
 void hours_of_sun(CaseRun& run) {
     const Scene scene = shaded_square();
     const std::array<SunPosition, 2> positions = {SunPosition{{0, 0, -1}, 1}, SunPosition{{1, 0, -2}, 2}};
-    measure_light(run, scene, {}, 3 * lit, "samples", sky_samples,
-                  [&](Stage& stage, std::uint64_t samples, std::uint64_t seed) {
-                      const auto light = [&](const SkyRaysDesc& desc) {
-                          return sun_hours(stage.accel, stage.faces, positions, desc);
-                      };
-                      return of_square(light, samples, seed);
-                  });
+    measure_sky(run, scene, 3 * lit, [&](Stage& stage, const SkyRaysDesc& desc) {
+        return sun_hours(stage.accel, stage.faces, positions, desc);
+    });
 }
 
 // The roof is seen at height 1, and around it the square at 0.
