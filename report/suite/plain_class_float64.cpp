@@ -4,12 +4,8 @@
 namespace twinray::suite {
 namespace {
 
-int volume_sign(const dvec3& a, const dvec3& b, const dvec3& c, const dvec3& d) {
-    return plain_volume_sign<double>(a, b, c, d);
-}
-int area_sign(const dvec3& a, const dvec3& b, const dvec3& c, uint axis) {
-    return plain_area_sign<double>(a, b, c, axis);
-}
+constexpr auto* volume_sign = plain_volume_sign<double>;
+constexpr auto* area_sign = plain_area_sign<double>;
 
 #include "twinray/glsl/cpp_begin.h"
 #include "shaders/collide/triangle_pair.h"
