@@ -5,9 +5,7 @@
 #include <iostream>
 #include <memory>
 
-#include "cli/command/completion.h"
 #include "cli/command/help_text.h"
-#include "cli/command/man_page.h"
 #include "cli/command/values.h"
 #include "cli/commands.h"
 #include "engine/core/error.h"

@@ -7,7 +7,6 @@
 
 #include "cli/command/help_text.h"
 #include "cli/command/parse.h"
-#include "cli/command/suggest.h"
 #include "cli/command/values.h"
 #include "cli/commands.h"
 #include "engine/core/platform.h"

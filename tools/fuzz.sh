@@ -14,7 +14,7 @@ importers=engine/scene/importers
 declare -A readers=(
     [accel]="engine/accel/accel_backend.cpp engine/accel/instances.cpp engine/accel/sync.cpp engine/accel/geometry.cpp
         engine/accel/instance_array.cpp validation/reference/reference_accel.cpp"
-    [command]="cli/command/parse.cpp cli/command/values.cpp cli/command/number_values.cpp cli/command/suggest.cpp"
+    [command]="cli/command/parse.cpp cli/command/values.cpp cli/command/number_values.cpp"
     [csv]="cli/csv_files.cpp engine/scene/number_lines.cpp $importers/words.cpp"
     [encodings]="engine/scene/bytes.cpp"
     [events]="viewer/events.cpp"

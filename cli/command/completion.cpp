@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/command/completion.h"
+#include "cli/command/help_text.h"
 
 #include "engine/core/error.h"
 

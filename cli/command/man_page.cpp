@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/command/man_page.h"
+#include "cli/command/help_text.h"
 
 #include <algorithm>
 

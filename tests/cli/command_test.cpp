@@ -6,11 +6,8 @@
 #include <sstream>
 #include <vector>
 
-#include "cli/command/completion.h"
 #include "cli/command/help_text.h"
-#include "cli/command/man_page.h"
 #include "cli/command/parse.h"
-#include "cli/command/suggest.h"
 #include "tests/cli/sample_command.h"
 
 namespace twinray::cli {
