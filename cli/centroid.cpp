@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
-#include "cli/coordinates.h"
 #include "cli/ray_grid_options.h"
 #include "engine/core/error.h"
 #include "samples/support/progress.h"

@@ -2,16 +2,15 @@
 #include "cli/common.h"
 
 #include <algorithm>
-#include <bit>
 #include <cstdlib>
 #include <fstream>
+#include <iomanip>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include <twinray/scene.h>
 
 #include "cli/command/values.h"
-#include "cli/coordinates.h"
 #include "engine/core/error.h"
 #include "engine/scene/local_origin.h"
 #include <twinray/tlas.h>
@@ -125,6 +124,17 @@ Scene load_scene(const std::filesystem::path& file, const CommonOptions& options
     heed_warnings(scene, file.string(), options);
     return scene;
 }
+
+std::string coordinate_text(double coordinate, double origin) {
+    return text(std::setprecision(origin == 0 ? 6 : 12), coordinate + origin);
+}
+
+std::string coordinate_text(const dvec3& point, const dvec3& origin) {
+    return text("(", coordinate_text(point.x, origin.x), ", ", coordinate_text(point.y, origin.y), ", ",
+                coordinate_text(point.z, origin.z), ")");
+}
+
+nlohmann::json list_of(const dvec3& v) { return {v.x, v.y, v.z}; }
 
 void check_writable(const std::filesystem::path& file) {
     const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";

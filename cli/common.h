@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the commands share: options, making an accelerator, raw ray files, JSON lines.
+// What the commands share: options, making an accelerator, coordinates of files, JSON lines.
 #pragma once
 
 #include <filesystem>
@@ -11,6 +11,7 @@
 
 #include "cli/command/command.h"
 #include <twinray/tlas.h>
+#include "twinray/glsl/cpp.h"
 #include "validation/records/recorded_device.h"
 
 namespace twinray {
@@ -63,6 +64,11 @@ std::unique_ptr<AbstractAccel> make_accel(Context& context, const AccelChoice& c
 // Prints the importer's warnings to stderr unless quiet. With --strict they are an Error.
 Scene load_scene(const std::filesystem::path& file, const CommonOptions& options);
 void heed_warnings(const Scene& scene, const std::string& name, const CommonOptions& options);
+
+// "(1, 0, 0)": where this point of the scene is in its file, with the digits that large coordinates need.
+std::string coordinate_text(const dvec3& point, const dvec3& origin);
+std::string coordinate_text(double coordinate, double origin);
+nlohmann::json list_of(const dvec3& v);  // [x, y, z]
 
 void check_writable(const std::filesystem::path& file);  // its folder exists: before the work, not after it
 

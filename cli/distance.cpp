@@ -11,7 +11,6 @@
 #include "cli/command/values.h"
 #include "cli/commands.h"
 #include "cli/common.h"
-#include "cli/coordinates.h"
 #include "cli/csv_files.h"
 #include "cli/shards.h"
 #include "engine/analysis/npz.h"

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "cli/command/values.h"
-#include "cli/coordinates.h"
 #include "engine/core/error.h"
 #include "engine/core/stopwatch.h"
 
