@@ -5,8 +5,8 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "cli/analysis_options.h"
 #include "cli/commands.h"
-#include "cli/ray_grid_options.h"
 #include "engine/core/error.h"
 #include "samples/support/progress.h"
 

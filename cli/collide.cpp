@@ -8,9 +8,9 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "cli/analysis_options.h"
 #include "cli/command/values.h"
 #include "cli/commands.h"
-#include "cli/picture_options.h"
 #include "engine/core/error.h"
 #include "engine/core/stopwatch.h"
 

@@ -7,11 +7,10 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "cli/analysis_options.h"
 #include "cli/command/values.h"
 #include "cli/commands.h"
 #include "cli/csv_files.h"
-#include "cli/face_groups.h"
-#include "cli/ray_grid_options.h"
 #include "cli/shards.h"
 #include "engine/analysis/light_counts.h"
 #include "engine/core/error.h"

@@ -4,7 +4,6 @@
 #include <iostream>
 #include <optional>
 
-#include "cli/case_choice.h"
 #include "cli/command/values.h"
 #include "cli/commands.h"
 #include "cli/common.h"

@@ -7,7 +7,6 @@
 
 #include <twinray/scene.h>
 
-#include "cli/case_choice.h"
 #include "cli/command/values.h"
 #include "cli/commands.h"
 #include "cli/common.h"

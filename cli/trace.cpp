@@ -8,10 +8,10 @@
 
 #include <twinray/scene.h>
 
+#include "cli/analysis_options.h"
 #include "cli/command/values.h"
 #include "cli/commands.h"
 #include "cli/common.h"
-#include "cli/picture_options.h"
 #include "cli/shards.h"
 #include "engine/scene/ray_file.h"
 #include <twinray/queries.h>

@@ -1,11 +1,25 @@
 // SPDX-License-Identifier: MIT
-// `twinray verify --suite conformance`.
+// Cases of suites: --only and --list, which choose them, and `twinray verify --suite conformance`.
 #pragma once
 
 #include "cli/common.h"
 #include "report/conformance/suite.h"
+#include "report/frame/cases.h"
 
 namespace twinray::cli {
+
+// --only and --list: which cases of a suite run.
+Option only_option(std::vector<std::string>& patterns);
+Option list_option(bool& lists);
+
+std::vector<frame::Case> cases_of_conformance();
+// All cases of the report: the catalogue, one for each scene of the user's, and those of conformance.
+std::vector<frame::Case> cases_of_report(std::span<const std::filesystem::path> scenes = {});
+
+// UsageError, if a pattern fits none of them, which `where` has all of.
+void check_choice(std::span<const std::string> patterns, std::span<const frame::Case> cases, const std::string& where);
+// Prints those that are chosen, a line each: "W01  closed icosphere, ...".
+void list_cases(std::span<const std::string> patterns, std::span<const frame::Case> cases);
 
 struct SuiteOptions {
     std::string name;

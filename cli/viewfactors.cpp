@@ -9,11 +9,10 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "cli/analysis_options.h"
 #include "cli/command/values.h"
 #include "cli/commands.h"
 #include "cli/common.h"
-#include "cli/face_groups.h"
-#include "cli/picture_options.h"
 #include "cli/shards.h"
 #include "engine/analysis/matrix_file.h"
 #include "engine/analysis/row_run.h"

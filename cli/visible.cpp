@@ -7,9 +7,9 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "cli/analysis_options.h"
 #include "cli/command/values.h"
 #include "cli/commands.h"
-#include "cli/ray_grid_options.h"
 #include "cli/shards.h"
 #include "engine/analysis/npz.h"
 #include "engine/core/error.h"

@@ -7,15 +7,17 @@
 #include "cli/command/values.h"
 
 namespace twinray::cli {
-namespace {
-
-using Words = std::span<const std::string>;
 
 template <class T>
 std::string digits_of(T value) {
     std::array<char, 32> digits{};
     return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
 }
+template std::string digits_of(double);
+
+namespace {
+
+using Words = std::span<const std::string>;
 
 template <class T>
 std::optional<T> number_of(std::string_view word) {

@@ -14,6 +14,10 @@
 
 namespace twinray::cli {
 
+// In as few digits as give the same number.
+template <class T>
+std::string digits_of(T value);
+
 template <class T>
 struct Range {
     T least = std::numeric_limits<T>::lowest();

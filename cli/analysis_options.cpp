@@ -1,24 +1,84 @@
 // SPDX-License-Identifier: MIT
-#include "cli/ray_grid_options.h"
+#include "cli/analysis_options.h"
 
 #include <array>
-#include <charconv>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include <twinray/scene.h>
+
 #include "cli/command/values.h"
+#include "cli/csv_files.h"
 #include "engine/core/error.h"
 #include "engine/core/stopwatch.h"
 
 namespace twinray::cli {
-namespace {
 
-std::string digits_of(double value) {
-    std::array<char, 32> digits{};
-    return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
+Section picture_options(PictureOptions& options, const std::string& shows) {
+    return {
+        "Pictures",
+        {{.name = "--picture",
+          .value = files(options.files, {".png", ".html", ".glb"}),
+          .help = "write a picture of the scene (.png), a page that explains its marks (.html), or the scene itself "
+                  "(.glb); colours show " +
+                  shows},
+         {.name = "--view",
+          .value = numbers(options.view, "X Y Z"),
+          .help = "viewing direction; without it, that of the scene's first camera, or from the front right and above",
+          .needs = {"--picture"}},
+         {.name = "--camera",
+          .value = numbers(options.camera, "X Y Z X Y Z"),
+          .help = "position of the camera, then the point that it looks at; replaces --view",
+          .needs = {"--picture"},
+          .excludes = {"--view"}},
+         {.name = "--picture-size",
+          .value = numbers(options.size, "WIDTH HEIGHT", {16, 16384}),
+          .help = "size of the image of the scene, in pixels",
+          .needs = {"--picture"}},
+         {.name = "--cutaway",
+          .value = flag(options.is_cutaway),
+          .help = "leave out faces seen from their back in the .png, to see into rooms from outside",
+          .needs = {"--picture"}}}};
 }
 
-}  // namespace
+Option color_scale_option(PictureOptions& options) {
+    const Names<ColorScale> scales = {{"linear", ColorScale::linear}, {"log", ColorScale::log}};
+    return {.name = "--color-scale",
+            .value = choice(options.color_scale, scales),
+            .help = "scale of the colours; without it, the one that fits the values",
+            .needs = {"--picture"}};
+}
+
+void check_pictures(const PictureOptions& options) {
+    for (const std::filesystem::path& file : options.files) check_writable(file);
+    if (!options.view.empty())
+        frame_scene({}, 1, vec3(options.view[0], options.view[1], options.view[2]));  // throws for no direction
+}
+
+void FaceGroupOptions::set_groups(Faces& faces) const {
+    if (by == FaceGrouping::custom) faces.set_custom_groups(read_face_groups(file, faces.count()));
+}
+
+std::vector<Option> face_group_options(FaceGroupOptions& options, const std::string& of_what,
+                                       const std::vector<std::string>& needs) {
+    const Names<FaceGrouping> groupings =
+        names_of(std::array{FaceGrouping::face, FaceGrouping::mesh, FaceGrouping::instance, FaceGrouping::material});
+    Value groups = cli::file(options.file);
+    groups.store = [store = groups.store, &options](std::span<const std::string> words) {
+        options.by = FaceGrouping::custom;
+        return store(words);
+    };
+    return {{.name = "--by",
+             .value = choice(options.by, groupings),
+             .help = of_what + " per face, mesh, instance or material",
+             .needs = needs},
+            {.name = "--groups",
+             .value = groups,
+             .help = of_what +
+                     " per group in a CSV file of face,group, which lists each face once; groups are numbered from 0",
+             .needs = needs,
+             .excludes = {"--by"}}};
+}
 
 Section analysis_output(AnalysisOptions& options, const std::string& output) {
     return {"Output and accelerator", {output_option(file(options.output), output), accel_option(options.accel)}};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What `twinray illumination` and `twinray centroid` share: a scene, an accelerator and a grid of parallel rays.
+// What commands that compute over a scene share: its pictures, groups of its faces, the scene in an accelerator, a grid
+// of parallel rays and tables.
 #pragma once
 
 #include <twinray/analysis.h>
@@ -9,9 +10,32 @@
 #include <optional>
 #include <vector>
 
-#include "cli/picture_options.h"
+#include "cli/common.h"
+#include "viewer/picture/marks.h"
+#include "viewer/picture/page.h"
+#include "viewer/picture/scene_picture.h"
 
 namespace twinray::cli {
+
+// --picture and those that need it: the scene in colours, as .png, .html or .glb. `shows`: what colours tell.
+Section picture_options(PictureOptions& options, const std::string& shows);
+// For commands whose colours show values.
+Option color_scale_option(PictureOptions& options);
+// Throws Error where a file has no folder: before the work, not after it.
+void check_pictures(const PictureOptions& options);
+
+// What commands put faces together by: --by, or --groups with a file.
+struct FaceGroupOptions {
+    FaceGrouping by = FaceGrouping::face;
+    std::filesystem::path file;  // of custom groups
+
+    // Reads the file. Throws Error that names it, and where it does not tell the group of each face once.
+    void set_groups(Faces& faces) const;
+};
+
+// `of_what`: "one row". Both need the options `needs`.
+std::vector<Option> face_group_options(FaceGroupOptions& options, const std::string& of_what,
+                                       const std::vector<std::string>& needs = {});
 
 struct AnalysisOptions {
     CommonOptions common;
