@@ -142,6 +142,12 @@ void check_writable(const std::filesystem::path& file) {
         fail("'", file.string(), "': there is no folder '", folder.string(), "'");
 }
 
+void write_text(const std::filesystem::path& file, const std::string& text) {
+    if (file.empty()) return;
+    std::ofstream out(file);
+    if (!(out << text).flush()) fail("'", file.string(), "' cannot be written");
+}
+
 void append_json(const std::filesystem::path& file, const nlohmann::json& record) {
     if (file.empty()) return;
     std::ofstream out(file, std::ios::app);

@@ -72,6 +72,8 @@ nlohmann::json list_of(const dvec3& v);  // [x, y, z]
 
 void check_writable(const std::filesystem::path& file);  // its folder exists: before the work, not after it
 
+// Does nothing for an empty path.
+void write_text(const std::filesystem::path& file, const std::string& text);
 // Appends one line; does nothing for an empty path.
 void append_json(const std::filesystem::path& file, const nlohmann::json& record);
 // The fields with which records of a scene begin: "schema", "device", "scene" and "origin".

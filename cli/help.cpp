@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
 // `twinray help` and `twinray completion`: what the commands say of themselves, for terminals, man and shells.
 #include <algorithm>
-#include <fstream>
 #include <iostream>
 #include <memory>
 
 #include "cli/command/help_text.h"
 #include "cli/command/values.h"
 #include "cli/commands.h"
-#include "engine/core/error.h"
+#include "cli/common.h"
 #include "twinray_version.h"
 
 namespace twinray::cli {
@@ -24,11 +23,6 @@ struct CompletionOptions {
     std::string shell;
     std::filesystem::path file;
 };
-
-void write_text(const std::filesystem::path& file, const std::string& text) {
-    std::ofstream out(file);
-    if (!(out << text).flush()) fail("'", file.string(), "' cannot be written");
-}
 
 void write_man_pages(const std::filesystem::path& folder, const std::vector<Command>& commands) {
     std::filesystem::create_directories(folder);
@@ -96,10 +90,8 @@ Command completion_command() {
                 "that these shells search.",
             .positionals = {shell},
             .sections = {{"Output",
-                          {{.name = "--output",
-                            .letter = 'o',
-                            .value = file(options->file),
-                            .help = "write the script to this file instead of standard output"}}}},
+                          {output_option(file(options->file),
+                                         "write the script to this file instead of standard output")}}},
             .examples = {{"source <(twinray completion bash)", "complete in this shell; in ~/.bashrc, in all shells"}},
             .run = done_after([options] { run(*options); })};
 }

@@ -40,8 +40,7 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
 }
 
 int refuse_command(const std::string& word, const std::vector<Command>& commands) {
-    std::vector<std::string> names;
-    for (const Command& command : commands) names.push_back(command.name);
+    const std::vector<std::string> names = names_of(commands);
     const std::string nearest = nearest_to(word, names);
     const std::string meant = nearest.empty() ? ", but " + either_of(names) : "; did you mean " + nearest + '?';
     return refuse("twinray", "there is no command '" + word + '\'' + meant, "twinray help");
@@ -80,8 +79,7 @@ std::vector<Command> all_commands() {
     for (const auto& make : {kernels_command, distance_command, collide_command, viewfactors_command,
                              illumination_command, visible_command, centroid_command, completion_command})
         commands.push_back(make());
-    std::vector<std::string> names;
-    for (const Command& command : commands) names.push_back(command.name);
+    std::vector<std::string> names = names_of(commands);
     names.emplace_back("help");
     commands.push_back(help_command(names));
     return commands;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // `twinray qualify`: the report's checks alone, for continuous integration.
-#include <fstream>
 #include <iostream>
 #include <optional>
 
@@ -76,22 +75,15 @@ std::vector<Record> records_of_all(const QualifyOptions& options) {
     return records;
 }
 
-void write(const std::filesystem::path& file, const std::string& text) {
-    if (file.empty()) return;
-    std::ofstream out(file);
-    out << text;
-    if (!out.flush()) fail("'", file.string(), "' cannot be written");
-}
-
 // Exit status: 1 where a check fails.
 int run(const QualifyOptions& options) {
     check_choice(options.only, cases_of_report(), "`twinray report --list`");
     for (const std::filesystem::path& file : {options.junit, options.tap, options.sarif}) check_writable(file);
     const std::vector<Record> records = options.devices == "all" ? records_of_all(options) : records_here(options);
     const std::vector<report::Check> checks = report::checks_of(records, options.common.strict);
-    write(options.junit, report::junit_xml(checks));
-    write(options.tap, report::tap(checks));
-    write(options.sarif, report::sarif(checks, twinray_version));
+    write_text(options.junit, report::junit_xml(checks));
+    write_text(options.tap, report::tap(checks));
+    write_text(options.sarif, report::sarif(checks, twinray_version));
     std::size_t failures = 0, tolerated = 0;
     for (const report::Check& check : checks) {
         failures += check.outcome == report::Check::Outcome::failed;

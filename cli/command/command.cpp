@@ -24,6 +24,12 @@ const Option* find_option(const Command& command, const std::string& name) {
     return nullptr;
 }
 
+std::vector<std::string> names_of(std::span<const Command> commands) {
+    std::vector<std::string> names;
+    for (const Command& command : commands) names.push_back(command.name);
+    return names;
+}
+
 std::string head_of(const Option& option) {
     if (option.name.empty()) return option.value.metavar;
     std::string head = option.letter ? std::string("-") + option.letter + ", " + option.name : option.name;

@@ -90,6 +90,8 @@ const Option& help_option();
 std::vector<const Option*> options_of(const Command& command);
 const Option* find_option(const Command& command, const std::string& name);
 
+std::vector<std::string> names_of(std::span<const Command> commands);
+
 // "-o, --output FILE"; of a positional "SCENE".
 std::string head_of(const Option& option);
 // The help with what may be given and what holds if nothing is: "how many; from 1 to 9, default: 5".

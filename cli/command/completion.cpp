@@ -8,12 +8,6 @@ namespace {
 
 using Kind = Value::Kind;
 
-std::vector<std::string> names_of(std::span<const Command> commands) {
-    std::vector<std::string> names;
-    for (const Command& command : commands) names.push_back(command.name);
-    return names;
-}
-
 // The first words of a help, up to where it goes into details.
 std::string brief(const std::string& help) { return help.substr(0, help.find_first_of(";.:")); }
 

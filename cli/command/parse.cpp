@@ -7,14 +7,14 @@
 
 #include <CLI/CLI.hpp>
 
+#include "engine/core/error.h"
+
 namespace twinray::cli {
 namespace {
 
 template <class... Parts>
 [[noreturn]] void refuse(const Parts&... parts) {
-    std::ostringstream out;
-    (out << ... << parts);
-    throw UsageError(out.str());
+    throw UsageError(text(parts...));
 }
 
 // One option and the words that were given for it.
@@ -121,8 +121,7 @@ void check_together(const Command& command, const std::vector<Given>& all) {
             if (is_there(other)) refuse(given.name(), " excludes ", other);
     }
     for (const Alternatives& alternatives : command.alternatives) {
-        std::string names;
-        for (const std::string& name : alternatives.names) names += (names.empty() ? "" : ", ") + name;
+        const std::string names = joined(alternatives.names);
         const auto count = std::ranges::count_if(alternatives.names, is_there);
         if (count > 1) refuse("only one of ", names, " may be given");
         if (count == 0 && alternatives.is_required) refuse("one of ", names, " is required");

@@ -31,9 +31,7 @@ bool has_suffix(const std::string& file, const std::vector<std::string>& suffixe
 }
 
 Value file_value(std::vector<std::string> suffixes, std::function<void(Words)> take) {
-    Value value{.kind = Value::Kind::file, .metavar = "FILE", .least = 1, .most = 1};
-    if (!suffixes.empty()) value.metavar += suffixes.front();
-    for (std::size_t i = 1; i < suffixes.size(); ++i) value.metavar += '|' + suffixes[i];
+    Value value{.kind = Value::Kind::file, .metavar = "FILE" + joined(suffixes, "|"), .least = 1, .most = 1};
     value.suffixes = suffixes;
     value.allowed = suffixes.empty() ? "a file" : "a file whose name ends in " + either_of(suffixes);
     value.store = [suffixes = std::move(suffixes), take = std::move(take)](Words words) -> const std::string* {
@@ -47,8 +45,7 @@ Value file_value(std::vector<std::string> suffixes, std::function<void(Words)> t
 
 Value choice_value(std::vector<std::string> names, const std::string& initial,
                    std::function<void(const std::vector<std::size_t>&)> take) {
-    Value value{.kind = Value::Kind::choice, .metavar = "", .least = 1, .most = 1};
-    for (const std::string& name : names) value.metavar += (value.metavar.empty() ? "" : "|") + name;
+    Value value{.kind = Value::Kind::choice, .metavar = joined(names, "|"), .least = 1, .most = 1};
     value.choices = names;
     value.allowed = either_of(names);
     value.initial = initial;
