@@ -80,6 +80,13 @@ std::vector<Option> face_group_options(FaceGroupOptions& options, const std::str
              .excludes = {"--by"}}};
 }
 
+Option sides_option(Sides& sides, const std::string& do_what) {
+    return {
+        .name = "--sides",
+        .value = choice(sides, names_of(std::array{Sides::front, Sides::both})),
+        .help = "sides of faces that " + do_what + ": the front, from which vertices run counter-clockwise, or both"};
+}
+
 Section analysis_output(AnalysisOptions& options, const std::string& output) {
     return {"Output and accelerator", {output_option(file(options.output), output), accel_option(options.accel)}};
 }

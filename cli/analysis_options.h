@@ -37,6 +37,9 @@ struct FaceGroupOptions {
 std::vector<Option> face_group_options(FaceGroupOptions& options, const std::string& of_what,
                                        const std::vector<std::string>& needs = {});
 
+// --sides: which of faces do what, such as "receive light".
+Option sides_option(Sides& sides, const std::string& do_what);
+
 struct AnalysisOptions {
     CommonOptions common;
     std::filesystem::path scene, output;

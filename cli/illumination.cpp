@@ -20,8 +20,6 @@
 namespace twinray::cli {
 namespace {
 
-enum class Measure : std::uint8_t { area, fraction, irradiance };
-
 struct SkyOptions {
     uint sky = 0;  // rays a face; 0: the sun
     std::vector<double> up = {0, 1, 0};
@@ -36,29 +34,17 @@ struct IlluminationOptions {
     SkyOptions sky;
     Sides sides = Sides::both;
     FaceGroupOptions groups;
-    Measure measure = Measure::area;
+    std::string measure = "area";
 };
 
-const Names<Measure> measures = {
-    {"area", Measure::area}, {"fraction", Measure::fraction}, {"irradiance", Measure::irradiance}};
-const Names<Sides> sides_by_name = {{"front", Sides::front}, {"both", Sides::both}};
-
-template <class T>
-std::string name_in(const Names<T>& names, T wanted) {
-    return std::ranges::find(names, wanted, &std::pair<std::string, T>::second)->first;
-}
-
 // The divisor of areas; 0 if there is nothing to divide.
-double unit_of(const LitArea& lit, Measure measure) {
-    switch (measure) {
-        case Measure::fraction: return lit.unobstructed;
-        case Measure::irradiance: return lit.surface;
-        default: return 1;
-    }
+double unit_of(const LitArea& lit, const std::string& measure) {
+    if (measure == "fraction") return lit.unobstructed;
+    return measure == "irradiance" ? lit.surface : 1;
 }
 
 void write(const IlluminationOptions& options, const Illumination& result) {
-    const std::string what = name_in(measures, options.measure);
+    const std::string& what = options.measure;
     CsvFile csv(options.analysis.output, text(name_of(options.groups.by), ",hits,", what, ",ci_low,ci_high"));
     const bool has_interval = options.grid.points == GridPoints::random;
     for (std::size_t group = 0; group < result.groups.size(); ++group) {
@@ -74,7 +60,7 @@ void write(const IlluminationOptions& options, const Illumination& result) {
 
 // The value of its group for each face.
 ScenePicture picture_of(const IlluminationOptions& options, const Faces& faces, const Illumination& result) {
-    const std::string what = name_in(measures, options.measure);
+    const std::string& what = options.measure;
     std::vector<double> values;
     for (const uint group : faces.groups(options.groups.by)) {
         const LitArea& lit = result.groups[group];
@@ -113,7 +99,7 @@ std::optional<Illumination> compute(const Shards& shards, const IlluminationOpti
     Agreement agreement = agreement_of("illumination", analysed.scene, analysed.choice.name());
     const std::vector<uint> groups = faces.groups(options.groups.by);
     agreement.push_back({"groups", checksum_text(std::as_bytes(std::span(groups)))});
-    agreement.push_back({"--sides", name_in(sides_by_name, options.sides)});
+    agreement.push_back({"--sides", std::string(name_of(options.sides))});
     agreement.push_back({"--seed", std::to_string(grid.seed)});
     agreement.push_back({"grid", options.grid.record().dump()});
     const std::uint64_t rays = grid_ray_count(faces, desc);
@@ -147,7 +133,7 @@ void run(IlluminationOptions options) {
     if (!options.analysis.pictures.files.empty())
         write_pictures(options.analysis.pictures, *analysed.accel, analysed.scene, picture_of(options, faces, result));
     if (!options.analysis.common.quiet) print(options, analysed, result, seconds);
-    nlohmann::json record = {{"sides", name_in(sides_by_name, options.sides)},
+    nlohmann::json record = {{"sides", name_of(options.sides)},
                              {"by", name_of(options.groups.by)},
                              {"n", result.ray_count},
                              {"hits", result.total.hits},
@@ -231,7 +217,7 @@ Agreement agreement_for(const Analysed& analysed, const SkyOptions& options, std
     agreement.push_back({"up", checksum_text(std::as_bytes(std::span(options.up)))});
     agreement.push_back({"sun", checksum_text(std::as_bytes(sun))});
     agreement.push_back({"samples", std::to_string(desc.samples)});
-    agreement.push_back({"--sides", name_in(sides_by_name, desc.sides)});
+    agreement.push_back({"--sides", std::string(name_of(desc.sides))});
     agreement.push_back({"--seed", std::to_string(desc.seed)});
     return agreement;
 }
@@ -264,7 +250,7 @@ void run_sky(AnalysisOptions analysis, const ShardOptions& parts, const SkyOptio
     if (!analysis.common.quiet)
         std::cout << analysed.head("illumination", analysis) << "  " << speed_text(light.ray_count, seconds) << "\n  "
                   << (options.sky ? "light of the sky" : "hours of sun") << ", mean over the surface: " << mean << '\n';
-    nlohmann::json record = {{"what", what},         {"sides", sides == Sides::front ? "front" : "both"},
+    nlohmann::json record = {{"what", what},         {"sides", name_of(sides)},
                              {"samples", samples},   {"positions", sun.size()},
                              {"n", light.ray_count}, {"mean", mean},
                              {"seconds", seconds}};
@@ -278,10 +264,7 @@ Command illumination_command() {
     const auto options = std::make_shared<IlluminationOptions>();
     Section light = {"Light", ray_grid_options(options->grid)};
     for (Option& option : sky_options(options->sky)) light.options.push_back(std::move(option));
-    light.options.push_back({.name = "--sides",
-                             .value = choice(options->sides, sides_by_name),
-                             .help = "sides of faces that receive light: the front, from which vertices run "
-                                     "counter-clockwise, or both"});
+    light.options.push_back(sides_option(options->sides, "receive light"));
     Section output = analysis_output(options->analysis,
                                      "write a CSV file with one line per face: face, hits, area, ci_low, ci_high; with "
                                      "--sky or --sun: face, free_rays, sky or hours, ci_low, ci_high");
@@ -289,7 +272,7 @@ Command illumination_command() {
         output.options.push_back(std::move(option));
     output.options.push_back(
         {.name = "--measure",
-         .value = choice(options->measure, measures),
+         .value = choice(options->measure, {"area", "fraction", "irradiance"}),
          .help = "third column of the CSV: lit area perpendicular to the light, fraction of the area that faces the "
                  "light, or irradiance, which is lit area perpendicular to the light per unit of surface",
          .needs = {"--direction"}});

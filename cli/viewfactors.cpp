@@ -294,7 +294,6 @@ std::vector<Option> view_factor_picture_options(ViewFactorPictureOptions& option
 Command viewfactors_command() {
     const auto options = std::make_shared<Options>();
     ViewFactorOptions& factors = options->factors;
-    const Names<Sides> sides = {{"front", Sides::front}, {"both", Sides::both}};
     const Names<Sequence> sequences = {{"sobol", Sequence::sobol}, {"random", Sequence::random}};
     Section sampling = {
         "Sampling",
@@ -305,9 +304,7 @@ Command viewfactors_command() {
          {.name = "--target-error",
           .value = number(factors.target_error, {.least = 0, .is_above = true}),
           .help = "stop a row when the 95 % confidence interval of each of its entries is within +- this"},
-         {.name = "--sides",
-          .value = choice(factors.sides, sides),
-          .help = "sides of faces that radiate: the front, from which vertices run counter-clockwise, or both"},
+         sides_option(factors.sides, "radiate"),
          {.name = "--sequence", .value = choice(factors.sequence, sequences), .help = "sequence of the samples"},
          {.name = "--estimator",
           .value = choice(options->estimator, names_of(all_pair_estimators)),
