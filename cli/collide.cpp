@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "cli/analysis_options.h"
 #include "cli/command/values.h"
 #include "cli/commands.h"
+#include "cli/csv_files.h"
 #include "engine/core/error.h"
 #include "engine/core/stopwatch.h"
 
@@ -26,17 +26,6 @@ struct CollideOptions {
     std::uint64_t max_pairs = default_max_pairs;
     PictureOptions pictures;
 };
-
-// CSV, a line for each row as `print` writes it.
-template <class Row, class Print>
-void write_table(const std::filesystem::path& file, const char* header, const std::vector<Row>& rows,
-                 const Print& print) {
-    if (file.empty()) return;
-    std::ofstream out(file);
-    out << header << '\n';
-    for (const Row& row : rows) print(out, row);
-    if (!out.flush()) fail("CSV file '", file.string(), "' cannot be written");
-}
 
 // One a class, from the most harmless to the worst, which is also their order.
 constexpr std::array<Rgb, all_pair_classes.size()> class_colors = {plain_color,         categorical::sky_blue,

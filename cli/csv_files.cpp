@@ -4,7 +4,6 @@
 #include <cmath>
 #include <iomanip>
 
-#include "engine/core/error.h"
 #include "engine/scene/number_lines.h"
 
 namespace twinray::cli {

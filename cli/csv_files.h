@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
-// What commands read of files with a line of numbers for each thing, under a heading or none.
+// Files with a line for each thing: what commands read of numbers, under a heading or none, and tables that they write.
 #pragma once
 
 #include <twinray/analysis.h>
 
 #include <filesystem>
+#include <fstream>
 #include <vector>
+
+#include "engine/core/error.h"
 
 namespace twinray::cli {
 
@@ -19,5 +22,17 @@ std::vector<dvec3> read_points(const std::filesystem::path& file, const dvec3& o
 std::vector<uint> read_face_groups(const std::filesystem::path& file, std::size_t face_count);
 // x,y,z,hours
 std::vector<SunPosition> read_sun(const std::filesystem::path& file);
+
+// Writes CSV, a line for each row as `print` writes it, float64 with all its digits; nothing for an empty path.
+template <class Row, class Print>
+void write_table(const std::filesystem::path& file, const char* header, const std::vector<Row>& rows,
+                 const Print& print) {
+    if (file.empty()) return;
+    std::ofstream out(file);
+    out.precision(17);
+    out << header << '\n';
+    for (const Row& row : rows) print(out, row);
+    if (!out.flush()) fail("CSV file '", file.string(), "' cannot be written");
+}
 
 }  // namespace twinray::cli

@@ -3,7 +3,6 @@
 #include <twinray/queries.h>
 
 #include <algorithm>
-#include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <random>
@@ -94,37 +93,22 @@ struct DistanceOptions {
 
 bool is_npz(const std::filesystem::path& file) { return lower_suffix(file) == ".npz"; }
 
-std::ofstream open_table(const std::filesystem::path& file, const char* header) {
-    std::ofstream out(file);
-    out.precision(17);
-    out << header << '\n';
-    return out;
-}
-
-void close_table(std::ofstream& out, const std::filesystem::path& file) {
-    if (!out.flush()) fail("CSV file '", file.string(), "' cannot be written");
-}
-
 void write_csv(const std::filesystem::path& file, const std::vector<ClosestPoint>& found, const dvec3& origin) {
-    std::ofstream out = open_table(file, "point,distance,x,y,z,instance,triangle");
-    for (std::size_t i = 0; i < found.size(); ++i) {
-        const ClosestPoint& of = found[i];
+    write_table(file, "point,distance,x,y,z,instance,triangle", found, [&](std::ostream& out, const ClosestPoint& of) {
         const dvec3 point_in_file = origin + of.position;
-        out << i << ',';
+        out << &of - found.data() << ',';
         if (of.is_found)
             out << of.distance << ',' << point_in_file.x << ',' << point_in_file.y << ',' << point_in_file.z << ','
                 << of.instance << ',' << of.triangle << '\n';
         else
             out << "inf,,,,,\n";
-    }
-    close_table(out, file);
+    });
 }
 
 void write_csv(const std::filesystem::path& file, const std::vector<NearTriangle>& near) {
-    std::ofstream out = open_table(file, "point,instance,triangle,distance");
-    for (const NearTriangle& each : near)
+    write_table(file, "point,instance,triangle,distance", near, [](std::ostream& out, const NearTriangle& each) {
         out << each.point << ',' << each.instance << ',' << each.triangle << ',' << each.distance << '\n';
-    close_table(out, file);
+    });
 }
 
 // Arrays by point: of a grid, distance[z, y, x].
@@ -210,7 +194,7 @@ void run_within(const Shards& shards, const DistanceOptions& options, Search& se
     if (!found) return;
     const std::vector<NearTriangle>& near = *found;
     const double seconds = start.seconds();
-    if (!options.output.empty()) write_csv(options.output, near);
+    write_csv(options.output, near);
     if (!options.common.quiet) {
         search.print(seconds);
         std::cout << near.size() << " triangles within " << *options.within << '\n';
@@ -236,15 +220,14 @@ void run_closest(const Shards& shards, const DistanceOptions& options, Search& s
                                                      [&](Rows rows) { return closest(options, search, rows); });
     if (!computed) return;
     const std::vector<ClosestPoint>& found = *computed;
-    const auto inside = std::count_if(found.begin(), found.end(),
-                                      [](const ClosestPoint& point) { return std::signbit(point.distance); });
+    const auto inside = std::ranges::count_if(
+        found, [](double distance) { return std::signbit(distance); }, &ClosestPoint::distance);
     const double seconds = start.seconds();
     if (is_npz(options.output))
         write_npz(options, search.points, found, search.scene.origin);
-    else if (!options.output.empty())
+    else
         write_csv(options.output, found, search.scene.origin);
-    const auto near =
-        std::count_if(found.begin(), found.end(), [](const ClosestPoint& point) { return point.is_found; });
+    const auto near = std::ranges::count_if(found, &ClosestPoint::is_found);
     if (!options.common.quiet) {
         search.print(seconds);
         std::cout << near << " have a nearest triangle";
