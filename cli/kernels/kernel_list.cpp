@@ -1,10 +1,29 @@
 // SPDX-License-Identifier: MIT
 #include "cli/kernels/kernel_list.h"
 
+#include <twinray/analysis.h>
+#include <twinray/context.h>
+#include <twinray/geometry.h>
+#include <twinray/queries.h>
+#include <twinray/scene.h>
+#include <twinray/tlas.h>
+
 #include <algorithm>
 #include <mutex>
 
 #include "engine/accel/features_of.h"
+#include "engine/accel/ray_sort.h"
+#include "engine/accel/surface_kernels.h"
+#include "engine/analysis/pair_sampler.h"
+#include "engine/analysis/sky_rays.h"
+#include "engine/scene/rig.h"
+#include "renderer/cross_check.h"
+#include "renderer/moving_scene.h"
+#include "renderer/renderer.h"
+#include "renderer/scene_upload.h"
+#include "swtlas/tree.h"
+#include "validation/reference/float_probe.h"
+#include "validation/reference/reference_accel.h"
 
 namespace twinray::kernels {
 namespace {
@@ -51,6 +70,178 @@ void add_unspecialized(Collector& collector) {
         if (features == kernel.desc.constants.end()) continue;
         features->value = FEATURES_ALL;
         collector.add(kernel.desc, kernel.args_bytes);
+    }
+}
+
+// What both accelerators trace with: one mesh, several meshes, and a scene with all features.
+
+enum class Stage : std::uint8_t { one_mesh, instances, everything };
+constexpr Stage all_stages[] = {Stage::one_mesh, Stage::instances, Stage::everything};
+
+AccelOptions options_for(const DeviceProperties& device, Layout layout, Stage stage) {
+    return {.level = device.shader_float64 ? Level::certified : Level::watertight,
+            .layout = layout,
+            .can_move = stage == Stage::everything,
+            .compiles_in_background = false};
+}
+
+void fill(AbstractAccel& accel, Stage stage) {
+    const Mesh mesh = make_quad(vec3(0), vec3(1, 0, 0), vec3(0, 1, 0));
+    const std::vector<Transform> transforms(stage == Stage::one_mesh ? 1 : 2);
+    std::vector<InstanceOptions> options(transforms.size());
+    if (stage == Stage::everything) options.front().mask = 1;
+    accel.push(mesh, transforms, options);
+}
+
+void trace(AbstractAccel& accel, TraceDesc desc) {
+    Context& context = accel.context();
+    const Buffer rays(context, {.name = "rays", .bytes = sizeof(Ray)});
+    const Buffer hits(context, {.name = "hits", .bytes = sizeof(Hit)});
+    desc.rays = rays.ref<Ray>();
+    desc.hits = hits.ref<Hit>();
+    desc.count = 1;
+    Commands commands(context, "trace");
+    accel.trace(commands, accel.view(), desc);
+    commands.submit();
+}
+
+// Each query at each level. Those that need float64 do more with a hit and the same with the scene: the largest is
+// enough.
+void trace_all(AbstractAccel& accel, Stage stage) {
+    fill(accel, stage);
+    accel.sync();
+    for (const Level level : all_levels) {
+        const Feature feature = feature_of(level);
+        if (level > Level::watertight && stage != Stage::everything) continue;
+        if (level > accel.options().level || accel.capability(feature).support == Support::unsupported) continue;
+        for (const Query query : {Query::closest, Query::any})
+            trace(accel, {.query = query,
+                          .mask = static_cast<std::uint8_t>(stage == Stage::everything ? 2 : 0xff),
+                          .cull = stage == Stage::everything ? Cull::back : Cull::none,
+                          .level = level,
+                          .occlusion_only = query == Query::any});
+    }
+}
+
+void make_trace_kernels(Context& context) {
+    const DeviceProperties& device = context.properties();
+    for (const Layout layout : all_layouts)
+        for (const Stage stage : all_stages) {
+            SwTlas accel(context, options_for(device, layout, stage));
+            trace_all(accel, stage);
+        }
+    if (!missing_for_hardware(device).empty()) return;
+    for (const BuildOrder order : {BuildOrder::input, BuildOrder::morton}) {
+        AccelOptions options = options_for(device, Layout::compressed4, Stage::everything);
+        options.level = std::min(options.level, Level::refined);
+        HwTlas accel(context, order, options);
+        trace_all(accel, Stage::everything);
+    }
+}
+
+// All that is no trace: builds, sorts, and what the other libraries compute. Each is created, or used once if that
+// creates the kernel.
+
+AccelOptions options_for(const DeviceProperties& device, Layout layout, BuildQuality quality) {
+    return {.level = device.shader_float64 ? Level::refined : Level::watertight,
+            .layout = layout,
+            .build_quality = quality};
+}
+
+// Kernels that the first such mesh compiles.
+void make_device_mesh(Context& context) {
+    SwTlas accel(context, {.keeps_surfaces = true, .compiles_in_background = false});
+    const Buffer zeros(context, {.name = "zeros", .bytes = 64});
+    const DeviceAttribute heat{"heat", 1, false, zeros.ref<float>()};
+    accel.push(DeviceMesh{.name = "point",
+                          .positions = zeros.address(),
+                          .vertex_count = 1,
+                          .indices = zeros.address(),
+                          .triangle_count = 1,
+                          .attributes = {&heat, 1}});
+    accel.sync();
+}
+
+void make_builds(Context& context) {
+    for (const BuildQuality quality : all_build_qualities)
+        for (const Layout layout : all_layouts) {
+            SwTlas accel(context, options_for(context.properties(), layout, quality));
+            accel.push(make_box(vec3(0), vec3(1)));
+            accel.sync();
+        }
+    const RaySort sort(context);
+    const ReferenceAccel reference(context);
+    const SurfaceKernels surfaces(context);
+    make_device_mesh(context);
+    if (missing_for_hardware(context.properties()).empty()) {
+        const AccelOptions options = options_for(context.properties(), Layout::compressed4, BuildQuality::fast);
+        const HwTlas accel(context, BuildOrder::morton, options);
+    }
+}
+
+void make_queries(AbstractAccel& accel) {
+    if (accel.capability(Feature::kernel_queries).support != Support::unsupported) const AllHits hits(accel);
+}
+
+void make_analysis(Context& context) {
+    const Scene scene = cornell_box_scene();
+    SwTlas accel(context, {.compiles_in_background = false});
+    push_scene(accel, scene);
+    accel.sync();
+    const Faces faces(context, scene);
+    const ViewFactors factors(accel, faces, {});
+    const PairSampler pairs(accel, faces, Sides::front, Sequence::sobol, 1);
+    const SkyRays sky(accel, faces, {});
+    illuminate(accel, faces, {.grid = {.side = 1}});
+    const vec3 up(0, 1, 0);
+    visibility(accel, std::span(&up, 1), std::span(&up, 1));
+    const std::array<float, 4> heights = {};
+    const vec2 way(1);
+    horizon(accel.context(), {.heights = heights, .columns = 2, .rows = 2}, {.size = {1, 1}, .ways = {&way, 1}});
+}
+
+void make_library_kernels(Context& context) {
+    make_builds(context);
+    SwTlas software(context);
+    make_queries(software);
+    if (missing_for_hardware(context.properties()).empty()) {
+        HwTlas hardware(context);
+        make_queries(hardware);
+    }
+    const BroadPhase collisions(context);
+    if (context.properties().shader_float64) {
+        const NarrowPhase contacts(context);
+        const PointQuery points(context);
+    }
+    const Deformer deformer(context, std::make_shared<Rig>());
+    probe_floats(context);
+    make_analysis(context);
+}
+
+// The kernels of the path tracer: those of a plain scene, and those with all features.
+
+Scene plain_scene() {
+    Scene scene = cornell_box_scene();
+    for (Material& material : scene.materials) material.transmission = 0;
+    scene.rig = std::make_shared<Rig>();
+    return scene;
+}
+
+void make_path_tracer_kernels(Context& context) {
+    namespace pt = path_tracer;
+    Scene scene = plain_scene();
+    const pt::LocalLights lights = pt::collect_lights(scene);
+    const pt::EnvironmentMap sky(pt::default_sky());
+    SwTlas accel(context, {.compiles_in_background = false});
+    push_scene(accel, scene);
+    accel.sync();
+    const pt::RenderSettings settings{.width = 8, .height = 8};
+    for (const pt::SceneFeatures& features : {pt::features_of(scene, lights, nullptr), pt::all_features(scene)}) {
+        pt::DeviceScene on_device(context, scene, lights, &sky, features);
+        pt::Renderer renderer(context, on_device, settings);
+        renderer.first_surfaces(accel);
+        const pt::CrossChecker checker(context, accel, renderer, renderer.film_size());
+        const pt::MovingScene moving(context, scene, on_device, accel);
     }
 }
 

@@ -29,12 +29,6 @@ struct KernelList {
 };
 KernelList list_kernels(const ContextDesc& desc);
 
-// list_kernels() makes these: each accelerator traces one mesh, several meshes, and a scene with all features;
-// everything else is created, or used once if that creates the kernel.
-void make_trace_kernels(Context& context);
-void make_library_kernels(Context& context);
-void make_path_tracer_kernels(Context& context);
-
 // Describes the constants in words: "compressed4 watertight instances". Not how many invocations make a group, so that
 // a kernel keeps its name when that changes.
 std::string variant_of(const KernelDesc& desc);

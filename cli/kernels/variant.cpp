@@ -5,6 +5,7 @@
 #include "cli/kernels/kernel_list.h"
 #include "report/frame/cases.h"
 #include "engine/accel/features_of.h"
+#include "engine/core/error.h"
 #include "renderer/shared.h"
 
 namespace twinray::kernels {
@@ -12,14 +13,7 @@ namespace {
 
 using namespace path_tracer;
 
-class Words {
-  public:
-    void add(std::string_view word) { text_ += (text_.empty() ? "" : " ") + std::string(word); }
-    std::string text() const { return text_; }
-
-  private:
-    std::string text_;
-};
+using Words = std::vector<std::string>;
 
 struct Bit {
     uint bit;
@@ -40,10 +34,10 @@ void add_features(Words& words, uint features) {
         {FEATURE_REMAP, "reordered"},
         {FEATURE_HITS, "hits"},
     };
-    if (features == FEATURES_ALL) return words.add("everything");
-    if (features == (FEATURES_ALL & ~FEATURE_BOXES)) return words.add("everything but boxes");
+    if (features == FEATURES_ALL) return void(words.emplace_back("everything"));
+    if (features == (FEATURES_ALL & ~FEATURE_BOXES)) return void(words.emplace_back("everything but boxes"));
     for (const Bit& bit : bits)
-        if (features & bit.bit) words.add(bit.word);
+        if (features & bit.bit) words.emplace_back(bit.word);
 }
 
 bool asks_rays(const KernelDesc& desc) {
@@ -52,7 +46,7 @@ bool asks_rays(const KernelDesc& desc) {
 
 void add_of_rays(Words& words, const SpecializationConstant& constant) {
     if (constant.id == FEATURES_CONSTANT) add_features(words, constant.value);
-    if (constant.id == LEVEL_CONSTANT) words.add(name_of(static_cast<Level>(constant.value)));
+    if (constant.id == LEVEL_CONSTANT) words.emplace_back(name_of(static_cast<Level>(constant.value)));
 }
 
 void add_of_path_tracer(Words& words, const KernelDesc& desc) {
@@ -77,15 +71,15 @@ void add_of_path_tracer(Words& words, const KernelDesc& desc) {
     for (const SpecializationConstant& constant : desc.constants)
         if (constant.value == 1 && constant.id < 32) chosen |= 1u << constant.id;
     const bool is_all = std::ranges::all_of(bits, [&](const Bit& bit) { return chosen >> bit.bit & 1; });
-    if (is_all) words.add("everything");
+    if (is_all) words.emplace_back("everything");
     for (const Bit& bit : bits)
-        if (!is_all && chosen >> bit.bit & 1) words.add(bit.word);
+        if (!is_all && chosen >> bit.bit & 1) words.emplace_back(bit.word);
     if (std::ranges::any_of(desc.constants, [](const SpecializationConstant& constant) {
             return constant.id == TEXEL_FORMATS_CONSTANT && constant.value == 1;
         }))
-        words.add("deep-textures");
-    if (chosen >> PT_HAS_AOVS & 1) words.add("aovs");
-    if (chosen >> PT_HAS_QUEUES & 1) words.add("queues");
+        words.emplace_back("deep-textures");
+    if (chosen >> PT_HAS_AOVS & 1) words.emplace_back("aovs");
+    if (chosen >> PT_HAS_QUEUES & 1) words.emplace_back("queues");
 }
 
 // A constant that chooses among words, of the kernels whose names begin so.
@@ -100,10 +94,10 @@ void add_of_stage(Words& words, std::string_view kernel, const SpecializationCon
                                   {"swtlas_collapse", 0, {"roots", "level"}},
                                   {"sort_scatter", 3, {"values", "places"}}};
     if (kernel.starts_with("swtlas_") && constant.id == NODE_WIDTH_CONSTANT && constant.value == 8)
-        words.add(name_of(Layout::compressed8));
+        words.emplace_back(name_of(Layout::compressed8));
     for (const Choice& choice : choices)
         if (kernel == choice.kernels && constant.id == choice.id && constant.value < 2)
-            words.add(choice.words[constant.value]);
+            words.emplace_back(choice.words[constant.value]);
 }
 
 }  // namespace
@@ -112,7 +106,7 @@ std::string variant_of(const KernelDesc& desc) {
     Words words;
     if (desc.name.starts_with("path_tracer_")) {
         add_of_path_tracer(words, desc);
-        return words.text();
+        return joined(words, " ");
     }
     const bool has_rays = asks_rays(desc);
     for (const SpecializationConstant& constant : desc.constants) {
@@ -121,7 +115,7 @@ std::string variant_of(const KernelDesc& desc) {
         else
             add_of_stage(words, desc.name, constant);
     }
-    return words.text();
+    return joined(words, " ");
 }
 
 }  // namespace twinray::kernels
