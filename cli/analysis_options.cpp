@@ -10,7 +10,6 @@
 #include "cli/command/values.h"
 #include "cli/csv_files.h"
 #include "engine/core/error.h"
-#include "engine/core/stopwatch.h"
 
 namespace twinray::cli {
 
@@ -136,12 +135,6 @@ nlohmann::json Analysed::record(const char* schema, const AnalysisOptions& optio
 std::string Analysed::head(const char* command, const AnalysisOptions& options) const {
     return text(command, ' ', options.scene.filename().string(), ": ", count_triangles(scene), " faces, ",
                 text_of(choice), ", on ", context->properties().name, '\n');
-}
-
-double seconds_of(const std::function<void()>& work) {
-    const Stopwatch start;
-    work();
-    return start.seconds();
 }
 
 std::string speed_text(std::uint64_t rays, double seconds) {

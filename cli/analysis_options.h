@@ -6,7 +6,6 @@
 #include <twinray/analysis.h>
 
 #include <fstream>
-#include <functional>
 #include <optional>
 #include <vector>
 
@@ -73,7 +72,6 @@ struct Analysed {
     std::string head(const char* command, const AnalysisOptions& options) const;
 };
 
-double seconds_of(const std::function<void()>& work);
 // "1000000 rays in 0.5 s with copies, 2 million a second".
 std::string speed_text(std::uint64_t rays, double seconds);
 // "(1, 0, 0)".

@@ -8,6 +8,7 @@
 #include "cli/analysis_options.h"
 #include "cli/commands.h"
 #include "engine/core/error.h"
+#include "engine/core/stopwatch.h"
 #include "samples/support/progress.h"
 
 namespace twinray::cli {
@@ -70,14 +71,15 @@ void run(const CentroidOptions& options) {
     const Analysed analysed(options.analysis);
     const PictureOptions& pictures = options.analysis.pictures;
     const RayGridDesc grid = options.grid.desc(options.analysis.common);
-    Centroid result;
-    const double seconds = seconds_of([&] {
+    const Stopwatch start;
+    const Centroid result = [&] {
         samples::Progress progress("centroid", std::uint64_t{grid.side} * grid.side, options.analysis.common.quiet);
-        result = centroid(*analysed.accel, analysed.scene,
-                          {.grid = grid,
-                           .keeps_points = !options.analysis.output.empty() || !pictures.files.empty(),
-                           .progress = [&](std::uint64_t rays) { progress.advance(rays); }});
-    });
+        return centroid(*analysed.accel, analysed.scene,
+                        {.grid = grid,
+                         .keeps_points = !options.analysis.output.empty() || !pictures.files.empty(),
+                         .progress = [&](std::uint64_t rays) { progress.advance(rays); }});
+    }();
+    const double seconds = start.seconds();
     if (!options.analysis.output.empty()) write(options.analysis.output, result, analysed.scene.origin);
     if (!pictures.files.empty())
         write_pictures(pictures, *analysed.accel, analysed.scene, picture_of(options, analysed, result));

@@ -132,8 +132,6 @@ Shards::~Shards() {
         for (uint part = 0; part < count_; ++part) std::filesystem::remove(file(part), left);
 }
 
-std::string Shards::name() const { return text("shard ", index_, " of ", count_); }
-
 std::filesystem::path Shards::file(uint part) const {
     return std::filesystem::path(output_) += text(".shard", part, "of", count_);
 }
@@ -148,8 +146,8 @@ bool Shards::for_parts(std::uint64_t count, const Visit& save, const Visit& load
     if (options_.count > 0) {
         if (!is_quiet_) {
             const Rows own = rows(index_, count);
-            std::cout << name() << ": rows " << own.first << " to " << own.last << " of " << count << " are in "
-                      << file(index_).string() << '\n';
+            std::cout << "shard " << index_ << " of " << count_ << ": rows " << own.first << " to " << own.last
+                      << " of " << count << " are in " << file(index_).string() << '\n';
         }
         return false;
     }

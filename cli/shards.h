@@ -58,8 +58,6 @@ class Shards {
 
     Rows rows(uint part, std::uint64_t count) const;
     bool is_whole() const { return count_ == 0; }
-    bool resumes() const { return options_.resumes; }
-    std::string name() const;  // "shard 0 of 3"; only of the own part
 
   private:
     std::filesystem::path file(uint part) const;
