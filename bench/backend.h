@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: MIT
-// Whatever builds scenes and traces rays, so that it can be measured beside others.
+// Whatever builds scenes and traces rays, so that it can be measured beside others; our accelerators as such.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
+#include <twinray/abstract_accel.h>
 #include <twinray/scene.h>
 
 #include "engine/accel/trace_desc.h"
 #include "engine/core/commands.h"
+#include "engine/core/stopwatch.h"
 
 namespace twinray::bench {
 
@@ -80,5 +83,30 @@ class Backend {
 };
 
 using LineUp = std::vector<std::unique_ptr<Backend>>;
+
+// Of all passes; what the watch says, once the GPU is done, where its queue has no timestamps.
+double total_ms(const std::vector<PassTiming>& timings, const Stopwatch& watch);
+
+// Traces the batch by `desc`, whose rays, hits and query are the batch's. In ms, of the GPU's passes.
+double trace_ms(AbstractAccel& accel, const std::string& name, const RayBatch& batch, TraceDesc desc);
+std::vector<Hit> download_hits(AbstractAccel& accel, const RayBatch& batch);
+
+// An accelerator of ours. Times are those of the GPU's passes.
+class AccelBackend : public Backend {
+  public:
+    using Make = std::function<std::unique_ptr<AbstractAccel>()>;
+    AccelBackend(Labels labels, Level level, RayOrder order, Make make)
+        : Backend(std::move(labels)), level_(level), order_(order), make_(std::move(make)) {}
+
+    BuildFigures build(const Scene& scene) override;
+    double trace(const RayBatch& batch) override;
+    std::vector<Hit> hits(const RayBatch& batch) const override { return download_hits(*accel_, batch); }
+
+  private:
+    Level level_;
+    RayOrder order_;
+    Make make_;
+    std::unique_ptr<AbstractAccel> accel_;
+};
 
 }  // namespace twinray::bench

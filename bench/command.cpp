@@ -8,7 +8,6 @@
 
 #include "bench/embree_backend.h"
 #include "bench/report.h"
-#include "bench/table.h"
 #include "engine/core/error.h"
 #include "engine/core/statistics.h"
 #include "samples/support/progress.h"

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "bench/displaced_sphere.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 #include <twinray/geometry.h>
+#include "bench/scenes.h"
 #include "validation/reference/draws.h"
 
 namespace twinray::bench {

@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "bench/tiles.h"
+#include "bench/measure.h"
 #include "engine/core/cpu_vectors.h"
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"

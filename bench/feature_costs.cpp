@@ -8,10 +8,8 @@
 #include <twinray/scene.h>
 #include <twinray/tlas.h>
 
-#include "bench/accel_backend.h"
 #include "bench/figures.h"
 #include "bench/report.h"
-#include "bench/table.h"
 #include "engine/accel/feature_additions.h"
 #include "engine/accel/trace_program.h"
 #include "engine/core/error.h"
@@ -20,14 +18,6 @@
 
 namespace twinray::bench {
 namespace {
-
-struct FeatureCostOptions {
-    Layout layout = Layout::compressed4;
-    Level level = Level::watertight;
-    std::size_t rounds = 9;  // at least 5
-    std::uint64_t seed = 1;
-    uint width = 256;  // as RunOptions::width
-};
 
 // One set of rays, traced by programs for the same scene that bits of FEATURES are added to, one after the other. The
 // first has those alone that the trace needs.
@@ -65,24 +55,9 @@ class FeatureBackend : public Backend {
 
     BuildFigures build(const Scene&) override { return {}; }
     double trace(const RayBatch& batch) override {
-        const auto& [rays, hits] = batch.on(accel_.context());
-        Commands commands(accel_.context(), "costs");
-        accel_.trace(commands, accel_.view(),
-                     {.rays = rays.ref<Ray>(),
-                      .hits = hits.ref<Hit>(),
-                      .count = batch.rays().size(),
-                      .query = batch.query(),
-                      .level = level_,
-                      .occlusion_only = true,
-                      .program = program_.get()});
-        const Stopwatch watch;
-        commands.submit();
-        accel_.wait_for_gpu();
-        return total_ms(commands.timings(), watch);
+        return trace_ms(accel_, "costs", batch, {.level = level_, .occlusion_only = true, .program = program_.get()});
     }
-    std::vector<Hit> hits(const RayBatch& batch) const override {
-        return download<Hit>(accel_.context(), batch.on(accel_.context()).hits, batch.rays().size());
-    }
+    std::vector<Hit> hits(const RayBatch& batch) const override { return download_hits(accel_, batch); }
 
   private:
     AbstractAccel& accel_;
@@ -111,12 +86,12 @@ LineUp line_up_of(AbstractAccel& accel, Level level, Query query) {
     return line_up;
 }
 
-FeatureCosts measure_costs(AbstractAccel& accel, RayKind kind, std::vector<Ray>&& rays,
-                           const FeatureCostOptions& options) {
-    LineUp line_up = line_up_of(accel, options.level, query_of(kind));
+FeatureCosts measure_costs(AbstractAccel& accel, RayKind kind, std::vector<Ray>&& rays, Level level,
+                           std::size_t round_count) {
+    LineUp line_up = line_up_of(accel, level, query_of(kind));
     const RayBatch batch(std::move(rays), query_of(kind), kind == RayKind::primary);
     const std::vector<TraceRounds> rounds =
-        measure_traces(line_up, batch, {.rounds = options.rounds, .max_ms = 1e9}, [] {});
+        measure_traces(line_up, batch, {.rounds = round_count, .max_ms = 1e9}, [] {});
     FeatureCosts costs{.kind = kind, .steps = {}};
     for (std::size_t i = 0; i < line_up.size(); ++i)
         costs.steps.push_back(
@@ -132,15 +107,16 @@ bool FeatureCosts::agrees() const {
 }
 
 // SwTlas traces scenes whose instances do not move. Throws Error naming the scene if no primary ray meets it.
-std::vector<FeatureCosts> measure_feature_costs(Context& context, const BenchScene& scene,
-                                                const FeatureCostOptions& options, std::span<const RayKind> kinds) {
-    auto rays = make_rays(context, scene, options.width, options.seed);
-    SwTlas accel(context, {.level = options.level, .layout = options.layout, .can_move = false});
+std::vector<FeatureCosts> measure_feature_costs(Context& context, const BenchScene& scene, const RunOptions& run,
+                                                std::size_t rounds) {
+    auto rays = make_rays(context, scene, run.width, run.seed);
+    const Level level = run.line_up.levels.front();
+    SwTlas accel(context, {.level = level, .layout = run.line_up.layouts.front(), .can_move = false});
     push_scene(accel, scene.scene);
     accel.sync();
     std::vector<FeatureCosts> all_costs;
-    for (const RayKind kind : kinds)
-        all_costs.push_back(measure_costs(accel, kind, std::move(rays[static_cast<std::size_t>(kind)]), options));
+    for (const RayKind kind : run.kinds)
+        all_costs.push_back(measure_costs(accel, kind, std::move(rays[static_cast<std::size_t>(kind)]), level, rounds));
     return all_costs;
 }
 
@@ -303,21 +279,18 @@ std::vector<nlohmann::json> records_of(const nlohmann::json& base, std::span<con
 void bench_feature_costs(const Session& session, const BenchScene& scene) {
     const RunOptions& run = session.run;
     Context context(session.device);
-    const FeatureCostOptions options{.layout = run.line_up.layouts.front(),
-                                     .level = run.line_up.levels.front(),
-                                     .rounds = std::max<std::size_t>(run.rounds, 5),
-                                     .seed = run.seed,
-                                     .width = run.width};
-    session.out << "bench " << scene.name << ": features that " << name_of(options.layout) << ' '
-                << name_of(options.level) << " does not need, one more per line, medians of " << options.rounds
-                << " interleaved rounds, on " << context.properties().name << '\n';
+    const std::string_view layout = name_of(run.line_up.layouts.front()), level = name_of(run.line_up.levels.front());
+    const std::size_t rounds = std::max<std::size_t>(run.rounds, 5);
+    session.out << "bench " << scene.name << ": features that " << layout << ' ' << level
+                << " does not need, one more per line, medians of " << rounds << " interleaved rounds, on "
+                << context.properties().name << '\n';
     nlohmann::json base = base_record(session, context);
     const dvec3& origin = scene.scene.origin;
     base.update({{"scene", scene.name}, {"origin", {origin.x, origin.y, origin.z}}});
     nlohmann::json step_base = base;
-    step_base.update({{"layout", name_of(options.layout)}, {"level", name_of(options.level)}});
+    step_base.update({{"layout", layout}, {"level", level}});
     bool agree = true;
-    for (const FeatureCosts& costs : measure_feature_costs(context, scene, options, run.kinds)) {
+    for (const FeatureCosts& costs : measure_feature_costs(context, scene, run, rounds)) {
         session.out << '\n';
         print_feature_costs(session.out, costs);
         record_all(session, records_of(step_base, costs));
@@ -326,8 +299,7 @@ void bench_feature_costs(const Session& session, const BenchScene& scene) {
     if (run.times_builds) {
         const std::size_t triangles = std::max<std::size_t>(count_mesh_triangles(scene.scene), 1);
         // Each round builds every one of them: beyond 9 the medians stand.
-        const std::vector<MemoryCost> costs =
-            measure_memory_costs(context, scene, std::min<std::size_t>(options.rounds, 9));
+        const std::vector<MemoryCost> costs = measure_memory_costs(context, scene, std::min<std::size_t>(rounds, 9));
         session.out << '\n';
         print_memory_costs(session.out, costs, triangles);
         record_all(session, records_of(base, costs, triangles));

@@ -2,7 +2,10 @@
 #include "bench/figures.h"
 
 #include <algorithm>
+#include <cmath>
+#include <iomanip>
 #include <numeric>
+#include <sstream>
 
 #include "engine/core/statistics.h"
 
@@ -42,6 +45,29 @@ Line fit_line(std::span<const double> x, std::span<const double> y) {
         xy += (x[i] - mean_x) * (y[i] - mean_y);
     }
     return {mean_y - xy / xx * mean_x, xy / xx};
+}
+
+void print_table(std::ostream& out, const std::vector<std::vector<std::string>>& rows) {
+    std::vector<std::size_t> widths(rows.front().size());
+    for (const auto& row : rows)
+        for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+    for (const auto& row : rows) {
+        for (std::size_t i = 0; i < row.size(); ++i)
+            out << "  " << (i == 0 ? std::left : std::right) << std::setw(static_cast<int>(widths[i])) << row[i];
+        out << '\n';
+    }
+}
+
+std::string fixed_text(double value, int decimals) {
+    std::ostringstream text;
+    text << std::fixed << std::setprecision(decimals) << value;
+    return text.str();
+}
+
+std::string number_text(double value, int digits) {
+    if (!std::isfinite(value)) return "-";
+    const int magnitude = value == 0 ? 0 : static_cast<int>(std::floor(std::log10(std::abs(value))));
+    return fixed_text(value, std::max(0, digits - 1 - magnitude));
 }
 
 }  // namespace twinray::bench

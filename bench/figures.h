@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
-// What rounds come to: pure functions.
+// What rounds come to, and columns of text: pure functions.
 #pragma once
 
 #include <optional>
+#include <ostream>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "bench/line_up.h"
 #include "bench/measure.h"
@@ -31,5 +34,12 @@ struct Line {
 };
 // `x` and `y` are equally long and hold two different x at least.
 Line fit_line(std::span<const double> x, std::span<const double> y);
+
+// Rows of as many cells; the first is the heading. The first column is flush left, all others right.
+void print_table(std::ostream& out, const std::vector<std::vector<std::string>>& rows);
+
+std::string fixed_text(double value, int decimals);
+// With so many significant digits, never in powers of ten: 3 of them give "1234", "12.3", "0.00123". "-" unless finite.
+std::string number_text(double value, int digits);
 
 }  // namespace twinray::bench

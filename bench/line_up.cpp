@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "bench/accel_backend.h"
 #include "bench/embree_backend.h"
 #include "engine/core/error.h"
 #include <twinray/tlas.h>

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "bench/tiles.h"
 #include "engine/core/fnv1a.h"
 
 namespace twinray::bench {
@@ -83,6 +82,21 @@ std::uint64_t hash_of(std::span<const Hit> hits, Query query) {
         for (const float value : {hit.t, hit.u, hit.v}) hash.add_bytes(std::span(&value, 1));
     }
     return hash.value();
+}
+
+std::size_t count_tiles(std::size_t count) { return (count + rays_a_tile - 1) / rays_a_tile; }
+
+std::vector<Ray> even_tiles(std::span<const Ray> rays, std::size_t wanted) {
+    const std::size_t all = count_tiles(rays.size());
+    if (wanted >= all) return {rays.begin(), rays.end()};
+    std::vector<Ray> some;
+    for (std::size_t i = 0; i < wanted; ++i) {
+        const std::size_t tile = (2 * i + 1) * all / (2 * wanted);  // the middle of each share
+        const auto part = rays.subspan(tile * rays_a_tile);
+        some.insert(some.end(), part.begin(),
+                    part.begin() + static_cast<std::ptrdiff_t>(std::min(rays_a_tile, part.size())));
+    }
+    return some;
 }
 
 std::size_t affordable_tiles(Backend& backend, const RayBatch& rays, double max_ms) {

@@ -44,6 +44,13 @@ std::vector<TraceRounds> measure_traces(LineUp& line_up, const RayBatch& rays, c
 // alone, as which one is found is free.
 std::uint64_t hash_of(std::span<const Hit> hits, Query query);
 
+// Rays come in tiles of 8 x 8 pixels, one after the other; the last may be smaller. Slow backends trace some of them.
+inline constexpr std::size_t rays_a_tile = 64;
+// Tiles of `count` rays.
+std::size_t count_tiles(std::size_t count);
+// `wanted` whole tiles (all if there are no more) spread evenly over all, in their order.
+std::vector<Ray> even_tiles(std::span<const Ray> rays, std::size_t wanted);
+
 // How many of all tiles a backend traces within max_ms, at least 4: from traces of growing numbers of tiles, the
 // first of which compiles kernels and does not count.
 std::size_t affordable_tiles(Backend& backend, const RayBatch& rays, double max_ms);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "bench/table.h"
 #include "engine/core/error.h"
 #include "engine/core/fnv1a.h"
 

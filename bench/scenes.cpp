@@ -9,7 +9,6 @@
 #include <twinray/scene.h>
 
 #include "engine/core/platform.h"
-#include "bench/displaced_sphere.h"
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
 #include "validation/reference/draws.h"

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Scenes by name: generated ones, which anybody can measure again, and files.
+// Scenes by name: generated ones, which anybody can measure again, and files; and a closed mesh with relief, of any
+// size.
 #pragma once
 
 #include <string>
 
 #include <twinray/scene.h>
+
+#include "twinray/glsl/cpp.h"
 
 namespace twinray::bench {
 
@@ -21,6 +24,13 @@ struct BenchScene {
 // Anything else is a file for load_scene. Numbers may be written as 1e6. The same name gives the same bits everywhere.
 // Throws Error naming what is not a number or out of range.
 BenchScene make_scene(const std::string& name);
+
+// Edges of the icosahedron are cut into as many: 20 frequency^2 triangles. The nearest to a number of triangles.
+uint geodesic_frequency(double triangles);
+
+// A geodesic sphere about the origin, displaced along its radius by five octaves of noise: radii of 0.75 to 1.25.
+// Closed: vertices are shared, triangles face outwards. The same bits everywhere. `frequency` is at least 1.
+Mesh make_displaced_sphere(uint frequency);
 
 // Triangles of all meshes, whatever the number of their instances: what is built.
 std::size_t count_mesh_triangles(const Scene& scene);

@@ -7,7 +7,6 @@
 #include <mutex>
 
 #include "bench/report.h"
-#include "bench/table.h"
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
 #include "swtlas/check.h"

@@ -3,7 +3,6 @@
 #include "bench/figures.h"
 #include "bench/measure.h"
 #include "engine/core/fnv1a.h"
-#include "bench/table.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Backends are measured in turns, over as many tiles of the rays as the time allows.
 #include "bench/measure.h"
-#include "bench/tiles.h"
 
 #include <gtest/gtest.h>
 

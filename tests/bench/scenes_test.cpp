@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <set>
 
-#include "bench/displaced_sphere.h"
 #include "validation/leaks/closed_mesh.h"
 #include "tests/scene/temp_dir.h"
 
