@@ -14,8 +14,7 @@
 namespace twinray::cli {
 namespace {
 
-struct CentroidOptions {
-    AnalysisOptions analysis;
+struct CentroidOptions : AnalysisOptions {
     RayGridOptions grid;
 };
 
@@ -30,7 +29,7 @@ void write(const std::filesystem::path& file, const Centroid& result, const dvec
 }
 
 void print(const CentroidOptions& options, const Analysed& analysed, const Centroid& result, double seconds) {
-    std::cout << analysed.head("centroid", options.analysis) << "  " << speed_text(result.ray_count, seconds) << "\n  ";
+    std::cout << analysed.head("centroid", options) << "  " << speed_text(result.ray_count, seconds) << "\n  ";
     if (result.mean) {
         std::cout << "mean of " << result.point_count
                   << " points: " << coordinate_text(*result.mean, analysed.scene.origin);
@@ -46,7 +45,7 @@ ScenePicture picture_of(const CentroidOptions& options, const Analysed& analysed
     constexpr std::size_t most_points = 4000;
     constexpr float radius = 7;
     ScenePicture picture;
-    picture.page.title = options.analysis.scene.filename().string() + ": centroid";
+    picture.page.title = options.scene.filename().string() + ": centroid";
     picture.page.subtitle = "no ray hits anything";
     if (result.mean)
         picture.page.subtitle =
@@ -68,22 +67,22 @@ ScenePicture picture_of(const CentroidOptions& options, const Analysed& analysed
 nlohmann::json list_or_null(const std::optional<dvec3>& v) { return v ? list_of(*v) : nlohmann::json(nullptr); }
 
 void run(const CentroidOptions& options) {
-    const Analysed analysed(options.analysis);
-    const PictureOptions& pictures = options.analysis.pictures;
-    const RayGridDesc grid = options.grid.desc(options.analysis.common);
+    const Analysed analysed(options);
+    const PictureOptions& pictures = options.pictures;
+    const RayGridDesc grid = options.grid.desc(options.common);
     const Stopwatch start;
     const Centroid result = [&] {
-        samples::Progress progress("centroid", std::uint64_t{grid.side} * grid.side, options.analysis.common.quiet);
+        samples::Progress progress("centroid", std::uint64_t{grid.side} * grid.side, options.common.quiet);
         return centroid(*analysed.accel, analysed.scene,
                         {.grid = grid,
-                         .keeps_points = !options.analysis.output.empty() || !pictures.files.empty(),
+                         .keeps_points = !options.output.empty() || !pictures.files.empty(),
                          .progress = [&](std::uint64_t rays) { progress.advance(rays); }});
     }();
     const double seconds = start.seconds();
-    if (!options.analysis.output.empty()) write(options.analysis.output, result, analysed.scene.origin);
+    if (!options.output.empty()) write(options.output, result, analysed.scene.origin);
     if (!pictures.files.empty())
         write_pictures(pictures, *analysed.accel, analysed.scene, picture_of(options, analysed, result));
-    if (!options.analysis.common.quiet) print(options, analysed, result, seconds);
+    if (!options.common.quiet) print(options, analysed, result, seconds);
     std::optional<dvec3> mean = result.mean;
     if (mean) *mean += analysed.scene.origin;
     nlohmann::json record = {{"n", result.ray_count},
@@ -92,8 +91,8 @@ void run(const CentroidOptions& options) {
                              {"standard_error", list_or_null(result.standard_error)},
                              {"seconds", seconds}};
     record.update(options.grid.record());
-    record.update(analysed.record("twinray-centroid/1", options.analysis));
-    append_json(options.analysis.common.json, record);
+    record.update(analysed.record("twinray-centroid/1", options));
+    append_json(options.common.json, record);
 }
 
 }  // namespace
@@ -108,11 +107,11 @@ Command centroid_command() {
             .description =
                 "Sends parallel rays over the whole scene, one through each cell of a grid, and averages the points "
                 "that they hit.",
-            .positionals = {scene_argument(options->analysis.scene)},
-            .sections = {rays, analysis_output(options->analysis, "write the hit points as CSV: x,y,z"),
-                         picture_options(options->analysis.pictures,
+            .positionals = {scene_argument(options->scene)},
+            .sections = {rays, analysis_output(*options, "write the hit points as CSV: x,y,z"),
+                         picture_options(options->pictures,
                                          "nothing; the .png marks the points that rays hit and their mean"),
-                         common_options(options->analysis.common)},
+                         common_options(options->common)},
             .examples = {{"twinray centroid statue.ply --direction 0 0 -1",
                           "the mean visible point for a viewer who looks along -z"}},
             .run = done_after([options] { run(*options); })};

@@ -17,14 +17,10 @@
 namespace twinray::cli {
 namespace {
 
-struct CollideOptions {
-    CommonOptions common;
-    std::filesystem::path scene, output;
-    std::string accel = "auto";
+struct CollideOptions : AnalysisOptions {
     bool is_broad = false;
     ContactOptions contacts;
     std::uint64_t max_pairs = default_max_pairs;
-    PictureOptions pictures;
 };
 
 // One a class, from the most harmless to the worst, which is also their order.
@@ -77,10 +73,8 @@ void draw(const CollideOptions& options, AbstractAccel& accel, const Scene& scen
 }
 
 void run_broad(const CollideOptions& options) {
-    const Scene scene = load_scene(options.scene, options.common);
-    const std::unique_ptr<Context> context = make_context(options.common);
-    const AccelChoice choice = choose_accel(context->properties(), options.accel);
-    const std::unique_ptr<AbstractAccel> accel = make_accel(*context, choice, scene);
+    const Analysed analysed(options);
+    const auto& [scene, context, choice, accel] = analysed;
     BroadPhase broad_phase(*context);
     broad_phase.set_max_pairs(options.max_pairs);
     const Stopwatch start;

@@ -27,8 +27,7 @@ struct SkyOptions {
     uint samples = 16;
 };
 
-struct IlluminationOptions {
-    AnalysisOptions analysis;
+struct IlluminationOptions : AnalysisOptions {
     ShardOptions shards;
     RayGridOptions grid;
     SkyOptions sky;
@@ -45,7 +44,7 @@ double unit_of(const LitArea& lit, const std::string& measure) {
 
 void write(const IlluminationOptions& options, const Illumination& result) {
     const std::string& what = options.measure;
-    CsvFile csv(options.analysis.output, text(name_of(options.groups.by), ",hits,", what, ",ci_low,ci_high"));
+    CsvFile csv(options.output, text(name_of(options.groups.by), ",hits,", what, ",ci_low,ci_high"));
     const bool has_interval = options.grid.points == GridPoints::random;
     for (std::size_t group = 0; group < result.groups.size(); ++group) {
         const LitArea& lit = result.groups[group];
@@ -67,9 +66,9 @@ ScenePicture picture_of(const IlluminationOptions& options, const Faces& faces, 
         const double unit = unit_of(lit, options.measure);
         values.push_back(unit > 0 ? lit.area / unit : NAN);
     }
-    ScenePicture picture = picture_of_values(options.analysis.pictures, values, what);
+    ScenePicture picture = picture_of_values(options.pictures, values, what);
     const std::vector<double>& d = options.grid.direction;
-    picture.page.title = options.analysis.scene.filename().string() + ": light of one direction";
+    picture.page.title = options.scene.filename().string() + ": light of one direction";
     picture.page.subtitle = text(what, " by ", name_of(options.groups.by), ", direction ", text_of({d[0], d[1], d[2]}),
                                  ", ", result.ray_count, " rays");
     return picture;
@@ -79,7 +78,7 @@ void print(const IlluminationOptions& options, const Analysed& analysed, const I
     const LitArea& total = result.total;
     const auto lit =
         std::count_if(result.groups.begin(), result.groups.end(), [](const LitArea& g) { return g.hits > 0; });
-    std::cout << analysed.head("illumination", options.analysis) << "  " << speed_text(result.ray_count, seconds)
+    std::cout << analysed.head("illumination", options) << "  " << speed_text(result.ray_count, seconds)
               << "\n  lit: " << lit << " of " << result.groups.size() << " by " << name_of(options.groups.by)
               << "; area across the light " << total.area;
     if (options.grid.points == GridPoints::random)
@@ -90,7 +89,7 @@ void print(const IlluminationOptions& options, const Analysed& analysed, const I
 // Rows are pairs of rays, whose counts are added up. Nothing where other processes go on.
 std::optional<Illumination> compute(const Shards& shards, const IlluminationOptions& options, const Analysed& analysed,
                                     const Faces& faces, const RayGridDesc& grid) {
-    samples::Progress progress("illumination", std::uint64_t{grid.side} * grid.side, options.analysis.common.quiet);
+    samples::Progress progress("illumination", std::uint64_t{grid.side} * grid.side, options.common.quiet);
     const IlluminationDesc desc{
         .grid = grid, .sides = options.sides, .by = options.groups.by, .progress = [&](std::uint64_t rays) {
             progress.advance(rays);
@@ -119,20 +118,20 @@ std::optional<Illumination> compute(const Shards& shards, const IlluminationOpti
 }
 
 void run(IlluminationOptions options) {
-    const Shards shards(options.shards, options.analysis.common, options.analysis.output);
-    const Analysed analysed(options.analysis);
+    const Shards shards(options.shards, options.common, options.output);
+    const Analysed analysed(options);
     Faces faces(*analysed.context, analysed.scene);
     options.groups.set_groups(faces);
-    const RayGridDesc grid = options.grid.desc(options.analysis.common);
+    const RayGridDesc grid = options.grid.desc(options.common);
     const Stopwatch start;
     const std::optional<Illumination> computed = compute(shards, options, analysed, faces, grid);
     if (!computed) return;
     const Illumination& result = *computed;
     const double seconds = start.seconds();
-    if (!options.analysis.output.empty()) write(options, result);
-    if (!options.analysis.pictures.files.empty())
-        write_pictures(options.analysis.pictures, *analysed.accel, analysed.scene, picture_of(options, faces, result));
-    if (!options.analysis.common.quiet) print(options, analysed, result, seconds);
+    if (!options.output.empty()) write(options, result);
+    if (!options.pictures.files.empty())
+        write_pictures(options.pictures, *analysed.accel, analysed.scene, picture_of(options, faces, result));
+    if (!options.common.quiet) print(options, analysed, result, seconds);
     nlohmann::json record = {{"sides", name_of(options.sides)},
                              {"by", name_of(options.groups.by)},
                              {"n", result.ray_count},
@@ -143,10 +142,10 @@ void run(IlluminationOptions options) {
                              {"surface", result.total.surface},
                              {"seconds", seconds}};
     record.update(options.grid.record());
-    record.update(analysed.record("twinray-illumination/1", options.analysis));
+    record.update(analysed.record("twinray-illumination/1", options));
     if (options.grid.points == GridPoints::random)
         record.update({{"ci_low", result.total.interval.low}, {"ci_high", result.total.interval.high}});
-    append_json(options.analysis.common.json, record);
+    append_json(options.common.json, record);
 }
 
 constexpr uint most_samples = 1u << 20;
@@ -265,7 +264,7 @@ Command illumination_command() {
     Section light = {"Light", ray_grid_options(options->grid)};
     for (Option& option : sky_options(options->sky)) light.options.push_back(std::move(option));
     light.options.push_back(sides_option(options->sides, "receive light"));
-    Section output = analysis_output(options->analysis,
+    Section output = analysis_output(*options,
                                      "write a CSV file with one line per face: face, hits, area, ci_low, ci_high; with "
                                      "--sky or --sun: face, free_rays, sky or hours, ci_low, ci_high");
     for (Option& option : face_group_options(options->groups, "one line of the CSV", {"--direction"}))
@@ -276,24 +275,23 @@ Command illumination_command() {
          .help = "third column of the CSV: lit area perpendicular to the light, fraction of the area that faces the "
                  "light, or irradiance, which is lit area perpendicular to the light per unit of surface",
          .needs = {"--direction"}});
-    Section pictures = picture_options(options->analysis.pictures, "the third column of the CSV");
-    pictures.options.push_back(color_scale_option(options->analysis.pictures));
+    Section pictures = picture_options(options->pictures, "the third column of the CSV");
+    pictures.options.push_back(color_scale_option(options->pictures));
     return {.name = "illumination",
             .group = "Analyses",
             .summary = "compute the parallel light, sky light or hours of sun of each face",
             .description =
                 "Computes how much of each face parallel light reaches, how much of a uniform sky it sees, or for how "
                 "many hours the sun shines on it, with 95 % confidence intervals.",
-            .positionals = {scene_argument(options->analysis.scene)},
+            .positionals = {scene_argument(options->scene)},
             .sections = {light, output, pictures, shard_options(options->shards, {"--picture"}),
-                         common_options(options->analysis.common)},
+                         common_options(options->common)},
             .alternatives = {{.names = {"--direction", "--sky", "--sun"}, .is_required = true}},
             .examples = {{"twinray illumination house.glb --direction 0.3 -1 0.2 -o lit.csv --picture lit.png",
                           "the faces that the sun reaches, as a table and as a picture"}},
             .run = done_after([options] {
-                options->grid.direction.empty()
-                    ? run_sky(options->analysis, options->shards, options->sky, options->sides)
-                    : run(*options);
+                options->grid.direction.empty() ? run_sky(*options, options->shards, options->sky, options->sides)
+                                                : run(*options);
             })};
 }
 

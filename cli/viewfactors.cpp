@@ -31,16 +31,12 @@ struct ViewFactorPictureOptions {
     std::optional<uint> from;  // a row; none: open fractions of all
 };
 
-struct Options {
-    CommonOptions common;
-    std::filesystem::path scene, output;
-    std::string accel = "auto";
+struct Options : AnalysisOptions {
     FaceGroupOptions groups;
     ViewFactorOptions factors;  // of which this sets the grouping
     PairEstimator estimator = PairEstimator::automatic;
     ShardOptions shards;
     bool projects = false;
-    PictureOptions pictures;
     ViewFactorPictureOptions shown;
 };
 
@@ -237,10 +233,8 @@ void check_shown(const ViewFactorPictureOptions& options, std::size_t row_count)
 void run(Options options) {
     const Shards shards(options.shards, options.common, options.output);
     check_outputs(options);
-    const Scene scene = load_scene(options.scene, options.common);
-    const std::unique_ptr<Context> context = make_context(options.common);
-    const AccelChoice choice = choose_accel(context->properties(), options.accel);
-    const std::unique_ptr<AbstractAccel> accel = make_accel(*context, choice, scene);
+    const Analysed analysed(options);
+    const auto& [scene, context, choice, accel] = analysed;
     Faces faces(*context, scene);
     options.groups.set_groups(faces);
     check_shown(options.shown, faces.group_count(options.factors.grouping));

@@ -22,8 +22,7 @@
 namespace twinray::cli {
 namespace {
 
-struct VisibleOptions {
-    AnalysisOptions analysis;
+struct VisibleOptions : AnalysisOptions {
     ShardOptions shards;
     std::filesystem::path sensors;
     std::string patches = std::string(sky_names[0]);
@@ -111,7 +110,7 @@ std::optional<std::vector<std::uint8_t>> free_patches(const Shards& shards, cons
     agreement.push_back({"directions", checksum_text(std::as_bytes(directions))});
     agreement.push_back({"--t-near", text(std::hexfloat, options.t_near)});
     return compute_rows<std::uint8_t>(shards, sensors.points.size(), agreement, [&](Rows rows) {
-        samples::Progress progress("visible", rows.count() * directions.size(), options.analysis.common.quiet);
+        samples::Progress progress("visible", rows.count() * directions.size(), options.common.quiet);
         return visibility(*analysed.accel, std::span(sensors.points).subspan(rows.first, rows.count()), directions,
                           std::span(sensors.normals).subspan(rows.first, rows.count()),
                           {.t_near = options.t_near, .progress = [&](std::uint64_t n) { progress.advance(n); }});
@@ -119,8 +118,8 @@ std::optional<std::vector<std::uint8_t>> free_patches(const Shards& shards, cons
 }
 
 void run(VisibleOptions options) {
-    const Shards shards(options.shards, options.analysis.common, options.analysis.output);
-    const Analysed analysed(options.analysis);
+    const Shards shards(options.shards, options.common, options.output);
+    const Analysed analysed(options);
     const Sensors sensors = read_sensors(options.sensors, analysed.scene.origin);
     const std::vector<SkyPatch> sky = sky_patches(options.patches);
     const std::vector<vec3> directions = directions_of(sky, {options.up[0], options.up[1], options.up[2]});
@@ -131,11 +130,11 @@ void run(VisibleOptions options) {
     const std::vector<std::uint8_t>& free = *found;
     const double seconds = start.seconds();
     const std::vector<double> shares = shares_of(free, sensors, directions, sky);
-    if (!options.analysis.output.empty()) write(options.analysis.output, free, shares, directions, sky);
+    if (!options.output.empty()) write(options.output, free, shares, directions, sky);
     double mean = 0;
     for (const double share : shares) mean += share / static_cast<double>(shares.size());
-    if (!options.analysis.common.quiet)
-        std::cout << analysed.head("visible", options.analysis) << "  " << speed_text(rays, seconds) << "\n  "
+    if (!options.common.quiet)
+        std::cout << analysed.head("visible", options) << "  " << speed_text(rays, seconds) << "\n  "
                   << sensors.points.size() << " sensors receive " << mean << " of the light of a uniform sky (mean, "
                   << options.patches << ")\n";
     nlohmann::json record = {{"sensors", sensors.points.size()},
@@ -143,8 +142,8 @@ void run(VisibleOptions options) {
                              {"n", rays},
                              {"mean_share", mean},
                              {"seconds", seconds}};
-    record.update(analysed.record("twinray-visible/1", options.analysis));
-    append_json(options.analysis.common.json, record);
+    record.update(analysed.record("twinray-visible/1", options));
+    append_json(options.common.json, record);
 }
 
 }  // namespace
@@ -170,13 +169,13 @@ Command visible_command() {
             .group = "Analyses",
             .summary = "find the sky patches that each sensor sees",
             .description = "Sends a ray from each sensor to the centre of each sky patch in front of it.",
-            .positionals = {scene_argument(options->analysis.scene)},
+            .positionals = {scene_argument(options->scene)},
             .sections = {asked,
-                         analysis_output(options->analysis,
+                         analysis_output(*options,
                                          "write .npz: visible (sensors, patches) of 0 and 1, share, directions, "
                                          "solid_angles; or .csv: sensor, free_patches, share. share is the part of the "
                                          "light of a uniform sky that reaches the sensor, relative to no obstruction"),
-                         shard_options(options->shards, {}), common_options(options->analysis.common)},
+                         shard_options(options->shards, {}), common_options(options->common)},
             .examples = {{"twinray visible street.glb --sensors windows.pts --patches reinhart577 -o windows.npz",
                           "visibility of 577 patches from each window"}},
             .run = done_after([options] { run(*options); })};
