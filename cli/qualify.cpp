@@ -61,9 +61,7 @@ std::vector<Record> records_of_all(const QualifyOptions& options) {
                                               folder.string(),
                                               "--seed",
                                               std::to_string(options.common.seed)};
-        if (!options.only.empty()) arguments.push_back("--only");
-        for (const std::string& pattern : options.only)
-            (&pattern == &options.only.front() ? arguments.emplace_back() : arguments.back() += ',') += pattern;
+        if (!options.only.empty()) arguments.insert(arguments.end(), {"--only", twinray::joined(options.only, ",")});
         if (options.budget) arguments.insert(arguments.end(), {"--budget", std::to_string(*options.budget)});
         if (options.common.quiet) arguments.push_back("--quiet");
         if (options.common.validation) arguments.push_back("--validation");

@@ -67,7 +67,7 @@ std::string synopsis_of(const Command& command) {
     return line + " [OPTION]...";
 }
 
-std::vector<ExitStatus> exit_statuses_of(const Command& command) {
+std::vector<Item> exit_statuses_of(const Command& command) {
     const std::string failure =
         "the command failed; a line on standard error names the cause, such as no device, a file that cannot be read "
         "or written, or no memory";
@@ -76,7 +76,7 @@ std::vector<ExitStatus> exit_statuses_of(const Command& command) {
             {"2", "the command line is wrong"}};
 }
 
-std::vector<EnvironmentVariable> environment_variables() {
+std::vector<Item> environment_variables() {
     return {
         {"TWINRAY_DISABLE",
          "comma-separated list of ray_query and ray_tracing_pipeline: features of the device that twinray does not "

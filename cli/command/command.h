@@ -58,8 +58,9 @@ struct Alternatives {
     bool is_required = false;
 };
 
-struct Example {
-    std::string line, what;
+// A line and what it means: an example, an exit status or a variable of the environment.
+struct Item {
+    std::string head, meaning;
 };
 
 struct Command {
@@ -69,7 +70,7 @@ struct Command {
     std::vector<Option> positionals = {};
     std::vector<Section> sections = {};
     std::vector<Alternatives> alternatives = {};
-    std::vector<Example> examples = {};
+    std::vector<Item> examples = {};
     std::string fault = {};  // "SwTlas shows a fault": ends with exit status 1; empty: there is none to find
     std::function<int()> run = {};
 };
@@ -98,16 +99,7 @@ std::string head_of(const Option& option);
 std::string text_of(const Option& option);
 // "twinray trace SCENE --rays FILE --hits FILE [OPTION]...".
 std::string synopsis_of(const Command& command);
-// The title, then a sentence: what exit statuses mean.
-struct ExitStatus {
-    std::string status, meaning;
-};
-std::vector<ExitStatus> exit_statuses_of(const Command& command);
-
-// A variable that any command heeds.
-struct EnvironmentVariable {
-    std::string name, meaning;
-};
-std::vector<EnvironmentVariable> environment_variables();
+std::vector<Item> exit_statuses_of(const Command& command);
+std::vector<Item> environment_variables();  // that any command heeds
 
 }  // namespace twinray::cli

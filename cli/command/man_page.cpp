@@ -24,13 +24,9 @@ std::string escaped(const std::string& text) {
     return roff.starts_with('.') ? "\\&" + roff : roff;
 }
 
-std::string upper(std::string text) {
-    std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-    return text;
-}
-
-std::string title(const std::string& page, const std::string& version) {
-    return ".TH \"" + upper(page) + "\" 1 \"\" \"twinray " + version + "\" \"User Commands\"\n";
+std::string title(std::string page, const std::string& version) {
+    std::ranges::transform(page, page.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+    return ".TH \"" + page + "\" 1 \"\" \"twinray " + version + "\" \"User Commands\"\n";
 }
 
 std::string heading(const std::string& text) { return ".SH " + text + '\n'; }
@@ -45,13 +41,16 @@ std::string items(const std::vector<Option>& options) {
     return roff;
 }
 
+std::string section(const std::string& name, const std::vector<Item>& items) {
+    std::string roff = heading(name);
+    for (const auto& [head, meaning] : items) roff += item(head, meaning);
+    return roff;
+}
+
 // The sections that end every page.
 std::string end(const Command& command, const std::string& see_also) {
-    std::string roff = heading("EXIT STATUS");
-    for (const auto& [status, meaning] : exit_statuses_of(command)) roff += item(status, meaning);
-    roff += heading("ENVIRONMENT");
-    for (const auto& [name, meaning] : environment_variables()) roff += item(name, meaning);
-    return roff + heading("SEE ALSO") + see_also;
+    return section("EXIT STATUS", exit_statuses_of(command)) + section("ENVIRONMENT", environment_variables()) +
+           heading("SEE ALSO") + see_also;
 }
 
 }  // namespace
@@ -65,8 +64,7 @@ std::string man_page(const Command& command, const std::string& version) {
     for (const Section& section : command.sections)
         roff += ".SS " + escaped(section.title) + '\n' + items(section.options);
     roff += ".SS Help\n" + items({help_option()});
-    roff += heading("EXAMPLES");
-    for (const Example& example : command.examples) roff += item(example.line, example.what);
+    roff += section("EXAMPLES", command.examples);
     return roff + end(command, ".BR twinray (1)\n");
 }
 
