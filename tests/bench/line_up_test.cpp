@@ -6,7 +6,6 @@
 #include <cstring>
 
 #include "bench/embree_backend.h"
-#include "bench/hit_check.h"
 #include "bench/measure.h"
 #include "bench/rays.h"
 #include "tests/scene/temp_dir.h"
