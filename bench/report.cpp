@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "engine/core/error.h"
 #include "engine/core/fnv1a.h"
 
 namespace twinray::bench {

@@ -12,9 +12,7 @@
 #include "cli/common.h"
 #include "validation/leaks/crossings.h"
 #include "engine/core/error.h"
-#include "engine/core/parallel.h"
 #include "samples/support/progress.h"
-#include "engine/core/statistics.h"
 #include "validation/leaks/inside_rays.h"
 #include <twinray/abstract_accel.h>
 #include "validation/leaks/leak_state.h"

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/qualified_devices.h"
 
-#include <algorithm>
-
 #include "engine/core/cpu_vectors.h"
 #include "engine/core/error.h"
 #include <twinray/context.h>

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "cli/common.h"
-#include "engine/core/files.h"
 #include "samples/support/ranks.h"
 
 namespace twinray::cli {

@@ -18,12 +18,6 @@ std::vector<const Option*> options_of(const Command& command) {
     return options;
 }
 
-const Option* find_option(const Command& command, const std::string& name) {
-    for (const Option* option : options_of(command))
-        if (option->name == name) return option;
-    return nullptr;
-}
-
 std::vector<std::string> names_of(std::span<const Command> commands) {
     std::vector<std::string> names;
     for (const Command& command : commands) names.push_back(command.name);
@@ -55,13 +49,14 @@ std::string synopsis_of(const Command& command) {
     };
     for (const Option& positional : command.positionals)
         line += positional.is_required ? ' ' + head_of(positional) : " [" + head_of(positional) + ']';
-    for (const Option* option : options_of(command))
+    const std::vector<const Option*> options = options_of(command);
+    for (const Option* option : options)
         if (option->is_required) line += ' ' + long_head(*option);
     for (const Alternatives& alternatives : command.alternatives) {
         if (!alternatives.is_required) continue;
         std::string any;
         for (const std::string& name : alternatives.names)
-            any += (any.empty() ? "" : " | ") + long_head(*find_option(command, name));
+            any += (any.empty() ? "" : " | ") + long_head(**std::ranges::find(options, name, &Option::name));
         line += " (" + any + ')';
     }
     return line + " [OPTION]...";

@@ -87,10 +87,8 @@ std::function<int()> done_after(Work work) {
 // -h, --help, which each command has.
 const Option& help_option();
 
-// All options in the order of the sections, then --help; and the one of this name, or null.
+// All options in the order of the sections, then --help.
 std::vector<const Option*> options_of(const Command& command);
-const Option* find_option(const Command& command, const std::string& name);
-
 std::vector<std::string> names_of(std::span<const Command> commands);
 
 // "-o, --output FILE"; of a positional "SCENE".

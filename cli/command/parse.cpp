@@ -95,12 +95,7 @@ void store(const Given& given) {
     if (value.most == 1 && words.size() > 1 && !value.is_repeatable) refuse(given.name(), " is given more than once");
     if (words.size() < value.least || (words.size() > value.most && !value.is_repeatable))
         refuse(given.name(), " needs ", value.least, " values, ", value.metavar, ", not ", words.size());
-    if (value.is_list) {
-        std::vector<std::string> parts;
-        for (const std::string& word : words)
-            for (std::string& part : split(word)) parts.push_back(std::move(part));
-        words = std::move(parts);
-    }
+    if (value.is_list && !words.empty()) words = split(words.front());  // there is one: no list is repeatable
     if (const std::string* refused = value.store(words)) {
         const std::string nearest = nearest_to(*refused, value.choices);
         refuse(given.name(), " is '", *refused, "', but must be ", value.allowed,

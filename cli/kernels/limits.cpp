@@ -2,7 +2,6 @@
 #include "cli/kernels/limits.h"
 
 #include <algorithm>
-#include <array>
 #include <fstream>
 #include <iomanip>
 #include <map>
