@@ -155,17 +155,15 @@ def true_view(heights, rows, columns, azimuths=720):
                 u = np.rint(x).astype(int)
                 v = np.minimum(y.astype(int), size - 2)
                 f = y - v
-                z = heights[v, u] * (1 - f) + heights[v + 1, u] * f
             elif step_x == 0:
                 v = np.rint(y).astype(int)
                 u = np.minimum(x.astype(int), size - 2)
                 f = x - u
-                z = heights[v, u] * (1 - f) + heights[v, u + 1] * f
             else:
                 u = np.minimum(x.astype(int), size - 2)
                 v = np.minimum(np.rint(y - (x - u)).astype(int), size - 2)
                 f = x - u
-                z = heights[v, u] * (1 - f) + heights[v + 1, u + 1] * f
+            z = heights[v, u] * (1 - f) + heights[v + abs(step_x), u + abs(step_y)] * f
             steep = np.where(is_inside, (z - heights[row, column]) / (t * CELL), 0)
             slope = np.maximum(slope, steep.max(axis=1))
         answers[i] = np.mean(1 / (1 + slope**2)), np.mean(1 - slope / np.hypot(1, slope))  # cos^2 and 1 - sin of it
