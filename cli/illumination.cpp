@@ -20,17 +20,13 @@
 namespace twinray::cli {
 namespace {
 
-struct SkyOptions {
+struct IlluminationOptions : AnalysisOptions {
+    ShardOptions shards;
+    RayGridOptions grid;
     uint sky = 0;  // rays a face; 0: the sun
     std::vector<double> up = {0, 1, 0};
     std::filesystem::path sun;
     uint samples = 16;
-};
-
-struct IlluminationOptions : AnalysisOptions {
-    ShardOptions shards;
-    RayGridOptions grid;
-    SkyOptions sky;
     Sides sides = Sides::both;
     FaceGroupOptions groups;
     std::string measure = "area";
@@ -169,20 +165,19 @@ double mean_of(const SkyLight& light, const std::vector<double>& areas) {
     return area > 0 ? sum / area : 0;
 }
 
-ScenePicture picture_of(const AnalysisOptions& analysis, const SkyOptions& options, const SkyLight& light,
-                        const std::vector<double>& areas) {
+ScenePicture picture_of(const IlluminationOptions& options, const SkyLight& light, const std::vector<double>& areas) {
     std::vector<double> values;
     for (std::size_t face = 0; face < areas.size(); ++face)
         values.push_back(areas[face] > 0 ? light.faces[face].value : NAN);
     const bool is_sky = options.sky > 0;
-    ScenePicture picture = picture_of_values(analysis.pictures, values, is_sky ? "sky" : "hours");
-    picture.page.title = analysis.scene.filename().string() + (is_sky ? ": light of the sky" : ": hours of sun");
+    ScenePicture picture = picture_of_values(options.pictures, values, is_sky ? "sky" : "hours");
+    picture.page.title = options.scene.filename().string() + (is_sky ? ": light of the sky" : ": hours of sun");
     picture.page.subtitle = text("mean over the surface ", mean_of(light, areas), ", ", light.ray_count, " rays");
     return picture;
 }
 
 // --sky and --sun, and those that need them.
-std::vector<Option> sky_options(SkyOptions& options) {
+std::vector<Option> sky_options(IlluminationOptions& options) {
     return {
         {.name = "--sky",
          .value = number(options.sky, {1, most_samples}),
@@ -199,7 +194,7 @@ std::vector<Option> sky_options(SkyOptions& options) {
 }
 
 // Of faces in `rows`.
-std::vector<Received> receive(const Analysed& analysed, const Faces& faces, const SkyOptions& options,
+std::vector<Received> receive(const Analysed& analysed, const Faces& faces, const IlluminationOptions& options,
                               std::span<const SunPosition> sun, SkyRaysDesc desc, Rows rows) {
     desc.first_face = rows.first, desc.last_face = rows.last;
     const SkyLight light = options.sky
@@ -209,7 +204,7 @@ std::vector<Received> receive(const Analysed& analysed, const Faces& faces, cons
             light.faces.begin() + static_cast<std::ptrdiff_t>(rows.last)};
 }
 
-Agreement agreement_for(const Analysed& analysed, const SkyOptions& options, std::span<const SunPosition> sun,
+Agreement agreement_for(const Analysed& analysed, const IlluminationOptions& options, std::span<const SunPosition> sun,
                         const SkyRaysDesc& desc) {
     Agreement agreement = agreement_of("illumination", analysed.scene, analysed.choice.name());
     agreement.push_back({"light", options.sky ? "sky" : "sun"});
@@ -221,19 +216,19 @@ Agreement agreement_for(const Analysed& analysed, const SkyOptions& options, std
     return agreement;
 }
 
-void run_sky(AnalysisOptions analysis, const ShardOptions& parts, const SkyOptions& options, Sides sides) {
-    const Shards shards(parts, analysis.common, analysis.output);
+void run_sky(IlluminationOptions options) {
+    const Shards shards(options.shards, options.common, options.output);
     const std::vector<SunPosition> sun = options.sky ? std::vector<SunPosition>() : read_sun(options.sun);
-    const Analysed analysed(analysis);
+    const Analysed analysed(options);
     const Faces faces(*analysed.context, analysed.scene);
     const uint samples = options.sky ? options.sky : options.samples;
     const std::string what = options.sky ? "sky" : "hours";
     const Stopwatch start;
     const std::uint64_t rays_of_face = samples * (options.sky ? 1 : sun.size());
-    const SkyRaysDesc desc{.samples = samples, .sides = sides, .seed = analysis.common.seed};
+    const SkyRaysDesc desc{.samples = samples, .sides = options.sides, .seed = options.common.seed};
     auto computed =
         compute_rows<Received>(shards, faces.count(), agreement_for(analysed, options, sun, desc), [&](Rows rows) {
-            samples::Progress progress(what, rows.count() * rays_of_face, analysis.common.quiet);
+            samples::Progress progress(what, rows.count() * rays_of_face, options.common.quiet);
             SkyRaysDesc shown = desc;
             shown.progress = [&](std::uint64_t rays) { progress.advance(rays); };
             return receive(analysed, faces, options, sun, shown, rows);
@@ -241,20 +236,19 @@ void run_sky(AnalysisOptions analysis, const ShardOptions& parts, const SkyOptio
     if (!computed) return;
     const SkyLight light{.faces = std::move(*computed), .ray_count = faces.count() * rays_of_face};
     const double seconds = start.seconds();
-    if (!analysis.output.empty()) write(analysis.output, what, light);
-    if (!analysis.pictures.files.empty())
-        write_pictures(analysis.pictures, *analysed.accel, analysed.scene,
-                       picture_of(analysis, options, light, faces.areas()));
+    if (!options.output.empty()) write(options.output, what, light);
+    if (!options.pictures.files.empty())
+        write_pictures(options.pictures, *analysed.accel, analysed.scene, picture_of(options, light, faces.areas()));
     const double mean = mean_of(light, faces.areas());
-    if (!analysis.common.quiet)
-        std::cout << analysed.head("illumination", analysis) << "  " << speed_text(light.ray_count, seconds) << "\n  "
+    if (!options.common.quiet)
+        std::cout << analysed.head("illumination", options) << "  " << speed_text(light.ray_count, seconds) << "\n  "
                   << (options.sky ? "light of the sky" : "hours of sun") << ", mean over the surface: " << mean << '\n';
-    nlohmann::json record = {{"what", what},         {"sides", name_of(sides)},
+    nlohmann::json record = {{"what", what},         {"sides", name_of(options.sides)},
                              {"samples", samples},   {"positions", sun.size()},
                              {"n", light.ray_count}, {"mean", mean},
                              {"seconds", seconds}};
-    record.update(analysed.record("twinray-sky/1", analysis));
-    append_json(analysis.common.json, record);
+    record.update(analysed.record("twinray-sky/1", options));
+    append_json(options.common.json, record);
 }
 
 }  // namespace
@@ -262,7 +256,7 @@ void run_sky(AnalysisOptions analysis, const ShardOptions& parts, const SkyOptio
 Command illumination_command() {
     const auto options = std::make_shared<IlluminationOptions>();
     Section light = {"Light", ray_grid_options(options->grid)};
-    for (Option& option : sky_options(options->sky)) light.options.push_back(std::move(option));
+    for (Option& option : sky_options(*options)) light.options.push_back(std::move(option));
     light.options.push_back(sides_option(options->sides, "receive light"));
     Section output = analysis_output(*options,
                                      "write a CSV file with one line per face: face, hits, area, ci_low, ci_high; with "
@@ -289,10 +283,7 @@ Command illumination_command() {
             .alternatives = {{.names = {"--direction", "--sky", "--sun"}, .is_required = true}},
             .examples = {{"twinray illumination house.glb --direction 0.3 -1 0.2 -o lit.csv --picture lit.png",
                           "the faces that the sun reaches, as a table and as a picture"}},
-            .run = done_after([options] {
-                options->grid.direction.empty() ? run_sky(*options, options->shards, options->sky, options->sides)
-                                                : run(*options);
-            })};
+            .run = done_after([options] { options->grid.direction.empty() ? run_sky(*options) : run(*options); })};
 }
 
 }  // namespace twinray::cli

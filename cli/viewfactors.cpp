@@ -25,18 +25,14 @@
 namespace twinray::cli {
 namespace {
 
-struct ViewFactorPictureOptions {
-    std::filesystem::path matrix;
-    std::optional<uint> from;  // a row; none: open fractions of all
-};
-
 struct Options : AnalysisOptions {
     FaceGroupOptions groups;
     ViewFactorOptions factors;  // of which this sets the grouping
     PairEstimator estimator = PairEstimator::automatic;
     ShardOptions shards;
     bool projects = false;
-    ViewFactorPictureOptions shown;
+    std::filesystem::path matrix;
+    std::optional<uint> from;  // the row whose picture is wanted; none: open fractions of all
 };
 
 // Empty where hits are to tell all, as they are in scenes of too many faces unless another estimator is asked for.
@@ -178,65 +174,56 @@ std::vector<double> by_face(const std::vector<uint>& groups, const std::vector<d
 }
 
 // `groups`: of each face. `rows` are all, in order.
-ScenePicture picture_of_view_factors(const PictureOptions& options, const ViewFactorPictureOptions& shown,
-                                     const std::string& scene, const std::vector<uint>& groups,
+ScenePicture picture_of_view_factors(const Options& options, const std::vector<uint>& groups,
                                      const std::vector<ViewFactorRow>& rows) {
-    if (!shown.from) {
-        ScenePicture picture = picture_of_values(options, by_face(groups, open_fractions(rows)), "open");
+    const std::string scene = options.scene.filename().string();
+    if (!options.from) {
+        ScenePicture picture = picture_of_values(options.pictures, by_face(groups, open_fractions(rows)), "open");
         picture.page.title = scene + ": open fraction";
         picture.page.subtitle = "part of the diffuse radiation of a face that leaves the scene";
         return picture;
     }
-    const std::vector<double> values = by_face(groups, factors_of(rows[*shown.from], rows.size()));
-    ScenePicture picture = picture_of_values(options, values, "F", ColorScale::log);
+    const std::vector<double> values = by_face(groups, factors_of(rows[*options.from], rows.size()));
+    ScenePicture picture = picture_of_values(options.pictures, values, "F", ColorScale::log);
     for (std::size_t face = 0; face < groups.size(); ++face)
-        if (groups[face] == *shown.from) picture.colors[face] = categorical::vermilion;
-    picture.page.legend.entries.push_back({categorical::vermilion, text("row ", *shown.from)});
-    picture.page.title = text(scene, ": view factors of row ", *shown.from);
+        if (groups[face] == *options.from) picture.colors[face] = categorical::vermilion;
+    picture.page.legend.entries.push_back({categorical::vermilion, text("row ", *options.from)});
+    picture.page.title = text(scene, ": view factors of row ", *options.from);
     picture.page.subtitle = "part of its diffuse radiation that reaches each group of faces";
     return picture;
 }
 
-void write_matrix(const std::filesystem::path& file, const std::string& scene, FaceGrouping grouping,
-                  const std::vector<ViewFactorRow>& rows) {
+void write_matrix(const Options& options, const std::vector<ViewFactorRow>& rows) {
     std::vector<MatrixEntry> entries;
     for (const ViewFactorRow& row : rows)
         for (const ViewFactor& factor : row.factors) entries.push_back({row.group, factor.target, factor.value});
-    const Raster raster = draw_matrix(rows.size(), entries,
-                                      {.title = scene + ": view factors",
-                                       .subtitle = text("row: emitting ", name_of(grouping), ", column: receiving"),
-                                       .legend = {.title = "F", .scale = {}, .entries = {}}});
-    write_png(file, raster.width, raster.height, raster.pixels);
+    const Raster raster =
+        draw_matrix(rows.size(), entries,
+                    {.title = options.scene.filename().string() + ": view factors",
+                     .subtitle = text("row: emitting ", name_of(options.factors.grouping), ", column: receiving"),
+                     .legend = {.title = "F", .scale = {}, .entries = {}}});
+    write_png(options.matrix, raster.width, raster.height, raster.pixels);
 }
 
 void write_matrices(const Options& options, const std::vector<double>& areas, const std::vector<ViewFactorRow>& rows) {
     const std::string suffix = lower_suffix(options.output);
     if (suffix == ".csv") write_matrix_csv(options.output, rows);
     if (suffix == ".npz") write_matrix_npz(options.output, rows, areas);
-    if (!options.shown.matrix.empty())
-        write_matrix(options.shown.matrix, options.scene.filename().string(), options.factors.grouping, rows);
-}
-
-void check_outputs(const Options& options) {
-    check_writable(options.output);
-    check_pictures(options.pictures);
-    check_writable(options.shown.matrix);
-}
-
-// Throws Error for a row that is not there.
-void check_shown(const ViewFactorPictureOptions& options, std::size_t row_count) {
-    if (options.from && *options.from >= row_count)
-        fail("--from ", *options.from, ": there are ", row_count, " rows, numbered from 0");
+    if (!options.matrix.empty()) write_matrix(options, rows);
 }
 
 void run(Options options) {
     const Shards shards(options.shards, options.common, options.output);
-    check_outputs(options);
+    check_writable(options.output);
+    check_pictures(options.pictures);
+    check_writable(options.matrix);
     const Analysed analysed(options);
     const auto& [scene, context, choice, accel] = analysed;
     Faces faces(*context, scene);
     options.groups.set_groups(faces);
-    check_shown(options.shown, faces.group_count(options.factors.grouping));
+    const std::size_t row_count = faces.group_count(options.factors.grouping);
+    if (options.from && *options.from >= row_count)
+        fail("--from ", *options.from, ": there are ", row_count, " rows, numbered from 0");
 
     Summary summary;
     summary.choice = choice;
@@ -261,25 +248,13 @@ void run(Options options) {
     write_matrices(options, factors.areas(), rows);
     if (!options.pictures.files.empty())
         write_pictures(options.pictures, *accel, scene,
-                       picture_of_view_factors(options.pictures, options.shown, options.scene.filename().string(),
-                                               faces.groups(options.factors.grouping), rows));
+                       picture_of_view_factors(options, faces.groups(options.factors.grouping), rows));
     if (!options.output.empty() && shards.is_whole()) RowFile(rows_file(options.output), {}).remove();
     if (!options.common.quiet) print(summary, options);
     nlohmann::json record = base_record("twinray-viewfactors/1", *context, options.scene, scene);
     record.update(describe(choice));
     record.update(fields_of(summary, options));
     append_json(options.common.json, record);
-}
-
-// --matrix, and --from, which needs --picture.
-std::vector<Option> view_factor_picture_options(ViewFactorPictureOptions& options) {
-    return {{.name = "--from",
-             .value = number(options.from),
-             .help = "row whose view factors --picture shows, numbered from 0",
-             .needs = {"--picture"}},
-            {.name = "--matrix",
-             .value = file(options.matrix, {".png"}),
-             .help = "write a picture of the matrix on a logarithmic scale"}};
 }
 
 }  // namespace
@@ -317,7 +292,13 @@ Command viewfactors_command() {
     Section pictures =
         picture_options(options->pictures, "the open fraction, or the view factors of one row with --from");
     pictures.options.push_back(color_scale_option(options->pictures));
-    for (Option& option : view_factor_picture_options(options->shown)) pictures.options.push_back(std::move(option));
+    pictures.options.push_back({.name = "--from",
+                                .value = number(options->from),
+                                .help = "row whose view factors --picture shows, numbered from 0",
+                                .needs = {"--picture"}});
+    pictures.options.push_back({.name = "--matrix",
+                                .value = file(options->matrix, {".png"}),
+                                .help = "write a picture of the matrix on a logarithmic scale"});
     return {.name = "viewfactors",
             .group = "Analyses",
             .summary = "compute view factors between faces or groups of faces, with confidence intervals",
