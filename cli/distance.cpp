@@ -40,32 +40,38 @@ QueryBox query_box(const Scene& scene) {
     return {lo - margin, size + 2 * margin};
 }
 
-// The points: of a file, at random, or of a grid.
-struct QueryPointOptions {
-    std::filesystem::path file;
-    std::uint64_t random = 0;
-    std::uint64_t grid = 0;  // points along each side
+struct DistanceOptions {
+    CommonOptions common;
+    ShardOptions shards;
+    std::filesystem::path scene, output;
+    std::filesystem::path points;  // or `random` of them, or a grid of `grid` along each side
+    std::uint64_t random = 0, grid = 0;
+    std::filesystem::path slice;  // .png; empty: none
+    SliceDesc slice_desc = {};    // in the file's coordinates
+    bool is_signed = false;
+    double max_distance = PointQuery::unlimited;
+    std::optional<double> within;
 
-    bool is_asked_for() const { return !file.empty() || random > 0 || grid > 0; }
-    // The last two are in query_box(): of a grid, the centres of its cells, x fastest. None if nothing was asked for.
-    // Throws Error naming the file and the line.
-    std::vector<dvec3> make(const Scene& scene, std::uint64_t seed) const;
+    bool has_points() const { return !points.empty() || random > 0 || grid > 0; }
 };
 
-std::vector<dvec3> QueryPointOptions::make(const Scene& scene, std::uint64_t seed) const {
-    if (!file.empty()) return read_points(file, scene.origin);
-    if (random == 0 && grid == 0) return {};
+// Those at random and of a grid are in query_box(): of a grid, the centres of its cells, x fastest. None if nothing was
+// asked for. Throws Error naming the file and the line.
+std::vector<dvec3> points_of(const DistanceOptions& options, const Scene& scene) {
+    if (!options.points.empty()) return read_points(options.points, scene.origin);
+    if (!options.has_points()) return {};
     const QueryBox box = query_box(scene);
     std::vector<dvec3> points;
-    if (random > 0) {
-        std::mt19937_64 generator(seed);
+    if (options.random > 0) {
+        std::mt19937_64 generator(options.common.seed);
         const auto unit = [&] { return static_cast<double>(generator() >> 11) * 0x1p-53; };
-        for (std::uint64_t i = 0; i < random; ++i) {
+        for (std::uint64_t i = 0; i < options.random; ++i) {
             const double x = unit(), y = unit();
             points.push_back(box.lo + box.size * dvec3(x, y, unit()));
         }
         return points;
     }
+    const std::uint64_t grid = options.grid;
     const dvec3 cell = box.size / static_cast<double>(grid);
     for (std::uint64_t i = 0; i < grid * grid * grid; ++i) {
         const dvec3 index(static_cast<double>(i % grid), static_cast<double>(i / grid % grid),
@@ -74,22 +80,6 @@ std::vector<dvec3> QueryPointOptions::make(const Scene& scene, std::uint64_t see
     }
     return points;
 }
-
-struct SliceOptions {
-    std::filesystem::path file;  // .png; empty: none
-    SliceDesc desc = {};         // in the file's coordinates
-};
-
-struct DistanceOptions {
-    CommonOptions common;
-    ShardOptions shards;
-    std::filesystem::path scene, output;
-    QueryPointOptions points;
-    SliceOptions slice;
-    bool is_signed = false;
-    double max_distance = PointQuery::unlimited;
-    std::optional<double> within;
-};
 
 bool is_npz(const std::filesystem::path& file) { return lower_suffix(file) == ".npz"; }
 
@@ -126,7 +116,7 @@ void write_npz(const DistanceOptions& options, const std::vector<dvec3>& points,
         instance.push_back(found[i].is_found ? found[i].instance : none);
         triangle.push_back(found[i].is_found ? found[i].triangle : none);
     }
-    const std::size_t n = points.size(), side = options.points.grid;
+    const std::size_t n = points.size(), side = options.grid;
     Npz npz;
     npz.add("distance", std::span<const double>(distance),
             side > 0 ? std::vector<std::size_t>{side, side, side} : std::vector<std::size_t>{});
@@ -148,7 +138,7 @@ struct Search {
     explicit Search(const DistanceOptions& options)
         : scene(load_scene(options.scene, options.common)),
           context(make_context(options.common)),
-          points(options.points.make(scene, options.common.seed)),
+          points(points_of(options, scene)),
           query(*context) {
         const Stopwatch start;
         query.set(scene);
@@ -241,52 +231,50 @@ void run_closest(const Shards& shards, const DistanceOptions& options, Search& s
     append_json(options.common.json, record);
 }
 
-// Throws Error for a scene without triangles. `is_signed`: negative inside, as signed_distances() tells.
-void write_slice(const SliceOptions& options, const Scene& scene, PointQuery& query, bool is_signed,
-                 const std::string& title) {
-    const QueryBox box = query_box(scene);
-    const int normal = options.desc.axis - 'x';
-    SliceDesc desc = options.desc;
-    if (desc.at) *desc.at -= scene.origin[normal];
+// Throws Error for a scene without triangles. With --signed negative inside, as signed_distances() tells.
+void write_slice(const DistanceOptions& options, Search& search) {
+    const dvec3& origin = search.scene.origin;
+    const QueryBox box = query_box(search.scene);
+    SliceDesc desc = options.slice_desc;
+    const int normal = desc.axis - 'x';
+    if (desc.at) *desc.at -= origin[normal];
     const Slice slice = slice_of(desc, box.lo, box.size);
     std::vector<double> values;
-    if (is_signed)
-        values = query.signed_distances(slice.points);
+    if (options.is_signed)
+        values = search.query.signed_distances(slice.points);
     else
-        for (const ClosestPoint& found : query.closest(slice.points)) values.push_back(found.distance);
+        for (const ClosestPoint& found : search.query.closest(slice.points)) values.push_back(found.distance);
     const ValueScale scale = ValueScale::linear_for(values);
-    const std::string at = coordinate_text(slice.points.front()[normal], scene.origin[normal]);
+    const std::string at = coordinate_text(slice.points.front()[normal], origin[normal]);
     const Raster page =
         compose(draw_slice(slice, values, scale),
-                {.title = title,
+                {.title = options.scene.filename().string() + ": distances",
                  .subtitle = text("plane ", desc.axis, " = ", at),
-                 .legend = {.title = is_signed ? "signed" : "distance", .scale = scale, .entries = {}}});
-    write_png(options.file, page.width, page.height, page.pixels);
+                 .legend = {.title = options.is_signed ? "signed" : "distance", .scale = scale, .entries = {}}});
+    write_png(options.slice, page.width, page.height, page.pixels);
 }
 
 void run(DistanceOptions options) {
-    if (!options.points.is_asked_for() && options.slice.file.empty())
+    if (!options.has_points() && options.slice.empty())
         throw UsageError("one of --points, --random, --grid, --slice is required");
     check_writable(options.output);
-    check_writable(options.slice.file);
+    check_writable(options.slice);
     if (options.within && is_npz(options.output))
         throw UsageError(text("--output is '", options.output.string(), "', but --within writes .csv"));
     const Shards shards(options.shards, options.common, options.output);
-    if (!shards.is_whole() && !options.points.is_asked_for())
+    if (!shards.is_whole() && !options.has_points())
         throw UsageError("one of --points, --random, --grid is required: their rows are shared");
     Search search(options);
-    if (options.points.is_asked_for())
+    if (options.has_points())
         options.within ? run_within(shards, options, search) : run_closest(shards, options, search);
-    if (!options.slice.file.empty())
-        write_slice(options.slice, search.scene, search.query, options.is_signed,
-                    options.scene.filename().string() + ": distances");
+    if (!options.slice.empty()) write_slice(options, search);
 }
 
 // --points, --random, --grid: at most one of them.
-std::vector<Option> query_point_options(QueryPointOptions& options) {
+std::vector<Option> query_point_options(DistanceOptions& options) {
     return {
         {.name = "--points",
-         .value = cli::file(options.file),
+         .value = file(options.points),
          .help = "read the points from this file, one x,y,z per line"},
         {.name = "--random",
          .value = number(options.random, {1, most_points}),
@@ -297,22 +285,22 @@ std::vector<Option> query_point_options(QueryPointOptions& options) {
          .help = "use the centres of N x N x N cells of that box; x varies fastest"}};
 }
 
-Section slice_options(SliceOptions& options) {
+Section slice_options(DistanceOptions& options) {
     const Names<char> axes = {{"x", 'x'}, {"y", 'y'}, {"z", 'z'}};
     return {"Slice",
             {{.name = "--slice",
-              .value = file(options.file, {".png"}),
+              .value = file(options.slice, {".png"}),
               .help = "write a picture of the distances in a plane through the scene"},
              {.name = "--slice-axis",
-              .value = choice(options.desc.axis, axes),
+              .value = choice(options.slice_desc.axis, axes),
               .help = "axis perpendicular to the plane",
               .needs = {"--slice"}},
              {.name = "--slice-at",
-              .value = number(options.desc.at),
+              .value = number(options.slice_desc.at),
               .help = "position of the plane on that axis; without it, the middle of the scene",
               .needs = {"--slice"}},
              {.name = "--slice-size",
-              .value = number(options.desc.width, {16, 4096}),
+              .value = number(options.slice_desc.width, {16, 4096}),
               .help = "pixels along the longer side",
               .needs = {"--slice"}}}};
 }
@@ -344,9 +332,9 @@ Command distance_command() {
                 "Finds the nearest triangle of each point, or all triangles within a radius, in float64. With --signed "
                 "it also determines exactly whether each point is inside or outside.",
             .positionals = {scene_argument(options->scene)},
-            .sections = {{"Points", query_point_options(options->points)},
+            .sections = {{"Points", query_point_options(*options)},
                          search,
-                         slice_options(options->slice),
+                         slice_options(*options),
                          shard_options(options->shards, {"--slice"}),
                          common_options(options->common)},
             .alternatives = {{.names = {"--points", "--random", "--grid"}}},
