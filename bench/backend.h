@@ -46,13 +46,13 @@ class RayBatch {
 
 // The name that records give this backend; "" if there is no such choice.
 struct Labels {
-    std::string name;     // unique among those that run: "sw compressed4 watertight"
-    std::string backend;  // "sw", "hw", "embree"
-    std::string path;     // "compute", "ray query", "ray tracing pipeline", "packets of 8", "stream"
-    std::string order;    // in which triangles go to a driver: "sorted", "input"
-    std::string layout;
-    std::string builder;
-    std::string level;
+    std::string name = {};     // unique among those that run: "sw compressed4 watertight"
+    std::string backend = {};  // "sw", "hw", "embree"
+    std::string path = {};     // "compute", "ray query", "ray tracing pipeline", "packets of 8", "stream"
+    std::string order = {};    // in which triangles go to a driver: "sorted", "input"
+    std::string layout = {};
+    std::string builder = {};
+    std::string level = {};
     std::string ray_order = {};  // in which it traces rays: "given", "sorted"
 };
 

@@ -347,8 +347,6 @@ LineUp embree_line_up(const std::function<bool(const std::string&)>& is_wanted) 
         Labels labels{.name = variant.name,
                       .backend = "embree",
                       .path = variant.in_streams ? "stream" : "packets of 8",
-                      .order = "",
-                      .layout = "",
                       .builder = variant.quality_name,
                       .level = variant.flags == RTC_SCENE_FLAG_ROBUST ? "robust" : "fast"};
         line_up.push_back(std::make_unique<EmbreeBackend>(

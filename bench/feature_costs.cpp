@@ -43,7 +43,6 @@ class FeatureBackend : public Backend {
         : Backend({.name = program->name(),
                    .backend = "sw",
                    .path = "compute",
-                   .order = "",
                    .layout = std::string(name_of(accel.options().layout)),
                    .builder = "fast",
                    .level = std::string(name_of(level))}),

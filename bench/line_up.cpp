@@ -25,7 +25,6 @@ class LineUpFactory {
         add({.name = text("sw ", built, ' ', name_of(accel.level)),
              .backend = "sw",
              .path = "compute",
-             .order = "",
              .layout = layout,
              .builder = quality,
              .level = std::string(name_of(accel.level))},

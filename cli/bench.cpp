@@ -21,7 +21,7 @@ struct BenchOptions {
     std::vector<RayKind> kinds;
     std::vector<double> growth = {1e3, 1e4, 1e5, 1e6, 1e7};
     std::size_t moves = 0;
-    bool no_embree = false, no_build = false, is_feature_costs = false, is_trees = false, is_growth = false;
+    bool is_feature_costs = false, is_trees = false, is_growth = false;
 };
 
 Section backends_section(BenchOptions& options) {
@@ -43,9 +43,11 @@ Section backends_section(BenchOptions& options) {
              {.name = "--ray-orders",
               .value = choices(line_up.ray_orders, names_of(all_ray_orders)),
               .help = "orders in which accelerators trace the rays"},
-             {.name = "--no-embree", .value = flag(options.no_embree), .help = "do not measure Embree"},
+             {.name = "--no-embree",
+              .value = flag([&options] { options.run.line_up.has_embree = false; }),
+              .help = "do not measure Embree"},
              {.name = "--no-build",
-              .value = flag(options.no_build),
+              .value = flag([&options] { options.run.times_builds = false; }),
               .help = "measure only traces; with --feature-costs, do not measure memory"}}};
 }
 
@@ -71,8 +73,6 @@ bench::RunOptions run_options_of(const BenchOptions& options) {
     bench::RunOptions run = options.run;
     run.seed = options.common.seed;
     run.quiet = options.common.quiet;
-    run.times_builds = !options.no_build;
-    run.line_up.has_embree = !options.no_embree;
     if (!options.kinds.empty())
         run.kinds = options.kinds;
     else if (options.is_growth)
