@@ -31,9 +31,12 @@ struct FeatureCosts {
     std::vector<Step> steps;
 
     // Median over the rounds of its time over that of the first.
-    double ratio(std::size_t step) const;
+    double ratio(std::size_t step) const { return speed_up(steps.front().rounds, steps[step].rounds); }
     // Whether all of them found the same.
-    bool agrees() const;
+    bool agrees() const {
+        return std::ranges::all_of(steps,
+                                   [&](const Step& step) { return step.rounds.hash == steps.front().rounds.hash; });
+    }
 };
 
 // A scene, traced by one program.
@@ -96,13 +99,6 @@ FeatureCosts measure_costs(AbstractAccel& accel, RayKind kind, std::vector<Ray>&
         costs.steps.push_back(
             {line_up[i]->labels().name, static_cast<const FeatureBackend&>(*line_up[i]).features(), rounds[i]});
     return costs;
-}
-
-double FeatureCosts::ratio(std::size_t step) const { return speed_up(steps.front().rounds, steps[step].rounds); }
-
-bool FeatureCosts::agrees() const {
-    return std::all_of(steps.begin(), steps.end(),
-                       [&](const Step& step) { return step.rounds.hash == steps.front().rounds.hash; });
 }
 
 // SwTlas traces scenes whose instances do not move. Throws Error naming the scene if no primary ray meets it.

@@ -72,8 +72,7 @@ ScenePicture picture_of(const IlluminationOptions& options, const Faces& faces, 
 
 void print(const IlluminationOptions& options, const Analysed& analysed, const Illumination& result, double seconds) {
     const LitArea& total = result.total;
-    const auto lit =
-        std::count_if(result.groups.begin(), result.groups.end(), [](const LitArea& g) { return g.hits > 0; });
+    const auto lit = std::ranges::count_if(result.groups, [](const LitArea& g) { return g.hits > 0; });
     std::cout << analysed.head("illumination", options) << "  " << speed_text(result.ray_count, seconds)
               << "\n  lit: " << lit << " of " << result.groups.size() << " by " << name_of(options.groups.by)
               << "; area across the light " << total.area;

@@ -54,9 +54,8 @@ suite::Settings settings_of(const ReportOptions& options) {
 
 // Cases about the driver's own structures, those asked for, if the driver takes part.
 void run_conformance(const ReportOptions& options, Recorder& recorder) {
-    const bool is_asked = std::any_of(options.accels.begin(), options.accels.end(),
-                                      [](frame::Backend backend) { return !is_ours(backend); });
-    if (!(options.accels.empty() || is_asked)) return;
+    const auto is_twinrays = [](frame::Backend backend) { return is_ours(backend); };
+    if (!options.accels.empty() && std::ranges::all_of(options.accels, is_twinrays)) return;
     const auto is_chosen = [&](const auto& row) { return frame::is_chosen(options.only, row.id); };
     if (std::ranges::none_of(cases_of_conformance(), is_chosen)) return;
     run_conformance(options.common, options.only, options.suite == "full" && !options.budget, recorder);
