@@ -29,8 +29,7 @@ void write_values(const std::filesystem::path& file, const Scene& scene, const V
         fail("'", file.string(), "': only the layers light, factors and collisions have values of faces to write");
     if (file.extension() == ".csv") return write_csv(file, scene, values);
     std::vector<Rgb> colors;
-    for (const double number : values.numbers)
-        colors.push_back(std::isnan(number) || !values.scale ? no_value_color : values.scale->color(number));
+    for (const double number : values.numbers) colors.push_back(values.color(number));
     write_glb(file, scene, colors);
 }
 

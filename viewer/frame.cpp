@@ -23,7 +23,8 @@ constexpr uint coarsest = 8;                      // pixels of a coarse frame, a
 constexpr uint side_of_light = 1024;              // rays along each side of the grid
 constexpr std::uint64_t rays_of_row = 1u << 18u;  // of view factors
 
-constexpr Rgb ours = {213, 94, 0}, of_driver = {204, 121, 167}, harmless = {0, 114, 178}, pick_color = {213, 94, 0};
+constexpr Rgb ours = categorical::vermilion, of_driver = categorical::purple, harmless = categorical::blue;
+constexpr Rgb pick_color = categorical::vermilion;
 
 // Returns whether samples of one do not fit the other.
 bool is_another_picture(const State& a, const State& b) {
@@ -200,16 +201,9 @@ Raster Viewer::shaded(Shown shown, const Traced& traced, bool is_moving) {
         path->add_sample(accel_of(shown));
         return path->picture(state_.exposure);
     }
-    if (state_.layer == Layer::distance) {
-        values_ = distances_of(traced);
-        return by_pixel(traced, [&](std::size_t i) {
-            const double value = values_.numbers[i];
-            return std::isnan(value) || !values_.scale ? no_value_color : values_.scale->color(value);
-        });
-    }
-    if (state_.layer == Layer::steps && shown == Shown::software) {
-        values_ = steps_of(traced);
-        return by_pixel(traced, [&](std::size_t i) { return values_.scale->color(values_.numbers[i]); });
+    if (state_.layer == Layer::distance || (state_.layer == Layer::steps && shown == Shown::software)) {
+        values_ = state_.layer == Layer::distance ? distances_of(traced) : steps_of(traced);
+        return by_pixel(traced, [&](std::size_t i) { return values_.color(values_.numbers[i]); });
     }
     if (state_.layer == Layer::steps && shown == state_.shown) values_ = {};
     if (state_.layer == Layer::steps)  // no driver tells
@@ -223,8 +217,7 @@ Raster Viewer::shaded(Shown shown, const Traced& traced, bool is_moving) {
         const Hit& hit = traced.hits[i];
         if (hit.hit == 0) return background;
         const double value = values_.numbers[first[hit.instance_index] + hit.primitive_index];
-        const Rgb color = std::isnan(value) || !values_.scale ? no_value_color : values_.scale->color(value);
-        return lit(scene, traced.rays[i], hit, color);
+        return lit(scene, traced.rays[i], hit, values_.color(value));
     });
 }
 
@@ -324,27 +317,24 @@ void Viewer::draw_legend(Raster& raster) const {
     constexpr int margin = 12, bar_width = 300, bar_height = 10;
     const int top = static_cast<int>(raster.height) - margin - bar_height;
     fill(raster, {margin - 6, top - text_height - 8, bar_width + 12, bar_height + text_height + 14}, paper);
-    for (int x = 0; x < bar_width; ++x) {
-        const double share = (x + 0.5) / bar_width;
-        const double value = values_.scale->is_logarithmic()
-                                 ? values_.scale->lo() * std::pow(values_.scale->hi() / values_.scale->lo(), share)
-                                 : values_.scale->lo() + (values_.scale->hi() - values_.scale->lo()) * share;
-        fill(raster, {margin + x, top, 1, bar_height}, values_.scale->color(value));
-    }
+    for (int x = 0; x < bar_width; ++x)
+        fill(raster, {margin + x, top, 1, bar_height},
+             values_.scale->color(values_.scale->value_at((x + 0.5) / bar_width)));
     draw_text(raster, margin, top - text_height - 2, fitted(range_text(*values_.scale) + values_.what, bar_width));
 }
 
 std::vector<std::string> Viewer::figures() const {
     std::vector<std::string> lines;
-    const MemoryUsage software = stage_->software_memory();
+    const auto add_memory = [&](const char* whose, const MemoryUsage& usage) {
+        lines.push_back(text(whose, ": ", usage.geometries >> 10, " KiB geometries, ", usage.scene >> 10,
+                             " KiB scene, ", usage.instances >> 10, " KiB instances"));
+    };
     lines.push_back(context_.properties().name + ", " + context_.properties().driver);
     lines.push_back(text(count_triangles(stage_->scene()), " triangles, ", stage_->scene().instances.size(),
                          " instances; built in ", std::lround(1000 * stage_->build_seconds()), " ms"));
-    lines.push_back(text("software: ", software.geometries >> 10, " KiB geometries, ", software.scene >> 10,
-                         " KiB scene, ", software.instances >> 10, " KiB instances"));
-    if (const std::optional<MemoryUsage> hardware = stage_->hardware_memory())
-        lines.push_back(text("hardware: ", hardware->geometries >> 10, " KiB geometries, ", hardware->scene >> 10,
-                             " KiB scene, ", hardware->instances >> 10, " KiB instances"));
+    add_memory("software", stage_->software().memory_usage());
+    if (stage_->hardware())
+        add_memory("hardware", stage_->hardware()->memory_usage());
     else
         lines.push_back("hardware: none: " + stage_->why_no_hardware());
     if (stage_->refit_seconds() > 0)
@@ -365,18 +355,14 @@ std::vector<std::string> Viewer::figures() const {
     return lines;
 }
 
-uint Viewer::samples() const {
-    const auto& path = paths_.at(state_.shown == Shown::hardware ? 1 : 0);
-    return path ? path->samples() : 0;
-}
+const PathPicture* Viewer::shown_path() const { return paths_.at(state_.shown == Shown::hardware ? 1 : 0).get(); }
 
-double Viewer::path_error() const {
-    const auto& path = paths_.at(state_.shown == Shown::hardware ? 1 : 0);
-    return path ? path->error() : INFINITY;
-}
+uint Viewer::samples() const { return shown_path() ? shown_path()->samples() : 0; }
+
+double Viewer::path_error() const { return shown_path() ? shown_path()->error() : INFINITY; }
 
 double Viewer::path_rays_a_second() const {
-    const auto& path = paths_.at(state_.shown == Shown::hardware ? 1 : 0);
+    const PathPicture* path = shown_path();
     return path && path->seconds() > 0 ? static_cast<double>(path->rays()) / path->seconds() : 0;
 }
 

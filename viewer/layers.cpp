@@ -21,7 +21,7 @@ vec2 in_plane(uint width, uint height, uvec2 pixel) {
 Rgb base_color(const Scene& scene, const Hit& hit) {
     const Instance& instance = scene.instances[hit.instance_index];
     const uint material = instance.material.value_or(scene.meshes[instance.mesh].material(hit.primitive_index));
-    if (material >= scene.materials.size()) return {205, 208, 213};
+    if (material >= scene.materials.size()) return plain_color;
     const Material& shown = scene.materials[material];
     const vec3 color(shown.base_color.x, shown.base_color.y, shown.base_color.z), specular = shown.specular_color;
     if (shown.ior != 0) return rgb_of_linear(color);

@@ -13,8 +13,6 @@
 
 namespace twinray::viewer {
 
-inline constexpr Rgb background = {238, 240, 243};
-
 // The rays of a picture's pixels, row 0 on top, and their hits.
 struct Traced {
     uint width = 0, height = 0;
@@ -29,6 +27,8 @@ struct Values {
     std::vector<double> numbers;  // NaN: there is none
     std::optional<ValueScale> scale;
     std::string what;  // "steps a ray"
+
+    Rgb color(double number) const { return scale ? scale->color(number) : no_value_color; }
 };
 
 // Works only for layers of hits, from occlusion to depth, and eyelight.

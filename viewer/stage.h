@@ -28,10 +28,6 @@ class Stage {
     HwTlas* hardware() { return hardware_.get(); }                           // null: see the next
     const std::string& why_no_hardware() const { return why_no_hardware_; }  // "" where there is one
     Context& context() const { return context_; }
-    MemoryUsage software_memory() const { return software_.memory_usage(); }
-    std::optional<MemoryUsage> hardware_memory() const {
-        return hardware_ ? std::optional(hardware_->memory_usage()) : std::nullopt;
-    }
     double build_seconds() const { return build_seconds_; }  // of both, with uploads
 
     double refit_seconds() const { return refit_seconds_; }  // of the last pose, on both; 0: there was none

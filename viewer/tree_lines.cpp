@@ -14,7 +14,7 @@ namespace {
 #include "shaders/shared/node_boxes.h"
 #include "twinray/glsl/cpp_end.h"
 
-constexpr Rgb scene_color = {0, 114, 178}, geometry_color = {213, 94, 0};
+constexpr Rgb scene_color = categorical::blue, geometry_color = categorical::vermilion;
 
 class Collector {
   public:
@@ -25,7 +25,7 @@ class Collector {
         const SwGeometry tree = cpu_reference_.scene_nodes();
         if (tree.bvh.leaf_count == 0) return;
         root_area_ = area_of(dvec3(tree.bvh.lo), dvec3(tree.bvh.hi));
-        if (depth == 0 && tree.bvh.leaf_count > 1) return add(world_box(tree.bvh.lo, tree.bvh.hi), true);
+        if (depth == 0 && tree.bvh.leaf_count > 1) return add({tree.bvh.lo, tree.bvh.hi}, true);
         if (tree.bvh.leaf_count == 1) return instance(0, depth);
         descend(tree, tree.bvh.root, depth, nullptr, 1);
     }
@@ -40,11 +40,6 @@ class Collector {
     static double area_of(const dvec3& lo, const dvec3& hi) {
         const double x = hi.x - lo.x, y = hi.y - lo.y, z = hi.z - lo.z;
         return x * y + y * z + z * x;
-    }
-    static Bounds world_box(vec3 lo, vec3 hi) {
-        Bounds box;
-        box.lo = lo, box.hi = hi;
-        return box;
     }
 
     // The tree of an instance, whose root is at depth 0.
@@ -79,7 +74,7 @@ class Collector {
             } else if (!to_world && !is_inner_child(tree, child) && depth > 1) {
                 instance(index_in(load_record(tree.records, child)), depth - 2);
             } else {
-                add(to_world ? moved(*to_world, box.lo, box.hi, scale) : world_box(box.lo, box.hi), !to_world);
+                add(to_world ? moved(*to_world, box.lo, box.hi, scale) : Bounds{box.lo, box.hi}, !to_world);
             }
         }
     }

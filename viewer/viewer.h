@@ -104,6 +104,7 @@ class Viewer {
     Values steps_of(const Traced& traced);
     void draw_over(FacePicture& picture);
     void draw_legend(Raster& raster) const;
+    const PathPicture* shown_path() const;  // null: none yet
 
     Context& context_;
     std::function<void(const std::string&)> say_;

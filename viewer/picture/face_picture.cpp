@@ -10,7 +10,6 @@
 namespace twinray {
 namespace {
 
-constexpr Rgb background = {238, 240, 243};
 constexpr std::size_t rays_a_batch = 1 << 20;
 constexpr uint samples_of_an_edge = 8;
 constexpr int visible_difference = 8;  // of 255

@@ -13,6 +13,8 @@ namespace twinray {
 
 // The colour of faces without a value.
 inline constexpr Rgb plain_color = {205, 208, 213};
+// Behind all faces.
+inline constexpr Rgb background = {238, 240, 243};
 
 // The number of each instance's first face; faces are counted by instance, then by triangle.
 std::vector<std::size_t> first_faces(const Scene& scene);

@@ -36,13 +36,9 @@ int legend_width(const Legend& legend, int height) {
 }
 
 void draw_bar(Raster& raster, const ValueScale& scale, Rect bar) {
-    const auto value_at = [&](double position) {
-        return scale.is_logarithmic() ? scale.lo() * std::pow(scale.hi() / scale.lo(), position)
-                                      : scale.lo() + (scale.hi() - scale.lo()) * position;
-    };
     for (int row = 0; row < bar.height; ++row) {
         const double position = 1 - static_cast<double>(row) / (bar.height - 1);
-        fill(raster, {bar.x, bar.y + row, bar.width, 1}, scale.color(value_at(position)));
+        fill(raster, {bar.x, bar.y + row, bar.width, 1}, scale.color(scale.value_at(position)));
     }
     outline(raster, {bar.x - 1, bar.y - 1, bar.width + 2, bar.height + 2}, ink);
     for (const Tick& tick : scale.ticks(tick_count(bar.height))) {

@@ -84,6 +84,10 @@ double ValueScale::position(double value) const {
     return std::clamp(place, 0.0, 1.0);
 }
 
+double ValueScale::value_at(double position) const {
+    return is_logarithmic_ ? lo_ * std::pow(hi_ / lo_, position) : lo_ + (hi_ - lo_) * position;
+}
+
 Rgb ValueScale::color(double value) const {
     if (std::isnan(value) || (is_logarithmic_ && value <= 0)) return no_value_color;
     const bool is_diverging = !is_logarithmic_ && lo_ < 0 && hi_ > 0;

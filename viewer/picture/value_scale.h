@@ -32,6 +32,8 @@ class ValueScale {
     bool is_logarithmic() const { return is_logarithmic_; }
     // From 0 to 1; the nearest end for values beyond.
     double position(double value) const;
+    // The value at a position, as position() is inverted.
+    double value_at(double position) const;
     // Diverging where 0 is inside of a linear scale. `no_value_color` for NaN and, on a logarithmic scale, for 0 and
     // below.
     Rgb color(double value) const;
