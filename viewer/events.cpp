@@ -56,9 +56,8 @@ std::string rest_of(std::istream& in) {
 
 // Returns "" and a failed stream for a key without a function.
 std::string key_of(std::istream& in) {
-    constexpr std::string_view flight = "WASDQE";
     std::string name = rest_of(in);
-    if (find_key(name) || (name.size() == 1 && flight.find(name) != std::string_view::npos)) return name;
+    if (find_key(name) || is_flight(name)) return name;
     in.setstate(std::ios::failbit);
     return {};
 }

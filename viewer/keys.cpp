@@ -60,6 +60,10 @@ const Key* find_key(std::string_view name) {
     return found == std::end(table) ? nullptr : found;
 }
 
+bool is_flight(std::string_view name) {
+    return name.size() == 1 && std::string_view("WASDQE").find(name) != std::string_view::npos;
+}
+
 std::string state_of(const Key& key, const State& state) {
     switch (key.action) {
         case Action::layer: return on_if(state.layer == key.layer);

@@ -18,8 +18,7 @@ namespace {
 
 VkImageMemoryBarrier barrier(VkImage image, VkImageLayout from, VkImageLayout to, VkAccessFlags before,
                              VkAccessFlags after) {
-    VkImageMemoryBarrier change{};
-    change.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER;
+    auto change = of_type<VkImageMemoryBarrier>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER);
     change.srcAccessMask = before;
     change.dstAccessMask = after;
     change.oldLayout = from;
@@ -74,22 +73,18 @@ void Screen::destroy() {
 }
 
 void Screen::create_commands() {
-    VkCommandPoolCreateInfo pool{};
-    pool.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
+    auto pool = of_type<VkCommandPoolCreateInfo>(VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO);
     pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
     pool.queueFamilyIndex = screen_device_.queue_family();
     require(vkCreateCommandPool(device_, &pool, nullptr, &pool_), "make a command pool");
-    VkCommandBufferAllocateInfo buffer{};
-    buffer.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+    auto buffer = of_type<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
     buffer.commandPool = pool_;
     buffer.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
     buffer.commandBufferCount = 1;
     require(vkAllocateCommandBuffers(device_, &buffer, &commands_), "make a command buffer");
-    VkFenceCreateInfo fence{};
-    fence.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
+    auto fence = of_type<VkFenceCreateInfo>(VK_STRUCTURE_TYPE_FENCE_CREATE_INFO);
     require(vkCreateFence(device_, &fence, nullptr, &is_done_), "make a fence");
-    VkSemaphoreCreateInfo semaphore{};
-    semaphore.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO;
+    auto semaphore = of_type<VkSemaphoreCreateInfo>(VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO);
     require(vkCreateSemaphore(device_, &semaphore, nullptr, &is_acquired_), "make a semaphore");
 }
 
@@ -109,8 +104,7 @@ void Screen::create_pass() {
     subpass.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS;
     subpass.colorAttachmentCount = 1;
     subpass.pColorAttachments = &color;
-    VkRenderPassCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO;
+    auto info = of_type<VkRenderPassCreateInfo>(VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO);
     info.attachmentCount = 1;
     info.pAttachments = &target;
     info.subpassCount = 1;
@@ -120,8 +114,7 @@ void Screen::create_pass() {
 
 void Screen::start_overlay() {
     const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 16};
-    VkDescriptorPoolCreateInfo pool{};
-    pool.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
+    auto pool = of_type<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
     pool.flags = VK_DESCRIPTOR_POOL_CREATE_FREE_DESCRIPTOR_SET_BIT;
     pool.maxSets = 16;
     pool.poolSizeCount = 1;
@@ -140,13 +133,11 @@ void Screen::start_overlay() {
     if (!init_overlay(info, pass_)) fail("window: Dear ImGui cannot use the device");
     has_overlay_ = true;
 #if IMGUI_VERSION_NUM < 19000
-    VkCommandBufferBeginInfo begin{};
-    begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+    auto begin = of_type<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
     require(vkBeginCommandBuffer(commands_, &begin), "begin commands");
     ImGui_ImplVulkan_CreateFontsTexture(commands_);
     require(vkEndCommandBuffer(commands_), "end commands");
-    VkSubmitInfo submit{};
-    submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+    auto submit = of_type<VkSubmitInfo>(VK_STRUCTURE_TYPE_SUBMIT_INFO);
     submit.commandBufferCount = 1;
     submit.pCommandBuffers = &commands_;
     require(vkQueueSubmit(screen_device_.queue(), 1, &submit, VK_NULL_HANDLE), "submit");
@@ -178,8 +169,7 @@ bool Screen::create_swapchain() {
     if (extent_.width == 0 || extent_.height == 0) return false;
     if ((can.supportedUsageFlags & VK_IMAGE_USAGE_TRANSFER_DST_BIT) == 0)
         fail("window: its images cannot be copied to");
-    VkSwapchainCreateInfoKHR info{};
-    info.sType = VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR;
+    auto info = of_type<VkSwapchainCreateInfoKHR>(VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR);
     info.surface = screen_device_.surface();
     info.minImageCount = std::max(2u, can.minImageCount);
     info.imageFormat = screen_device_.format();
@@ -200,15 +190,13 @@ bool Screen::create_swapchain() {
     require(vkGetSwapchainImagesKHR(device_, swapchain_, &count, images.data()), "list its images");
     for (VkImage image : images) {
         Image made{image, VK_NULL_HANDLE, VK_NULL_HANDLE, VK_NULL_HANDLE};
-        VkImageViewCreateInfo view{};
-        view.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
+        auto view = of_type<VkImageViewCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO);
         view.image = image;
         view.viewType = VK_IMAGE_VIEW_TYPE_2D;
         view.format = screen_device_.format();
         view.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
         require(vkCreateImageView(device_, &view, nullptr, &made.view), "view an image");
-        VkFramebufferCreateInfo frame{};
-        frame.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO;
+        auto frame = of_type<VkFramebufferCreateInfo>(VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO);
         frame.renderPass = pass_;
         frame.attachmentCount = 1;
         frame.pAttachments = &made.view;
@@ -216,8 +204,7 @@ bool Screen::create_swapchain() {
         frame.height = extent_.height;
         frame.layers = 1;
         require(vkCreateFramebuffer(device_, &frame, nullptr, &made.framebuffer), "make a frame");
-        VkSemaphoreCreateInfo semaphore{};
-        semaphore.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO;
+        auto semaphore = of_type<VkSemaphoreCreateInfo>(VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO);
         require(vkCreateSemaphore(device_, &semaphore, nullptr, &made.is_drawn), "make a semaphore");
         images_.push_back(made);
     }
@@ -257,13 +244,11 @@ void Screen::upload(const Raster& picture) {
     if (picture_extent_.width != picture.width || picture_extent_.height != picture.height) {
         destroy_picture();
         picture_extent_ = {picture.width, picture.height};
-        VkBufferCreateInfo buffer{};
-        buffer.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
+        auto buffer = of_type<VkBufferCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO);
         buffer.size = 4 * picture.pixels.size();
         buffer.usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
         require(vkCreateBuffer(device_, &buffer, nullptr, &staging_), "make a buffer");
-        VkImageCreateInfo image{};
-        image.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
+        auto image = of_type<VkImageCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO);
         image.imageType = VK_IMAGE_TYPE_2D;
         image.format = VK_FORMAT_R8G8B8A8_UNORM;
         image.extent = {picture.width, picture.height, 1};
@@ -272,8 +257,7 @@ void Screen::upload(const Raster& picture) {
         image.usage = VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
         require(vkCreateImage(device_, &image, nullptr, &picture_), "make an image");
         VkMemoryRequirements needs{};
-        VkMemoryAllocateInfo memory{};
-        memory.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+        auto memory = of_type<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
         vkGetBufferMemoryRequirements(device_, staging_, &needs);
         memory.allocationSize = needs.size;
         memory.memoryTypeIndex = memory_type(
@@ -316,8 +300,7 @@ void Screen::record(VkCommandBuffer commands, const Image& target, const Raster&
     apply(commands, transfer, output,
           barrier(target.image, to, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, write,
                   VK_ACCESS_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT));
-    VkRenderPassBeginInfo begin{};
-    begin.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO;
+    auto begin = of_type<VkRenderPassBeginInfo>(VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO);
     begin.renderPass = pass_;
     begin.framebuffer = target.framebuffer;
     begin.renderArea.extent = extent_;
@@ -342,15 +325,13 @@ bool Screen::present(const Raster& picture) {
     if (acquired != VK_SUBOPTIMAL_KHR) require(acquired, "get an image");
     upload(picture);
     require(vkResetFences(device_, 1, &is_done_), "reset a fence");
-    VkCommandBufferBeginInfo begin{};
-    begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+    auto begin = of_type<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
     begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
     require(vkBeginCommandBuffer(commands_, &begin), "begin commands");
     record(commands_, images_[index], picture);
     require(vkEndCommandBuffer(commands_), "end commands");
     const VkPipelineStageFlags stage = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
-    VkSubmitInfo submit{};
-    submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+    auto submit = of_type<VkSubmitInfo>(VK_STRUCTURE_TYPE_SUBMIT_INFO);
     submit.waitSemaphoreCount = 1;
     submit.pWaitSemaphores = &is_acquired_;
     submit.pWaitDstStageMask = &stage;
@@ -359,8 +340,7 @@ bool Screen::present(const Raster& picture) {
     submit.signalSemaphoreCount = 1;
     submit.pSignalSemaphores = &images_[index].is_drawn;
     require(vkQueueSubmit(screen_device_.queue(), 1, &submit, is_done_), "submit");
-    VkPresentInfoKHR present{};
-    present.sType = VK_STRUCTURE_TYPE_PRESENT_INFO_KHR;
+    auto present = of_type<VkPresentInfoKHR>(VK_STRUCTURE_TYPE_PRESENT_INFO_KHR);
     present.waitSemaphoreCount = 1;
     present.pWaitSemaphores = &images_[index].is_drawn;
     present.swapchainCount = 1;

@@ -17,6 +17,14 @@ namespace twinray::viewer {
 // Throws Error that says what failed.
 void require(VkResult result, const char* action);
 
+// A struct of Vulkan, all zero but for its type.
+template <class Struct>
+Struct of_type(VkStructureType type) {
+    Struct value{};
+    value.sType = type;
+    return value;
+}
+
 // A Vulkan device that can show pictures in a window: made here, adopted by twinray's Context.
 class ScreenDevice {
   public:

@@ -213,9 +213,7 @@ std::string Viewer::command_line() const {
 
 void Viewer::handle(const Event& event) {
     if (const auto* down = std::get_if<KeyDown>(&event)) {
-        const bool flies = button_ == Button::right && (down->key == "W" || down->key == "A" || down->key == "S" ||
-                                                        down->key == "D" || down->key == "Q" || down->key == "E");
-        if (flies)
+        if (button_ == Button::right && is_flight(down->key))
             held_.push_back(down->key);
         else if (const Key* key = find_key(down->key))
             press(*key);
