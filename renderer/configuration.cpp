@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <iomanip>
 
-#include "renderer/layered_records.h"
+#include "renderer/surface_records.h"
 #include "samples/support/files.h"
 #include "samples/support/text.h"
 

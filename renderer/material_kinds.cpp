@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "renderer/layered_records.h"
+#include "renderer/surface_records.h"
 
 namespace twinray::path_tracer {
 namespace {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/scene_upload.h"
 
-#include "renderer/layered_records.h"
-#include "renderer/surface_records.h"
 #include "samples/support/text.h"
 
 namespace twinray::path_tracer {
@@ -179,7 +177,7 @@ Ref<SurfaceInstance> DeviceScene::upload_instances(Commands& commands, const Sce
 void DeviceScene::upload_textures(const Scene& scene, const TextureList& list) {
     if (list.textures.empty() || !features_.some(PT_HAS_TEXTURES)) return;
     textures_.emplace(context_, "textures", TextureStorage::buffers);
-    push_textures(*textures_, scene, list);
+    for (const SampledTexture& texture : list.textures) textures_->push(scene.images[texture.image], texture.options);
     textures_->sync();
     record_.textures = textures_->view();
 }

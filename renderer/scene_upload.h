@@ -12,7 +12,7 @@
 #include "renderer/environment.h"
 #include "renderer/lights.h"
 #include "renderer/material_kinds.h"
-#include "renderer/texture_list.h"
+#include "renderer/surface_records.h"
 
 namespace twinray::path_tracer {
 

@@ -6,16 +6,40 @@
 
 #include <twinray/scene.h>
 
-#include "renderer/texture_list.h"
+#include "renderer/shared.h"
 
 namespace twinray::path_tracer {
+
+// An image of the scene as materials sample it.
+struct SampledTexture {
+    uint image;
+    TextureOptions options;
+    bool operator==(const SampledTexture&) const = default;
+};
+
+// The textures of a scene's materials, each once, in the order in which records name them.
+struct TextureList {
+    std::vector<SampledTexture> textures = {};
+
+    // Adds the texture where it is not there; all zero for none.
+    TextureSlot slot_of(const Texture& texture, bool is_srgb);
+};
 
 std::vector<SurfaceVertex> vertex_records(const Mesh& mesh);
 std::vector<SurfaceTriangle> triangle_records(const Mesh& mesh);
 // Adds the textures of the materials to the list.
 std::vector<SurfaceMaterial> material_records(const Scene& scene, TextureList& textures);
+// The same of the layers beyond the plain surface.
+std::vector<LayeredMaterial> layered_records(const Scene& scene, TextureList& textures);
 
 // References left null.
 SurfaceInstance instance_record(const Transform& transform);
+
+// Returns LAYER_ bits of the layers that have an effect.
+uint layers_of(const Material& material);
+
+bool has_texture(const Material& material);
+// Returns whether one of its textures uses the second texture coordinates.
+bool has_second_uvs(const Material& material);
 
 }  // namespace twinray::path_tracer

@@ -2,7 +2,7 @@
 // Layers of a BSDF: coat, sheen, a grain, a colored interface, thin walls; and what becomes of a material's factors.
 #include <gtest/gtest.h>
 
-#include "renderer/layered_records.h"
+#include "renderer/surface_records.h"
 #include "tests/samples/bsdf_samples.h"
 
 namespace twinray::path_tracer {
