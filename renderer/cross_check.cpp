@@ -30,18 +30,13 @@ CrossChecker::CrossChecker(Context& context, AbstractAccel& second, const Render
     : context_(context),
       second_(second),
       compare_(context, {.name = "path_tracer_compare", .spirv = path_tracer_compare_spirv, .group_size = PATH_GROUP}),
-      hits_(context, {.name = "second hits", .bytes = renderer.batch_size() * sizeof(Hit)}),
-      batch_(context, {.name = "disagreements", .bytes = batch_capacity * sizeof(Disagreement)}),
-      batch_count_(context, {.name = "disagreement count", .bytes = sizeof(uint)}),
+      hits_(array_of<Hit>(context, "second hits", renderer.batch_size())),
+      batch_(array_of<Disagreement>(context, "disagreements", batch_capacity)),
+      batch_count_(array_of<uint>(context, "disagreement count", 1)),
       batch_count_readback_(context,
                             {.name = "disagreement count readback", .bytes = sizeof(uint), .memory = Memory::readback}),
-      marks_(context, {.name = "disagreement marks", .bytes = pixel_count * sizeof(uint)}) {
-    Commands commands(context, "cross-check start");
-    {
-        const auto pass = commands.pass("cross-check start");
-        commands.fill(marks_, 0, marks_.bytes(), 0);
-    }
-    commands.submit();
+      marks_(array_of<uint>(context, "disagreement marks", pixel_count)) {
+    submit_pass(context, "cross-check start", [&](Commands& commands) { commands.fill(marks_, 0, marks_.bytes(), 0); });
 }
 
 void CrossChecker::record(Commands& commands, const TraceDesc& desc, Uints pixels) {

@@ -28,6 +28,11 @@ std::vector<bool> materials_shown(const Scene& scene, const Counts& counts) {
     return used;
 }
 
+uint needs_of_texture(const Texture& texture) {
+    if (texture.image < 0) return 0;
+    return 1u << PT_HAS_TEXTURES | uint{texture.uv_set == 1} << PT_HAS_SECOND_UVS;
+}
+
 // The needs of every kind: each kernel samples all lights, some of which may have textures or be transparent.
 uint needs_of_lights(const Scene& scene, const std::vector<bool>& used, const std::vector<bool>& colored) {
     uint needs = 0;
@@ -36,12 +41,8 @@ uint needs_of_lights(const Scene& scene, const std::vector<bool>& used, const st
         if (!used[i] || largest(material.emission) <= 0) continue;
         const bool is_transparent = material.alpha_mode != AlphaMode::opaque;
         if (is_transparent) needs |= 1u << PT_HAS_ALPHA;
-        for (const Texture& texture :
-             {material.emission_texture, is_transparent ? material.base_color_texture : Texture()}) {
-            if (texture.image < 0) continue;
-            needs |= 1u << PT_HAS_TEXTURES;
-            if (texture.uv_set == 1) needs |= 1u << PT_HAS_SECOND_UVS;
-        }
+        needs |= needs_of_texture(material.emission_texture);
+        if (is_transparent) needs |= needs_of_texture(material.base_color_texture);
         if (is_transparent && colored[i]) needs |= 1u << PT_HAS_COLORS;
     }
     return needs;
@@ -97,8 +98,7 @@ bool may_be_other_glass(const Material& material) {
 uint needs_of(const Material& material) {
     uint needs = 0;
     if (material.alpha_mode != AlphaMode::opaque) needs |= 1u << PT_HAS_ALPHA;
-    if (has_texture(material)) needs |= 1u << PT_HAS_TEXTURES;
-    if (has_second_uvs(material)) needs |= 1u << PT_HAS_SECOND_UVS;
+    for (const Texture* texture : textures_of(material)) needs |= needs_of_texture(*texture);
     if (material.transmission > 0) needs |= 1u << PT_HAS_GLASS;
     for (const auto& [layer, need] : needs_of_layers)
         if (layers_of(material) & layer) needs |= 1u << need;

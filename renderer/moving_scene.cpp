@@ -51,7 +51,7 @@ MovingScene::MovingScene(Context& context, Scene& scene, DeviceScene& device_sce
       deformed_(deformed_meshes(*scene.rig)),
       deformer_(context, scene.rig),
       move_vertices_(context, {.name = "path_tracer_move_vertices", .spirv = path_tracer_move_vertices_spirv}),
-      transforms_(context, {.name = "transforms", .bytes = scene.instances.size() * sizeof(Transform)}) {
+      transforms_(array_of<Transform>(context, "transforms", scene.instances.size())) {
     for (std::size_t i = 0; i < deformed_.size(); ++i)
         if (emits(scene, deformed_[i])) emitting_.push_back(i);
 }
@@ -109,12 +109,8 @@ bool MovingScene::edit_accel(const std::vector<Instance>& before) {
     // The transforms come from device memory, where one may be singular: its instance is then not seen.
     std::vector<Transform> transforms;
     for (const Instance& instance : scene_.instances) transforms.push_back(instance.transform);
-    Commands commands(context_, "path tracer transforms");
-    {
-        const auto pass = commands.pass("path tracer transforms");
-        commands.upload(transforms_, std::span<const Transform>(transforms));
-    }
-    commands.submit();
+    submit_pass(context_, "path tracer transforms",
+                [&](Commands& commands) { commands.upload(transforms_, std::span<const Transform>(transforms)); });
     bool has_edits = !deformed_.empty();
     for (std::size_t first = 0; first < transforms.size();) {
         const AccelHandle handle = handles_[scene_.instances[first].mesh];

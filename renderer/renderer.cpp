@@ -76,13 +76,10 @@ WaveBuffers::WaveBuffers(Context& context, const DeviceScene& scene, Ref<Radianc
         kinds_.emplace(array_of<KindQueue>(context, "queues by kind", kind_count_));
         queues_.emplace(array_of<uint>(context, "queued rays", std::uint64_t{kind_count_} * capacity));
     }
-    Commands commands(context, "path tracer buffers");
-    {
-        const auto pass = commands.pass("path tracer buffers");
+    submit_pass(context, "path tracer buffers", [&](Commands& commands) {
         clear_counters(commands);
         set_first_surfaces(commands, {});
-    }
-    commands.submit();
+    });
 }
 
 std::uint64_t WaveBuffers::bytes() const {
@@ -187,26 +184,18 @@ Film Renderer::make_film(Configuration configuration) const {
 
 void Renderer::start(const Film& film) {
     stats_ = {};
-    Commands commands(context_, "path tracer start");
-    {
-        const auto pass = commands.pass("path tracer start");
+    submit_pass(context_, "path tracer start", [&](Commands& commands) {
         commands.fill(sums_, 0, sums_.bytes(), 0);
         waves_.clear_counters(commands);
         commands.upload(film_, std::span(film.pixels));
-    }
-    commands.submit();
+    });
     set_pixels(pixel_order(film.width, film.height));
     context_.wait_for_gpu();  // so that stats().seconds are those of rendering
 }
 
 void Renderer::set_pixels(std::span<const uint> pixels) {
     pixel_count_ = static_cast<uint>(pixels.size());
-    Commands commands(context_, "path tracer pixels");
-    {
-        const auto pass = commands.pass("path tracer pixels");
-        commands.upload(pixels_, pixels);
-    }
-    commands.submit();
+    submit_pass(context_, "path tracer pixels", [&](Commands& commands) { commands.upload(pixels_, pixels); });
 }
 
 void Renderer::add_block(AbstractAccel& accel, uint number, WaveObserver* observer) {
@@ -240,13 +229,10 @@ std::vector<FirstSurface> Renderer::first_surfaces(AbstractAccel& accel) {
     const std::deque<Kernel<ShadeArgs>> shade = shade_kernels(true);
     const Buffer found = array_of<FirstSurface>(context_, "first surfaces", film_size_);
     const auto prepare = [&](const Buffer& cleared, Ref<FirstSurface> first_surfaces) {
-        Commands commands(context_, "path tracer first surfaces");
-        {
-            const auto pass = commands.pass("path tracer first surfaces");
+        submit_pass(context_, "path tracer first surfaces", [&](Commands& commands) {
             commands.fill(cleared, 0, cleared.bytes(), 0);
             waves_.set_first_surfaces(commands, first_surfaces);
-        }
-        commands.submit();
+        });
     };
     prepare(found, found.ref<FirstSurface>());
     const Crop part = settings_.part();

@@ -58,11 +58,6 @@ class WaveObserver {
     virtual void collect() = 0;
 };
 
-template <class T>
-Buffer array_of(Context& context, const char* name, std::uint64_t count) {
-    return Buffer(context, {.name = name, .bytes = count * sizeof(T)});
-}
-
 // The arrays of waves on the device. Path rays alternate between two sets of arrays; the next wave is appended to the
 // other one. So do shadow rays if they may pass surfaces, else they have one set.
 class WaveBuffers {

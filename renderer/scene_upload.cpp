@@ -48,17 +48,12 @@ SceneFeatures all_features(const Scene& scene) {
 
 DeviceScene::DeviceScene(Context& context, const Scene& scene, const LocalLights& lights,
                          const EnvironmentMap* environment, SceneFeatures features)
-    : context_(context),
-      features_(std::move(features)),
-      data_(context, {.name = "path tracer scene", .bytes = sizeof(SceneData)}) {
-    Commands commands(context, "path tracer upload");
-    {
-        const auto pass = commands.pass("path tracer upload");
+    : context_(context), features_(std::move(features)), data_(array_of<SceneData>(context, "path tracer scene", 1)) {
+    submit_pass(context, "path tracer upload", [&](Commands& commands) {
         upload_all(commands, scene, lights, environment);
         fill_absent(context, record_);
         commands.write(data_, record_);
-    }
-    commands.submit();
+    });
 }
 
 void DeviceScene::move(const Scene& scene, const LocalLights& lights) {
@@ -66,15 +61,12 @@ void DeviceScene::move(const Scene& scene, const LocalLights& lights) {
         fail("a surface or light starts to emit in a scene that has no emission at rest; this is not supported");
     context_.wait_for_gpu();
     moving_.clear();
-    Commands commands(context_, "path tracer move");
-    {
-        const auto pass = commands.pass("path tracer move");
+    submit_pass(context_, "path tracer move", [&](Commands& commands) {
         record_.instances = upload_instances(commands, scene, lights);
         upload_lights(commands, lights);
         fill_absent(context_, record_);
         commands.write(data_, record_);
-    }
-    commands.submit();
+    });
 }
 
 void DeviceScene::upload_all(Commands& commands, const Scene& scene, const LocalLights& lights,

@@ -16,6 +16,22 @@
 
 namespace twinray::path_tracer {
 
+template <class T>
+Buffer array_of(Context& context, const char* name, std::uint64_t count) {
+    return Buffer(context, {.name = name, .bytes = count * sizeof(T)});
+}
+
+// Submits what `record` records into one pass.
+template <class Record>
+void submit_pass(Context& context, const char* name, const Record& record) {
+    Commands commands(context, name);
+    {
+        const auto pass = commands.pass(name);
+        record(commands);
+    }
+    commands.submit();
+}
+
 // The kernels' features that a scene needs; the rest is compiled out.
 struct SceneFeatures {
     MaterialKinds kinds;

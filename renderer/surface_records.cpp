@@ -153,13 +153,4 @@ uint layers_of(const Material& material) {
     return layers;
 }
 
-bool has_texture(const Material& material) {
-    return std::ranges::any_of(textures_of(material), [](const Texture* texture) { return texture->image >= 0; });
-}
-
-bool has_second_uvs(const Material& material) {
-    return std::ranges::any_of(textures_of(material),
-                               [](const Texture* texture) { return texture->image >= 0 && texture->uv_set == 1; });
-}
-
 }  // namespace twinray::path_tracer

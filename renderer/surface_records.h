@@ -38,8 +38,4 @@ SurfaceInstance instance_record(const Transform& transform);
 // Returns LAYER_ bits of the layers that have an effect.
 uint layers_of(const Material& material);
 
-bool has_texture(const Material& material);
-// Returns whether one of its textures uses the second texture coordinates.
-bool has_second_uvs(const Material& material);
-
 }  // namespace twinray::path_tracer
