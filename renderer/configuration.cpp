@@ -21,8 +21,8 @@ constexpr const char* default_sky_value = "default sky";
 // The sum of many values, one after the other.
 class Sum {
   public:
-    template <class T>
-    Sum& add(const std::vector<T>& values) {
+    template <class Values>
+    Sum& add(const Values& values) {
         sum_ = crc32_of(std::as_bytes(std::span(values)), sum_);
         return *this;
     }
@@ -121,10 +121,6 @@ void write_picture_of(const std::filesystem::path& file, const Configuration& co
     write_image(file, picture, exposure_of(exposure, configuration, picture), layers);
 }
 
-std::string hash_of(const Configuration& configuration) {
-    std::string all;
-    for (const auto& [name, value] : configuration) all += text(name, ": ", value, '\n');
-    return Sum().add(std::vector<char>(all.begin(), all.end())).hex();
-}
+std::string hash_of(const Configuration& configuration) { return Sum().add(text_of(configuration)).hex(); }
 
 }  // namespace twinray::path_tracer

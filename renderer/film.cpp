@@ -81,6 +81,12 @@ std::string value_of(const Configuration& configuration, const std::string& name
     return {};
 }
 
+std::string text_of(const Configuration& configuration) {
+    std::string all;
+    for (const auto& [name, value] : configuration) all += text(name, ": ", value, '\n');
+    return all;
+}
+
 void BlockSet::insert(uint number) {
     if (words_.size() <= number / 32) words_.resize(number / 32 + 1);
     words_[number / 32] |= 1u << number % 32;

@@ -22,6 +22,8 @@ using Configuration = std::vector<std::pair<std::string, std::string>>;
 std::string difference(const Configuration& found, const Configuration& wanted);
 // Returns the value of that name, or nothing.
 std::string value_of(const Configuration& configuration, const std::string& name);
+// Returns one "name: value" a line.
+std::string text_of(const Configuration& configuration);
 
 // The numbers of the blocks of samples that a film holds.
 class BlockSet {

@@ -12,7 +12,6 @@ using samples::crc32_of;
 using samples::fail;
 using samples::lower_suffix;
 using samples::read_file;
-using samples::text;
 using samples::write_file;
 namespace {
 
@@ -26,12 +25,6 @@ struct FilmHeader {
 };
 static_assert(sizeof(FilmHeader) == 40);
 
-std::string text_of(const Configuration& configuration) {
-    std::string all;
-    for (const auto& [name, value] : configuration) all += text(name, ": ", value, '\n');
-    return all;
-}
-
 Configuration configuration_of(const std::string& lines) {
     Configuration configuration;
     std::istringstream in(lines);
@@ -40,8 +33,6 @@ Configuration configuration_of(const std::string& lines) {
             configuration.emplace_back(line.substr(0, colon), line.substr(colon + 2));
     return configuration;
 }
-
-uint crc32_of_text(const std::string& lines) { return crc32_of(std::as_bytes(std::span(lines))); }
 
 // Takes values off the front of the file.
 class Reader {
@@ -90,7 +81,7 @@ void save_film(const std::filesystem::path& file, const Film& film) {
                       film.block_size,
                       static_cast<uint>(lines.size()),
                       static_cast<uint>(film.blocks.words().size()),
-                      crc32_of_text(lines)};
+                      crc32_of(std::as_bytes(std::span(lines)))};
     std::memcpy(header.magic, magic, sizeof magic);
     std::vector<std::span<const std::byte>> parts = {
         std::as_bytes(std::span(&header, 1)), std::as_bytes(std::span(lines)),
