@@ -28,12 +28,6 @@ struct Options : samples::DeviceOptions {
     PictureSize size;
 };
 
-// The options, or the exit status of a finished run: help was shown (0) or the usage is wrong (2).
-struct ParsedOptions {
-    Options options;
-    std::optional<int> exit_status;
-};
-
 constexpr uint max_side = 8192, max_frames = 100'000, max_count = 1'000'000;
 
 void add_options(CLI::App& app, Options& options) {
@@ -50,14 +44,6 @@ void add_options(CLI::App& app, Options& options) {
         ->option_text("1|4|9|16 [" + std::to_string(options.size.samples) + "]");
     app.add_option("--seed", options.seed, "seed of the particles' positions")->capture_default_str();
     samples::add_device_options(app, options, "enable the Vulkan validation layer; exit with status 1 on any message");
-}
-
-ParsedOptions parse_options(int argc, char** argv) {
-    CLI::App app("particles: render moving balls, coloured by their speed, without the host in the loop");
-    ParsedOptions result;
-    add_options(app, result.options);
-    result.exit_status = samples::parse(app, argc, argv, "particles");
-    return result;
 }
 
 struct RunTimes {
@@ -138,7 +124,10 @@ int run(const Options& options) {
 int main(int argc, char** argv) {
     using namespace twinray::particles;
     return twinray::samples::run_program("particles", [&] {
-        const ParsedOptions parsed = parse_options(argc, argv);
-        return parsed.exit_status ? *parsed.exit_status : run(parsed.options);
+        CLI::App app("particles: render moving balls, coloured by their speed, without the host in the loop");
+        Options options;
+        add_options(app, options);
+        const std::optional<int> exit_status = twinray::samples::parse(app, argc, argv, "particles");
+        return exit_status ? *exit_status : run(options);
     });
 }

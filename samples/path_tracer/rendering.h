@@ -18,9 +18,6 @@ struct Rendering {
 // own: OUTPUT.rank0of2.film.
 std::filesystem::path checkpoint_file(const std::filesystem::path& output, const Ranks& ranks);
 
-// Rank 0 gets the films and statistics of the others, in their order; the others keep theirs. Waits for all.
-void gather(const Ranks& ranks, Film& film, RenderStats& stats);
-
 // Reads and writes the files of the options: the checkpoint to resume from, checkpoints, pictures on the way, and at
 // the end the output, for all ranks by rank 0. Throws Error naming the file.
 Rendering render_film(const Options& options, const Session& session, AbstractAccel& accel, Ranks& ranks);
