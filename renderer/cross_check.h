@@ -2,8 +2,6 @@
 // Compares two accelerators on the same rays.
 #pragma once
 
-#include <filesystem>
-
 #include "renderer/renderer.h"
 
 namespace twinray::path_tracer {

@@ -2,7 +2,6 @@
 // Light from all directions: maps and a sky, and their sampling.
 #pragma once
 
-#include <filesystem>
 #include <vector>
 
 #include <twinray/scene.h>

@@ -9,7 +9,6 @@
 
 #include "viewer/window.h"
 
-#include <chrono>
 #include <deque>
 #include <fstream>
 #include <iostream>

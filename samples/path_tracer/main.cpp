@@ -8,7 +8,6 @@
 #include <twinray/context.h>
 #include <twinray/scene.h>
 #include "engine/core/platform.h"
-#include "renderer/camera.h"
 #include "renderer/configuration.h"
 #include "renderer/film_file.h"
 #include "renderer/moving_scene.h"

@@ -6,9 +6,6 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
-#include <cstring>
-#include <limits>
-#include <memory>
 #include <utility>
 
 #include "engine/core/platform.h"

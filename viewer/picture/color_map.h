@@ -2,8 +2,6 @@
 // Colours for values.
 #pragma once
 
-#include <array>
-
 #include <twinray/scene.h>
 
 namespace twinray {

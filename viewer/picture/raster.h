@@ -2,7 +2,6 @@
 // Pictures in memory, and drawing in them.
 #pragma once
 
-#include <string_view>
 #include <vector>
 
 #include <twinray/scene.h>

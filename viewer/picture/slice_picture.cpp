@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "engine/core/error.h"
-#include "viewer/picture/page.h"
 
 namespace twinray {
 namespace {
