@@ -7,11 +7,21 @@
 
 #include <twinray/scene.h>
 
-#include "renderer/alias_table.h"
 #include "renderer/material_kinds.h"
+#include "samples/support/text.h"
 
 namespace twinray::path_tracer {
+using samples::text;
 namespace {
+
+uint word_of(double probability) { return static_cast<uint>(std::clamp(probability * 0x1p32, 0.0, 0x1p32 - 1)); }
+
+// "'sun'", "'sun' and 2 others".
+std::string names_of(const std::vector<Light>& lights) {
+    const std::size_t others = lights.size() - 1;
+    const std::string first = text("'", lights[0].name, "'");
+    return others == 0 ? first : text(first, " and ", others, others == 1 ? " other" : " others");
+}
 
 // Samples the nearest texel; wrapping other than repeat matters little for an estimate.
 float texel_luminance(const Image& image, vec2 uv) {
@@ -208,6 +218,36 @@ void put_all(LocalLightSet& set, std::vector<SetKey>& keys, const std::vector<T>
 
 }  // namespace
 
+std::vector<AliasEntry> make_alias_table(std::span<const double> weights) {
+    const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
+    if (!(total > 0)) return {};
+    const auto count = static_cast<uint>(weights.size());
+    std::vector<double> height(count);
+    std::vector<uint> low, high;
+    for (uint i = 0; i < count; ++i) {
+        height[i] = weights[i] / total * count;
+        (height[i] < 1 ? low : high).push_back(i);
+    }
+    // Columns that rounding leaves over on either list are full.
+    std::vector<AliasEntry> table(count);
+    for (uint i = 0; i < count; ++i) table[i] = {word_of(1), i};
+    while (!low.empty() && !high.empty()) {
+        const uint under = low.back(), over = high.back();
+        low.pop_back();
+        table[under] = {word_of(height[under]), over};
+        height[over] -= 1 - height[under];
+        if (height[over] < 1) {
+            high.pop_back();
+            low.push_back(over);
+        }
+    }
+    // A column that must never be chosen must not be left over.
+    for (const uint i : low)
+        if (weights[i] == 0)
+            table[i] = {0, static_cast<uint>(std::max_element(weights.begin(), weights.end()) - weights.begin())};
+    return table;
+}
+
 std::vector<SetKey> LightSet::put(const LocalLights& lights) {
     put_all(set_, emitters_, lights.emitters);
     put_all(set_, punctual_, lights.punctual);
@@ -251,6 +291,20 @@ bool has_lamps(const Scene& scene) {
     for (std::size_t i = 0; i < scene.materials.size(); ++i)
         if (used[i] && largest(scene.materials[i].emission) > 1) return true;
     return !scene.lights.empty();
+}
+
+std::vector<std::string> stopped_lights(const Scene& scene) {
+    std::vector<std::string> sentences;
+    if (scene.lights.empty()) return sentences;
+    const std::vector<bool> used = used_materials(scene);
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        const Material& material = scene.materials[i];
+        if (!used[i] || !may_be_other_glass(material)) continue;
+        const char* why = material.thickness > 0 ? "the boundary of a volume bends it" : "rough glass scatters it";
+        sentences.push_back(text("light of ", names_of(scene.lights), " cannot pass material '", material.name,
+                                 "': ", why, ", and no path can reach a light without size"));
+    }
+    return sentences;
 }
 
 }  // namespace twinray::path_tracer

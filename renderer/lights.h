@@ -2,6 +2,8 @@
 // The lights of a scene, and how one is chosen.
 #pragma once
 
+#include <span>
+#include <string>
 #include <vector>
 
 #include <twinray/scene.h>
@@ -35,6 +37,11 @@ struct LocalLights {
     uint kind_count() const { return uint{has_suns} + uint{has_placed}; }
 };
 
+// Columns that choose i with probability weights[i] / their sum, in constant time (Walker 1977). Weights are finite and
+// >= 0; an empty table for none or for all 0. Vose, "A linear algorithm for generating random numbers with a given
+// distribution", 1991.
+std::vector<AliasEntry> make_alias_table(std::span<const double> weights);
+
 using LocalLightSet = TWINRAY_MULTI_TYPE_SET(LocalLightsView, LOCAL_LIGHTS);
 
 // The lights in device memory. Their number may change; a light keeps its key.
@@ -59,5 +66,9 @@ LocalLights collect_lights(const Scene& scene, LightChoice by);
 // Returns whether the scene has light to see by: a punctual light, or a surface brighter than the radiance 1 that glTF
 // allows without KHR_materials_emissive_strength, which is the glow of a label or a screen rather than a lamp.
 bool has_lamps(const Scene& scene);
+
+// A sentence for each material that the scene shows and that stops the light of its punctual lights though it is glass:
+// shadow rays pass panes alone, and no path that is bent or blurred finds what has no size.
+std::vector<std::string> stopped_lights(const Scene& scene);
 
 }  // namespace twinray::path_tracer

@@ -11,7 +11,6 @@
 #include "renderer/camera.h"
 #include "renderer/configuration.h"
 #include "renderer/film_file.h"
-#include "renderer/stopped_lights.h"
 
 #include "samples/support/files.h"
 #include "samples/support/text.h"

@@ -9,7 +9,7 @@
 #include <twinray/geometry.h>
 #include <twinray/scene.h>
 
-#include "renderer/stopped_lights.h"
+#include "renderer/lights.h"
 
 namespace twinray::path_tracer {
 namespace {

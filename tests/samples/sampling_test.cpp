@@ -6,8 +6,8 @@
 #include <random>
 #include <set>
 
-#include "renderer/alias_table.h"
 #include "renderer/environment.h"
+#include "renderer/lights.h"
 
 namespace twinray::path_tracer {
 namespace {
