@@ -216,6 +216,22 @@ void put_all(LocalLightSet& set, std::vector<SetKey>& keys, const std::vector<T>
             keys.push_back(set.push(lights[i]));
 }
 
+Collector collect(const Scene& scene) {
+    Collector collector{scene};
+    for (uint i = 0; i < scene.instances.size(); ++i) collector.add_instance(i);
+    const float radius = 0.5f * length(bounds_of(scene).size());
+    for (const bool are_suns : {false, true})
+        for (const Light& light : scene.lights)
+            if ((light.kind == Light::Kind::directional) == are_suns) collector.add_punctual(light, radius);
+    return collector;
+}
+
+LocalLights finished(Collector collector, LightChoice by) {
+    collector.lights.by = by;
+    collector.finish();
+    return std::move(collector.lights);
+}
+
 }  // namespace
 
 std::vector<AliasEntry> make_alias_table(std::span<const double> weights) {
@@ -257,26 +273,6 @@ std::vector<SetKey> LightSet::put(const LocalLights& lights) {
     keys.insert(keys.end(), punctual_.begin(), punctual_.begin() + count(lights.punctual));
     return keys;
 }
-
-namespace {
-
-Collector collect(const Scene& scene) {
-    Collector collector{scene};
-    for (uint i = 0; i < scene.instances.size(); ++i) collector.add_instance(i);
-    const float radius = 0.5f * length(bounds_of(scene).size());
-    for (const bool are_suns : {false, true})
-        for (const Light& light : scene.lights)
-            if ((light.kind == Light::Kind::directional) == are_suns) collector.add_punctual(light, radius);
-    return collector;
-}
-
-LocalLights finished(Collector collector, LightChoice by) {
-    collector.lights.by = by;
-    collector.finish();
-    return std::move(collector.lights);
-}
-
-}  // namespace
 
 LocalLights collect_lights(const Scene& scene, LightChoice by) { return finished(collect(scene), by); }
 

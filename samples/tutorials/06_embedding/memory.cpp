@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "memory.h"
+#include "device.h"
 
 #include <cstring>
 #include <stdexcept>

@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "memory.h"
+#include "device.h"
 
 namespace renderer {
 

@@ -9,7 +9,7 @@
 
 #include <twinray/scene.h>
 
-#include "memory.h"
+#include "device.h"
 
 namespace renderer {
 
