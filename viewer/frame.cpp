@@ -11,7 +11,6 @@
 #include "engine/core/stopwatch.h"
 #include "engine/core/parallel.h"
 #include "twinray/glsl/vector_math.h"
-#include "viewer/picture/font.h"
 #include "viewer/tree_lines.h"
 #include "viewer/viewer.h"
 

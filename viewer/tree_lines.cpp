@@ -6,7 +6,7 @@
 
 #include <twinray/scene.h>
 
-#include "viewer/picture/color_map.h"
+#include "viewer/picture/value_scale.h"
 
 namespace twinray::viewer {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/picture/font.h"
+#include "viewer/picture/raster.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/picture/marks.h"
 #include "twinray/glsl/vector_math.h"
-#include "viewer/picture/font.h"
 
 #include <algorithm>
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "engine/core/error.h"
-#include "viewer/picture/font.h"
 
 namespace twinray {
 namespace {

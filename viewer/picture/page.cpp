@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "viewer/picture/font.h"
-
 namespace twinray {
 namespace {
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Pictures in memory, and drawing in them.
+// Pictures in memory, and drawing in them: rectangles, other pictures, text.
 #pragma once
 
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include <twinray/scene.h>
@@ -34,5 +36,15 @@ void fill(Raster& raster, Rect rect, Rgb color);
 void outline(Raster& raster, Rect rect, Rgb color);
 // Puts the upper left corner of `part` at (x, y).
 void paste(Raster& raster, const Raster& part, int x, int y);
+
+// Text is in letters of one width: ASCII; other characters are shown as question marks.
+inline constexpr int text_advance = 12;  // pixels from one letter to the next
+inline constexpr int text_height = 18;   // with 4 below the line; capitals are 14 high
+
+int text_width(std::string_view text);
+// Returns the text, or as much of its beginning as fits into so many pixels, with three dots.
+std::string fitted(std::string_view text, int width);
+// (x, y): the upper left corner.
+void draw_text(Raster& raster, int x, int y, std::string_view text, Rgb color = ink);
 
 }  // namespace twinray

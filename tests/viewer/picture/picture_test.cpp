@@ -13,10 +13,9 @@
 #include "tests/scene/temp_dir.h"
 #include "twinray/glsl/vector_math.h"
 #include "viewer/picture/face_picture.h"
-#include "viewer/picture/face_picture.h"
-#include "viewer/picture/font.h"
 #include "viewer/picture/matrix_picture.h"
 #include "viewer/picture/page.h"
+#include "viewer/picture/raster.h"
 #include "viewer/picture/value_scale.h"
 
 namespace twinray::test {
