@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/light_tree.h"
-
+// Builds the tree of shaders/path_tracer/light_tree.h.
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <numbers>
 #include <numeric>
+
+#include "renderer/lights.h"
 
 namespace twinray::path_tracer {
 namespace {

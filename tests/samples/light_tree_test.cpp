@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Choosing a light by the place that is lit.
-#include "renderer/light_tree.h"
+#include "renderer/lights.h"
 
 #include <gtest/gtest.h>
 
