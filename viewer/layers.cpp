@@ -13,11 +13,6 @@ namespace {
 constexpr Rgb hit_color = {70, 78, 90};
 constexpr float light_at_least = 0.3f;
 
-vec2 in_plane(uint width, uint height, uvec2 pixel) {
-    const vec2 place = vec2(static_cast<float>(pixel.x) + 0.5f, static_cast<float>(pixel.y) + 0.5f);
-    return vec2(2 * place.x / static_cast<float>(width) - 1, 1 - 2 * place.y / static_cast<float>(height));
-}
-
 Rgb base_color(const Scene& scene, const Hit& hit) {
     const Instance& instance = scene.instances[hit.instance_index];
     const uint material = instance.material.value_or(scene.meshes[instance.mesh].material(hit.primitive_index));
@@ -45,15 +40,13 @@ Rgb depth_color(const Ray& ray, const Hit& hit, const Bounds& bounds) {
 std::vector<Ray> rays_of(const Orbit& orbit, uint width, uint height) {
     const ImagePlane plane = image_plane(camera_of(orbit), static_cast<float>(width) / static_cast<float>(height));
     std::vector<Ray> rays(std::size_t{width} * height);
-    parallel_for(rays.size(), [&](std::size_t i) {
-        rays[i] = ray_through(plane, in_plane(width, height, uvec2(i % width, i / width)));
-    });
+    parallel_for(rays.size(), [&](std::size_t i) { rays[i] = ray_through(plane, in_plane(width, height, i)); });
     return rays;
 }
 
 Ray ray_of_pixel(const Orbit& orbit, uint width, uint height, uvec2 pixel) {
     const ImagePlane plane = image_plane(camera_of(orbit), static_cast<float>(width) / static_cast<float>(height));
-    return ray_through(plane, in_plane(width, height, pixel));
+    return ray_through(plane, in_plane(width, height, std::size_t{pixel.y} * width + pixel.x));
 }
 
 Rgb lit(const Scene& scene, const Ray& ray, const Hit& hit, Rgb color) {

@@ -48,11 +48,6 @@ void trace_all(AbstractAccel& accel, std::size_t count, Cull cull, const MakeRay
     }
 }
 
-vec2 in_plane(const FacePictureDesc& desc, std::size_t pixel, vec2 within) {
-    const vec2 place = vec2(pixel % desc.width, pixel / desc.width) + within;
-    return vec2(2, -2) * place / vec2(desc.width, desc.height) + vec2(-1, 1);
-}
-
 // The first points of a plane of low discrepancy (Hammersley): one in each column and one in each row.
 vec2 sample_point(uint index) {
     uint reversed = 0;
@@ -80,7 +75,9 @@ std::vector<std::size_t> pixels_of_edges(const Raster& raster) {
 }
 
 void draw_centers(AbstractAccel& accel, const Shader& shade, const FacePictureDesc& desc, FacePicture& picture) {
-    const auto ray = [&](std::size_t pixel) { return ray_through(picture.plane, in_plane(desc, pixel, vec2(0.5f))); };
+    const auto ray = [&](std::size_t pixel) {
+        return ray_through(picture.plane, in_plane(desc.width, desc.height, pixel));
+    };
     trace_all(accel, picture.raster.pixels.size(), desc.cull, ray,
               [&](std::size_t first, const std::vector<Ray>& rays, const std::vector<Hit>& hits) {
                   parallel_for(rays.size(), [&](std::size_t i) {
@@ -94,7 +91,7 @@ void smooth_edges(AbstractAccel& accel, const Shader& shade, const FacePictureDe
     const std::vector<std::size_t> edges = pixels_of_edges(picture.raster);
     const auto ray = [&](std::size_t i) {
         const vec2 within = sample_point(static_cast<uint>(i % samples_of_an_edge));
-        return ray_through(picture.plane, in_plane(desc, edges[i / samples_of_an_edge], within));
+        return ray_through(picture.plane, in_plane(desc.width, desc.height, edges[i / samples_of_an_edge], within));
     };
     static_assert(rays_a_batch % samples_of_an_edge == 0);
     trace_all(accel, edges.size() * samples_of_an_edge, desc.cull, ray,
@@ -136,6 +133,11 @@ dvec3 front_normal(const Scene& scene, const Hit& hit) {
     const dvec3 a = vertex(triangle.x), normal = cross(vertex(triangle.y) - a, vertex(triangle.z) - a);
     const double size = length(normal) * (determinant(instance.transform) < 0 ? -1 : 1);
     return size != 0 ? normal / size : dvec3(0);
+}
+
+vec2 in_plane(uint width, uint height, std::size_t pixel, vec2 within) {
+    const vec2 place = vec2(pixel % width, pixel / width) + within;
+    return vec2(2, -2) * place / vec2(width, height) + vec2(-1, 1);
 }
 
 FacePicture draw_faces(AbstractAccel& accel, const Scene& scene, std::span<const Rgb> colors,

@@ -23,6 +23,9 @@ std::vector<std::size_t> first_faces(const Scene& scene);
 // space; 0 where it has no area.
 dvec3 front_normal(const Scene& scene, const Hit& hit);
 
+// The place of a pixel in an ImagePlane, row 0 on top. within: in the pixel; (0.5, 0.5) is its centre.
+vec2 in_plane(uint width, uint height, std::size_t pixel, vec2 within = vec2(0.5f));
+
 struct FacePictureDesc {
     uint width = 1000, height = 800;  // pixels
     Camera camera;
