@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/path_picture.h"
+#include "viewer/viewer.h"
 
 #include <bit>
 #include <cmath>

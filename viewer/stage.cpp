@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/stage.h"
+#include "viewer/viewer.h"
 
 #include "engine/core/error.h"
 #include "engine/core/stopwatch.h"

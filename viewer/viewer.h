@@ -3,20 +3,119 @@
 // frames, so that every state can be made, and tested, without a display.
 #pragma once
 
+#include <cmath>
+#include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include <twinray/analysis.h>
+#include <twinray/queries.h>
+#include <twinray/tlas.h>
+#include <twinray/validation.h>
+
+#include "renderer/lights.h"
+#include "renderer/renderer.h"
+#include "renderer/scene_upload.h"
+#include "validation/cpu_reference/reference_scene.h"
 #include "viewer/picture/face_picture.h"
 #include "viewer/picture/marks.h"
 #include "viewer/events.h"
 #include "viewer/keys.h"
 #include "viewer/layers.h"
-#include "viewer/path_picture.h"
-#include "viewer/stage.h"
 
 namespace twinray::viewer {
+
+// A scene on both accelerators, and what is made of it only when it is asked for.
+class Stage {
+  public:
+    // Throws Error as load_scene() does.
+    Stage(Context& context, const std::filesystem::path& file);
+
+    const std::filesystem::path& file() const { return file_; }
+    const Scene& scene() const { return scene_; }
+    const Bounds& bounds() const { return bounds_; }
+    SwTlas& software() { return software_; }
+    HwTlas* hardware() { return hardware_.get(); }                           // null: see the next
+    const std::string& why_no_hardware() const { return why_no_hardware_; }  // "" where there is one
+    Context& context() const { return context_; }
+    double build_seconds() const { return build_seconds_; }  // of both, with uploads
+
+    double refit_seconds() const { return refit_seconds_; }  // of the last pose, on both; 0: there was none
+    // Tells whether an animation moves it, and how long the first one lasts.
+    double animation_seconds() const;
+    // Poses the scene; both accelerators follow.
+    void set_time(double seconds);
+    // Counts what set_time() has changed.
+    std::uint64_t version() const { return version_; }
+
+    const Reference& reference();
+    const reference::Scene& cpu_reference();  // the software accelerator on the host
+    const Faces& faces();
+    PointQuery& points();  // of the software accelerator, as it is
+    bool has_level(Level level) const;
+
+  private:
+    void push();
+
+    Context& context_;
+    std::filesystem::path file_;
+    Scene scene_;
+    Bounds bounds_;
+    SwTlas software_;
+    std::unique_ptr<HwTlas> hardware_;
+    std::string why_no_hardware_;
+    std::vector<AccelHandle> software_handles_, hardware_handles_;  // by mesh with instances
+    double build_seconds_ = 0, refit_seconds_ = 0;
+    std::optional<double> time_;  // of the pose; none: not posed yet
+    std::uint64_t version_ = 0;
+    std::unique_ptr<Reference> reference_;
+    std::unique_ptr<reference::Scene> cpu_reference_;
+    std::unique_ptr<Faces> faces_;
+    std::unique_ptr<PointQuery> points_;
+};
+
+// Path traces the scene, one sample of each pixel after the other.
+class PathPicture {
+  public:
+    // Compiles and uploads what the scene needs in its present state: `version` distinguishes it from later ones. The
+    // scene must outlive this. has_all_features: compiles what any scene may need, to see what leaving out saves.
+    PathPicture(Context& context, const Scene& scene, std::uint64_t version, bool has_all_features);
+    bool is_of(std::uint64_t version, bool has_all_features) const {
+        return version_ == version && has_all_features_ == has_all_features;
+    }
+
+    // Starts again if the view differs from the last one.
+    void look(const Orbit& orbit, uint width, uint height);
+    void add_sample(AbstractAccel& accel);
+    uint samples() const { return samples_; }
+    double seconds() const;  // that the samples took
+    std::uint64_t rays() const;
+    // Bounds the relative error (see Film::error()) at the last power of two of samples; infinite before two.
+    double error() const { return error_; }
+    Raster picture(float exposure) const;
+
+  private:
+    struct View {
+        Orbit orbit;
+        uint width = 0, height = 0;
+        bool operator==(const View&) const = default;
+    };
+
+    Context& context_;
+    std::uint64_t version_;
+    bool has_all_features_;
+    path_tracer::LocalLights lights_;
+    std::unique_ptr<path_tracer::EnvironmentMap> environment_;
+    std::unique_ptr<path_tracer::DeviceScene> device_scene_;
+    std::unique_ptr<path_tracer::Renderer> renderer_;
+    View view_;
+    path_tracer::Film film_;
+    uint samples_ = 0;
+    double error_ = INFINITY;
+};
 
 struct ViewerDesc {
     std::filesystem::path file;
