@@ -13,10 +13,7 @@ namespace twinray::viewer {
 enum class Action : std::uint8_t {
     frame_all,
     center_here,
-    front,
-    right,
-    top,
-    isometric,
+    side,
     orthographic,
     layer,
     flip_accelerators,
@@ -46,6 +43,7 @@ struct Key {
     Action action;
     std::string_view what;          // for the sheet
     Layer layer = Layer::eyelight;  // of Action::layer
+    Side side = Side::front;        // of Action::side
 };
 std::span<const Key> all_keys();
 // Returns null if the key does nothing.

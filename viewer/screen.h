@@ -45,7 +45,7 @@ class ScreenDevice {
     VkFormat format() const { return format_; }  // of the window, 8 bits a channel as they are
 
   private:
-    void destroy();
+    ScreenDevice() = default;
     void create_instance(const ContextDesc& desc);
     void choose(const std::string& request);
     void choose_format();

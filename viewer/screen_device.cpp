@@ -41,22 +41,17 @@ void require(VkResult result, const char* action) {
     if (result != VK_SUCCESS) fail("window: ", action, ": VkResult ", static_cast<int>(result));
 }
 
-ScreenDevice::ScreenDevice(GLFWwindow* window, const ContextDesc& desc)
-    : most_submission_seconds_(desc.most_submission_seconds), log_(desc.log) {
-    try {
-        create_instance(desc);
-        require(glfwCreateWindowSurface(instance_, window, nullptr, &surface_), "make a surface");
-        choose(desc.device);
-        create_device(desc);
-    } catch (...) {
-        destroy();
-        throw;
-    }
+// It delegates, so that the destructor runs if anything here throws.
+ScreenDevice::ScreenDevice(GLFWwindow* window, const ContextDesc& desc) : ScreenDevice() {
+    most_submission_seconds_ = desc.most_submission_seconds;
+    log_ = desc.log;
+    create_instance(desc);
+    require(glfwCreateWindowSurface(instance_, window, nullptr, &surface_), "make a surface");
+    choose(desc.device);
+    create_device(desc);
 }
 
-ScreenDevice::~ScreenDevice() { destroy(); }
-
-void ScreenDevice::destroy() {
+ScreenDevice::~ScreenDevice() {
     if (device_) vkDestroyDevice(device_, nullptr);
     if (surface_) vkDestroySurfaceKHR(instance_, surface_, nullptr);
     if (messenger_)

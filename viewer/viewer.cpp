@@ -314,10 +314,7 @@ void Viewer::press(const Key& key) {
     switch (key.action) {
         case Action::frame_all: state_.orbit = framed(state_.orbit, stage_->bounds(), aspect_of(state_)); break;
         case Action::center_here: center_at(x_, y_); break;
-        case Action::front: state_.orbit = seen_from(state_.orbit, Side::front); break;
-        case Action::right: state_.orbit = seen_from(state_.orbit, Side::right); break;
-        case Action::top: state_.orbit = seen_from(state_.orbit, Side::top); break;
-        case Action::isometric: state_.orbit = seen_from(state_.orbit, Side::isometric); break;
+        case Action::side: state_.orbit = seen_from(state_.orbit, key.side); break;
         case Action::orthographic: state_.orbit.is_orthographic = !state_.orbit.is_orthographic; break;
         case Action::layer: state_.layer = key.layer; break;
         case Action::flip_accelerators:

@@ -28,10 +28,10 @@ struct DeviceOptions {
 // --accel, --device, --validation, --quiet.
 void add_device_options(CLI::App& app, DeviceOptions& options, const std::string& validation_help);
 
-// Returns the exit status of a finished run: help was shown (0) or the usage is wrong (2). `program`: its name, for the
-// message.
 // An option that names a file.
 CLI::Option* add_path(CLI::App& app, const std::string& name, std::filesystem::path& target, const std::string& help);
+// Returns the exit status of a finished run: help was shown (0) or the usage is wrong (2). `program`: its name, for the
+// message.
 std::optional<int> parse(CLI::App& app, int argc, char** argv, const std::string& program);
 
 // Messages go to stderr after the program's name; with --quiet only those of the validation layer. Ray tracing
