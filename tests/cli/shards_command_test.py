@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Parts of a command's work: --shard, --merge, and ranks of mpirun. Usage: shards_command_test.py TWINRAY MPIRUN;
-MPIRUN is "" in a build without MPI."""
+"""Parts of a command's work: --shard, --merge, and ranks of mpirun. Usage: shards_command_test.py TWINRAY [MPIRUN],
+without MPIRUN in a build without MPI."""
 import os
 import pathlib
 import random
@@ -11,7 +11,7 @@ import sys
 import tempfile
 import time
 
-twinray, mpirun = sys.argv[1], sys.argv[2]
+twinray, mpirun = sys.argv[1], "".join(sys.argv[2:])
 os.chdir(tempfile.mkdtemp())
 os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
 
