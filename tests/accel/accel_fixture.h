@@ -6,13 +6,13 @@
 #include <functional>
 #include <tuple>
 
-#include "engine/core/error.h"
 #include "engine/core/vulkan.h"
 #include <twinray/geometry.h>
 #include "validation/reference/classify.h"
 #include "validation/reference/reference_accel.h"
 #include <twinray/tlas.h>
 #include "tests/support/device.h"
+#include "tests/support/errors.h"
 
 namespace twinray::test {
 
@@ -122,16 +122,6 @@ inline const auto every_level = ::testing::ValuesIn(all_levels);
 // The unit square at height z, facing up; rays go down onto it.
 inline Mesh square(float z) { return make_quad(vec3(0, 0, z), vec3(1, 0, 0), vec3(0, 1, 0)); }
 inline Ray down(float x, float y) { return {vec3(x, y, 10), 0, vec3(0, 0, -1), INFINITY}; }
-
-// The text of the Error that it throws; "" if it throws none.
-inline std::string error_if_any(const std::function<void()>& action) {
-    try {
-        action();
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return "";
-}
 
 }  // namespace twinray::test
 

@@ -12,7 +12,7 @@ namespace twinray {
 namespace {
 
 using test::down;
-using test::error_if_any;
+using test::expect_error;
 using test::square;
 
 class Vertices : public test::AccelTest {
@@ -271,7 +271,7 @@ TEST_P(Vertices, WrongUseNamesTheObjectTheValueAndTheLimitAndChangesNothing) {
         {[&] { accel().update_vertices(boxes, std::span<const vec3>{}); }, "holds boxes, 'crate'"},
     };
     for (const auto& [action, expected] : cases)
-        EXPECT_NE(error_if_any(action).find(expected), std::string::npos) << error_if_any(action);
+        expect_error(expected, action);
     EXPECT_EQ(accel().view().revision, view.revision) << "no edit is pending";
 }
 

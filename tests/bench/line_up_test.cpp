@@ -44,8 +44,8 @@ TEST_F(MakeRays, ShufflesTheIncoherentOnes) {
 TEST_F(MakeRays, SaysWhenNoneMeetsTheScene) {
     BenchScene scene = make_scene("sphere:20");
     scene.framed = {vec3(100), vec3(101)};
-    test::expect_contains(test::error_of([&] { make_rays(context(), scene, 8, 1); }),
-                          "scene 'sphere:20': none of 64 primary rays meets it");
+    test::expect_error("scene 'sphere:20': none of 64 primary rays meets it",
+                       [&] { make_rays(context(), scene, 8, 1); });
 }
 
 class LineUpTest : public test::VulkanTest {
@@ -74,7 +74,7 @@ TEST_F(LineUpTest, TakesThoseThatAreNamed) {
     EXPECT_EQ(built[0]->labels().builder, "high");
     EXPECT_EQ(find(Baseline::software, software), 0u);
     EXPECT_FALSE(find(Baseline::embree8, software).has_value());
-    test::expect_contains(test::error_of([&] { make_line_up(context(), nullptr, {.only = {"nobody"}}); }), "'nobody'");
+    test::expect_error("'nobody'", [&] { make_line_up(context(), nullptr, {.only = {"nobody"}}); });
 }
 
 TEST_F(LineUpTest, TracesInEachOrderThatIsAskedFor) {

@@ -12,8 +12,7 @@
 namespace twinray::bench {
 namespace {
 
-using test::error_of;
-using test::expect_contains;
+using test::expect_error;
 
 TEST(DisplacedSphere, HasTheGeodesicCountsAndIsClosed) {
     for (const uint frequency : {1u, 2u, 3u, 7u, 16u}) {
@@ -106,17 +105,17 @@ TEST(BenchScenes, TheCameraFramesThem) {
 }
 
 TEST(BenchScenes, BadNamesGetOneClearError) {
-    expect_contains(error_of([] { make_scene("sphere:many"); }),
-                    "scene 'sphere:many': 'many' is not a whole number from 20 to 50000000");
-    expect_contains(error_of([] { make_scene("sphere:19"); }), "'19' is not");
-    expect_contains(error_of([] { make_scene("soup:50000001"); }), "'50000001' is not");
-    expect_contains(error_of([] { make_scene("soup:20.5"); }), "'20.5' is not");
-    expect_contains(error_of([] { make_scene("sphere:nan"); }), "'nan' is not");
-    expect_contains(error_of([] { make_scene("sphere:"); }), "'' is not");
-    expect_contains(error_of([] { make_scene("sphere:100 "); }), "'100 ' is not");
-    expect_contains(error_of([] { make_scene("instances:100"); }), "instances:KxN needs two numbers");
-    expect_contains(error_of([] { make_scene("instances:0x100"); }), "'0' is not a whole number from 1 to 1000000");
-    expect_contains(error_of([] { make_scene("no_such_file.ply"); }), "no_such_file.ply");
+    expect_error("scene 'sphere:many': 'many' is not a whole number from 20 to 50000000",
+                 [] { make_scene("sphere:many"); });
+    expect_error("'19' is not", [] { make_scene("sphere:19"); });
+    expect_error("'50000001' is not", [] { make_scene("soup:50000001"); });
+    expect_error("'20.5' is not", [] { make_scene("soup:20.5"); });
+    expect_error("'nan' is not", [] { make_scene("sphere:nan"); });
+    expect_error("'' is not", [] { make_scene("sphere:"); });
+    expect_error("'100 ' is not", [] { make_scene("sphere:100 "); });
+    expect_error("instances:KxN needs two numbers", [] { make_scene("instances:100"); });
+    expect_error("'0' is not a whole number from 1 to 1000000", [] { make_scene("instances:0x100"); });
+    expect_error("no_such_file.ply", [] { make_scene("no_such_file.ply"); });
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ class AdoptedDeviceTest : public test::HostTest {
   protected:
     // An Error that says this, where the device is adopted.
     void expect_refusal(const std::string& part) {
-        test::expect_contains(test::error_of([&] { const Context context(host_.device); }), part);
+        test::expect_error(part, [&] { const Context context(host_.device); });
     }
 };
 
@@ -114,8 +114,8 @@ TEST_F(AdoptedDeviceTest, DistancesAndContactsNeedFloat64) {
     ASSERT_TRUE(host_.create());
     Context context(host_.device);
     const std::string need = "need float64 (shaderFloat64), which device";
-    test::expect_contains(test::error_of([&] { PointQuery query(context); }), need);
-    test::expect_contains(test::error_of([&] { NarrowPhase phase(context); }), need);
+    test::expect_error(need, [&] { PointQuery query(context); });
+    test::expect_error(need, [&] { NarrowPhase phase(context); });
 }
 
 // A host that tells what the driver supports instead of what it enabled.

@@ -176,7 +176,7 @@ TEST_F(FilmFile, SeesDamageAndForeignFiles) {
         EXPECT_NE(broken(at).find("checksum"), std::string::npos) << at;
     EXPECT_NO_THROW(load_film(file_));
     std::filesystem::resize_file(file_, size - 1);
-    test::expect_contains(test::error_of([&] { load_film(file_); }), "cut short");
+    test::expect_error("cut short", [&] { load_film(file_); });
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ TEST(Sequence, AnimationsAreChosenByNameOrIndex) {
 TEST(Sequence, WhatCannotBePlayedIsNamed) {
     const Scene scene = carried_box();
     const auto expect = [](const SequenceOptions& options, const Scene& of, const char* part) {
-        test::expect_contains(test::error_of([&] { make_sequence(options, of); }), part);
+        test::expect_error(part, [&] { make_sequence(options, of); });
     };
     expect({.frames = 1}, Scene(), "has no animations");
     expect({.frames = 1, .animation = "walk"}, scene, "'walk': does not exist; the scene has 0 'ride', 1 'bad'");

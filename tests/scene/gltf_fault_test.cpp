@@ -226,24 +226,24 @@ TEST(GltfFile, DamagedGlbIsNamed) {
 
 TEST(GltfFile, DamagedBuffersAreNamed) {
     GltfBuilder gltf = one_triangle();
-    const auto expect_error = [&](const json& buffer, const std::string& part) {
+    const auto expect_fault = [&](const json& buffer, const std::string& part) {
         gltf.root["buffers"] = json::array({buffer});
         expect_load_error(gltf.root.dump(), "a.gltf", part);
     };
-    expect_error({{"byteLength", 44}, {"uri", "gone.bin"}}, "gone.bin': file not found");
-    expect_error({{"byteLength", 44}, {"uri", "data:;base64,AAAA"}},
+    expect_fault({{"byteLength", 44}, {"uri", "gone.bin"}}, "gone.bin': file not found");
+    expect_fault({{"byteLength", 44}, {"uri", "data:;base64,AAAA"}},
                  "buffer 0: byteLength is 44, but its data URI has only 3 bytes");
-    expect_error({{"byteLength", 44}, {"uri", "data:;base64,!"}}, "foreign to base64");
-    expect_error({{"uri", "data:;base64,AAAA"}}, "byteLength is missing");
-    expect_error({{"byteLength", 44}}, "binary chunk has only 0 bytes");
+    expect_fault({{"byteLength", 44}, {"uri", "data:;base64,!"}}, "foreign to base64");
+    expect_fault({{"uri", "data:;base64,AAAA"}}, "byteLength is missing");
+    expect_fault({{"byteLength", 44}}, "binary chunk has only 0 bytes");
 #ifndef TWINRAY_HAS_MESHOPT
     for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"})
-        expect_error({{"byteLength", 44}, {"extensions", {{name, {{"fallback", true}}}}}}, name);
+        expect_fault({{"byteLength", 44}, {"extensions", {{name, {{"fallback", true}}}}}}, name);
 #endif
 }
 
 TEST(GltfFile, AMissingFileIsNamed) {
-    expect_contains(error_of([] { load_scene("no/such/scene.glb"); }), "'no/such/scene.glb': file not found");
+    expect_error("'no/such/scene.glb': file not found", [] { load_scene("no/such/scene.glb"); });
 }
 
 TEST(GltfFile, WhatMovesNoTriangleMayBeRequired) {

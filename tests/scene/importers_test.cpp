@@ -53,8 +53,7 @@ TEST(Words, TextHasNoMarkAndNoZeroByte) {
     const Bytes marked = {0xef, 0xbb, 0xbf, 'a'}, utf16 = {0xff, 0xfe, 'a', 0};
     EXPECT_EQ(text_of(marked, "x"), "a");
     EXPECT_EQ(text_of({}, "x"), "");
-    expect_contains(error_of([&] { text_of(utf16, "file"); }),
-                    "'file': not a text file in ASCII or UTF-8 (byte 3 is zero)");
+    expect_error("'file': not a text file in ASCII or UTF-8 (byte 3 is zero)", [&] { text_of(utf16, "file"); });
 }
 
 using Outline = std::vector<dvec3>;

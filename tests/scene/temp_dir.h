@@ -7,10 +7,8 @@
 #include <string>
 #include <string_view>
 
-#include <gtest/gtest.h>
-
-#include "engine/core/error.h"
 #include "engine/core/platform.h"
+#include "tests/support/errors.h"
 
 namespace twinray::test {
 
@@ -34,22 +32,6 @@ class TempDir {
   private:
     std::filesystem::path path_ = platform::make_temporary_folder();
 };
-
-// The text of the Error that `action` throws; a test failure if it throws none.
-template <class Action>
-std::string error_of(Action action) {
-    try {
-        action();
-    } catch (const Error& e) {
-        return e.what();
-    }
-    ADD_FAILURE() << "no Error was thrown";
-    return {};
-}
-
-inline void expect_contains(const std::string& all, const std::string& part) {
-    EXPECT_NE(all.find(part), std::string::npos) << "'" << part << "' is not in: " << all;
-}
 
 inline std::string replaced(std::string all, const std::string& from, const std::string& to) {
     for (std::size_t at = all.find(from); at != all.npos; at = all.find(from, at + to.size()))

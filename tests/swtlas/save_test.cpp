@@ -22,6 +22,7 @@ namespace {
 
 using test::error_of;
 using test::expect_contains;
+using test::expect_error;
 
 class SwSave : public test::VulkanTest {
   protected:
@@ -159,10 +160,10 @@ TEST_F(SwSave, PendingEditsAreNotSaved) {
     SwTlas accel(context());
     fill(accel);
     const AccelHandle handle = accel.push(make_soup(3, 1));
-    expect_contains(error_of([&] { accel.save(folder_ / "a"); }), "SwTlas: save: edits are pending; call sync() first");
+    expect_error("SwTlas: save: edits are pending; call sync() first", [&] { accel.save(folder_ / "a"); });
     accel.sync();
     accel.update_transform(handle, Transform::scaling({2, 2, 2}));
-    expect_contains(error_of([&] { accel.save(folder_ / "a"); }), "edits are pending");
+    expect_error("edits are pending", [&] { accel.save(folder_ / "a"); });
     EXPECT_FALSE(std::filesystem::exists(folder_ / "a"));
 }
 
@@ -183,17 +184,17 @@ TEST_F(SwSave, DamagedAndMissingFilesAreNamedAndLeaveNothingBehind) {
     expect_contains(refusal_of(flipped), "damaged: the checksum is ");
     expect_contains(refusal_of(Bytes(good.begin(), good.end() - 1000)), "truncated");
     expect_contains(refusal_of({}), "not a saved SwTlas");
-    expect_contains(error_of([&] { SwTlas::load(context(), folder_ / "missing"); }), "missing': file not found");
+    expect_error("missing': file not found", [&] { SwTlas::load(context(), folder_ / "missing"); });
 }
 
 TEST_F(SwSave, AFailedSaveLeavesNoFile) {
     SwTlas accel(context());
     fill(accel);
     const std::filesystem::path file = folder_.write("scene.swtlas", "old");
-    expect_contains(error_of([&] { accel.save(folder_ / "no such folder/a"); }), "No such file or directory");
+    expect_error("No such file or directory", [&] { accel.save(folder_ / "no such folder/a"); });
     std::filesystem::create_directory(folder_ / "folder");
     folder_.write("folder/inside", "");
-    expect_contains(error_of([&] { accel.save(folder_ / "folder"); }), "cannot be written: Is a directory");
+    expect_error("cannot be written: Is a directory", [&] { accel.save(folder_ / "folder"); });
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(file.parent_path()), {}), 2);
     accel.save(file);
     EXPECT_EQ(SwTlas::load(context(), file).handles.size(), 5u);

@@ -139,7 +139,7 @@ TEST(Events, AreWhatTheirTextSays) {
                             "key Foo", "keyup F99", "resize -1 5"}) {
         SCOPED_TRACE(bad);
         folder.write("events.txt", std::string("key A\n") + bad + '\n');
-        test::expect_contains(test::error_of([&] { (void)read_events(file); }), "line 2");
+        test::expect_error("line 2", [&] { (void)read_events(file); });
     }
     EXPECT_THROW((void)read_events("nowhere.txt"), Error);
 }

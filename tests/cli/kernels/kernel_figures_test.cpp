@@ -147,7 +147,7 @@ TEST(KernelLimits, RowsAreReadAsTheyWereWritten) {
 TEST(KernelLimits, ADamagedFileIsNamedWithTheLine) {
     const test::TempDir folder;
     const std::filesystem::path file = folder.write("limits.json", "{}\n{\"kernel\":\n");
-    test::expect_contains(test::error_of([&] { read_rows(file); }), file.string() + "', line 2");
+    test::expect_error(file.string() + "', line 2", [&] { read_rows(file); });
     EXPECT_THROW(read_rows("/nowhere/limits.json"), Error);
     folder.write("limits.json", to_json(row()).dump() + '\n');
     EXPECT_THROW(read_rows(file), Error) << "no line says which driver";

@@ -70,13 +70,13 @@ TEST(Record, RefusesWhatIsNone) {
     EXPECT_THROW(record_of_json("{}"), Error);
     std::string other = to_json(full_record());
     other.replace(other.find("report/1"), 8, "report/9");
-    test::expect_contains(test::error_of([&] { record_of_json(other); }), "twinray-report/9");
+    test::expect_error("twinray-report/9", [&] { record_of_json(other); });
 }
 
 TEST(Record, JsonNestedAMillionDeepIsRefused) {
     const std::string deep = "{\"schema\":" + std::string(1'000'000, '[') + std::string(1'000'000, ']') + "}";
-    test::expect_contains(test::error_of([&] { record_of_json(deep); }), "nested deeper than 100 levels");
-    test::expect_contains(test::error_of([&] { kind_of_json(deep); }), "nested deeper than 100 levels");
+    test::expect_error("nested deeper than 100 levels", [&] { record_of_json(deep); });
+    test::expect_error("nested deeper than 100 levels", [&] { kind_of_json(deep); });
 }
 
 TEST(Value, TextShowsIntegersAsIntegers) {
@@ -135,7 +135,7 @@ TEST_F(RecorderTest, ReadingNamesTheLine) {
          {std::string("{\"schema\": "), std::string("[]"), std::string("7"), record.substr(0, record.size() / 2),
           std::string("{\"schema\": \"twinray-report/1\", \"run\": \"now\"}")}) {
         std::ofstream(file_) << record << '\n' << broken << '\n';
-        test::expect_contains(test::error_of([&] { read_json_lines(file_); }), file_.string() + "' line 2: ");
+        test::expect_error(file_.string() + "' line 2: ", [&] { read_json_lines(file_); });
     }
     EXPECT_THROW(read_json_lines(folder_ / "none.jsonl"), Error);
     EXPECT_THROW(Recorder({"", "", {}}, folder_ / "none" / "report.jsonl"), Error);

@@ -127,9 +127,9 @@ TEST_P(FacePictureTest, RaysAreSeenFromTheSideThatTheyComeFrom) {
 }
 
 TEST_P(FacePictureTest, RefusesAnotherScene) {
-    expect_contains(error_of([&] { draw_faces(accel(), scene_, {}, {}); }), "0 colours for 4 faces");
+    expect_error("0 colours for 4 faces", [&] { draw_faces(accel(), scene_, {}, {}); });
     scene_.instances.pop_back();
-    expect_contains(error_of([&] { drawn(); }), "2 instances, the scene 1");
+    expect_error("2 instances, the scene 1", [&] { drawn(); });
 }
 
 }  // namespace

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+// Errors that a test expects, and what they say.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "engine/core/error.h"
+
+namespace twinray::test {
+
+// The text of the Error that it throws; "" if it throws none.
+inline std::string error_if_any(const std::function<void()>& action) {
+    try {
+        action();
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "";
+}
+
+// The text of the Error that `action` throws; a test failure if it throws none.
+inline std::string error_of(const std::function<void()>& action) {
+    const std::string error = error_if_any(action);
+    EXPECT_NE(error, "") << "no Error was thrown";
+    return error;
+}
+
+inline void expect_contains(const std::string& all, const std::string& part) {
+    EXPECT_NE(all.find(part), std::string::npos) << "'" << part << "' is not in: " << all;
+}
+
+// It throws an Error that says `part`.
+inline void expect_error(const std::string& part, const std::function<void()>& action) {
+    expect_contains(error_of(action), part);
+}
+
+}  // namespace twinray::test
