@@ -54,6 +54,10 @@ class Faults : public ::testing::TestWithParam<Kind> {
     World world() { return World(faults_, GetParam(), desc()); }
     // Fails every call of `act` in turn, each in the world that `next` gives, ready for it.
     void fail_every_call(const std::function<World&()>& next, const std::function<void(World&)>& act);
+    // The same in one world whose base is synced; `prepare` makes it ready.
+    void fail_in_one_world(const std::function<void(World&)>& prepare, const std::function<void(World&)>& act);
+    // Fails every call of what makes nothing that lives on.
+    void fail_every_call_of(const std::function<void()>& make);
     void check_after_fault(World& world, const World::State& before, Outcome outcome,
                            const std::function<void(World&)>& act);
     void check_that_it_stays_lost(World& world);
@@ -95,6 +99,34 @@ void Faults::fail_every_call(const std::function<World&()>& next, const std::fun
     }
 }
 
+void Faults::fail_in_one_world(const std::function<void(World&)>& prepare, const std::function<void(World&)>& act) {
+    World one = world();
+    one.push_base();
+    one.sync();
+    const auto next = [&]() -> World& {
+        prepare(one);
+        return one;
+    };
+    fail_every_call(next, act);
+    check_end(one);
+}
+
+void Faults::fail_every_call_of(const std::function<void()>& make) {
+    const Counts before = faults_.live();
+    for (std::uint64_t n = 1; !HasFailure(); ++n) {
+        faults_.inject({.first = n});
+        std::string what;
+        const Outcome outcome = outcome_of(make, &what);
+        faults_.heal();
+        SCOPED_TRACE(text("call ", n, ", ", faults_.failed(), ": ", what));
+        EXPECT_EQ(faults_.live(), before);
+        const bool is_harmless = !faults_.injected() || may_be_harmless(faults_.failed());
+        EXPECT_EQ(outcome, is_harmless ? Outcome::done : Outcome::error);
+        if (!faults_.injected()) return;
+        count_point();
+    }
+}
+
 void Faults::check_after_fault(World& world, const World::State& before, Outcome outcome,
                                const std::function<void(World&)>& act) {
     if (outcome != Outcome::done) {
@@ -129,19 +161,9 @@ void Faults::check_that_it_stays_lost(World& world) {
 }
 
 TEST_P(Faults, CreatingAContext) {
-    for (std::uint64_t n = 1; !HasFailure(); ++n) {
-        faults().inject({.first = n});
-        std::string what;
-        const Outcome outcome = outcome_of([&] { const Context context(desc()); }, &what);
-        faults().heal();
-        SCOPED_TRACE(text("call ", n, ", ", faults().failed(), ": ", what));
-        EXPECT_TRUE(faults().live().empty());
-        EXPECT_EQ(faults().wrong_destructions(), 0u);
-        const bool is_harmless = !faults().injected() || may_be_harmless(faults().failed());
-        EXPECT_EQ(outcome, is_harmless ? Outcome::done : Outcome::error);
-        if (!faults().injected()) return;
-        count_point();
-    }
+    EXPECT_TRUE(faults().live().empty());
+    fail_every_call_of([&] { const Context context(desc()); });
+    EXPECT_EQ(faults().wrong_destructions(), 0u);
 }
 
 TEST_P(Faults, CreatingTheAccelerator) {
@@ -180,34 +202,14 @@ TEST_P(Faults, TheFirstSync) {
         fresh->push_base();
         return *fresh;
     };
-    fail_every_call(next, [](World& w) { w.sync(); });
+    fail_every_call(next, &World::sync);
     check_end(*fresh);
 }
 
-TEST_P(Faults, TheSyncOfAnEdit) {
-    World edited = world();
-    edited.push_base();
-    edited.sync();
-    const auto next = [&]() -> World& {
-        edited.edit();
-        return edited;
-    };
-    fail_every_call(next, [](World& w) { w.sync(); });
-    check_end(edited);
-}
+TEST_P(Faults, TheSyncOfAnEdit) { fail_in_one_world(&World::edit, &World::sync); }
 
 // Only transforms change: the first time it rebuilds, from then on it refits in place.
-TEST_P(Faults, TheSyncOfAMove) {
-    World moved = world();
-    moved.push_base();
-    moved.sync();
-    const auto next = [&]() -> World& {
-        moved.move();
-        return moved;
-    };
-    fail_every_call(next, [](World& w) { w.sync(); });
-    check_end(moved);
-}
+TEST_P(Faults, TheSyncOfAMove) { fail_in_one_world(&World::move, &World::sync); }
 
 // The first time it builds what can be refitted, from then on it refits in place.
 TEST_P(Faults, TheSyncOfMovedVertices) {
@@ -221,7 +223,7 @@ TEST_P(Faults, TheSyncOfMovedVertices) {
                 deformed.deform(where);
                 return deformed;
             };
-            fail_every_call(next, [](World& w) { w.sync(); });
+            fail_every_call(next, &World::sync);
         }
     check_end(deformed);
 }
@@ -240,19 +242,12 @@ TEST_P(Faults, TheSyncThatCompacts) {
         compacted.move();
         return compacted;
     };
-    fail_every_call(next, [](World& w) { w.sync(); });
+    fail_every_call(next, &World::sync);
     EXPECT_EQ(was_compacted, GetParam() != Kind::software);
     check_end(compacted);
 }
 
-TEST_P(Faults, Pushing) {
-    World pushed = world();
-    pushed.push_base();
-    pushed.sync();
-    const auto next = [&]() -> World& { return pushed; };
-    fail_every_call(next, [](World& w) { w.push_aside(); });
-    check_end(pushed);
-}
+TEST_P(Faults, Pushing) { fail_in_one_world([](World&) {}, &World::push_aside); }
 
 // Commands into which the sync could not be recorded are given up: the host reaches their value without them.
 TEST_P(Faults, TheSyncIntoTheHostsCommands) {
@@ -278,32 +273,21 @@ TEST_P(Faults, TheSyncIntoTheHostsCommands) {
         CallerCommands submitted = outcome == Outcome::done ? commands : host->begin();
         submitted.done = commands.done;
         host->submit(submitted);
-        check_after_fault(edited, before, outcome, [](World& w) { w.sync(); });
+        check_after_fault(edited, before, outcome, &World::sync);
     }
     host.reset();
     check_end(edited);
 }
 
-TEST_P(Faults, TracingForTheHost) {
-    World traced = world();
-    traced.push_base();
-    traced.sync();
-    const auto next = [&]() -> World& { return traced; };
-    fail_every_call(next, [](World& w) { w.check_hits(); });
-    check_end(traced);
-}
+TEST_P(Faults, TracingForTheHost) { fail_in_one_world([](World&) {}, &World::check_hits); }
 
 TEST_P(Faults, WaitingAndTimings) {
-    World waited = world();
-    waited.push_base();
-    waited.sync();
-    const auto next = [&]() -> World& { return waited; };
-    fail_every_call(next, [](World& w) {
+    const auto wait = [](World& w) {
         w.accel().wait_for_gpu();
         EXPECT_TRUE(w.context().is_reached(w.context().last_submission()));
         EXPECT_FALSE(w.accel().build_timings().empty());
-    });
-    check_end(waited);
+    };
+    fail_in_one_world([](World&) {}, wait);
 }
 
 void occupy_queue(Context& context) {
@@ -358,7 +342,7 @@ TEST_P(Faults, OutOfMemory) {
             EXPECT_EQ(outcome_of([&] { full.sync(); }, &what), Outcome::error);
             EXPECT_NE(what.find("bytes: out of device memory"), std::string::npos) << what;
             faults().heal();
-            check_after_fault(full, before, Outcome::error, [](World& w) { w.sync(); });
+            check_after_fault(full, before, Outcome::error, &World::sync);
             count_point();
         }
         check_end(full);
@@ -407,18 +391,7 @@ TEST_P(Faults, AdoptingADevice) {
     device.get_instance_proc_addr = faults().entry();
     device.api_version = VK_API_VERSION_1_2;
     device.enabled = host.properties();
-    const Counts before = faults().live();
-    for (std::uint64_t n = 1; !HasFailure(); ++n) {
-        faults().inject({.first = n});
-        const Outcome outcome = outcome_of([&] { const Context context(device); });
-        faults().heal();
-        SCOPED_TRACE(text("call ", n, ", ", faults().failed()));
-        EXPECT_EQ(faults().live(), before);
-        const bool is_harmless = !faults().injected() || may_be_harmless(faults().failed());
-        EXPECT_EQ(outcome, is_harmless ? Outcome::done : Outcome::error);
-        if (!faults().injected()) return;
-        count_point();
-    }
+    fail_every_call_of([&] { const Context context(device); });
 }
 
 }  // namespace
