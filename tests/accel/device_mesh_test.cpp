@@ -289,8 +289,8 @@ TEST_P(DeviceMeshTest, WhatCannotBeIsRefused) {
         DeviceMesh other = device.mesh;
         change(other);
         const std::string error = error_if_any([&] { accel().push(other); });
-        EXPECT_NE(error.find("mesh 'on device'"), std::string::npos) << why << ": " << error;
-        EXPECT_NE(error.find(why), std::string::npos) << why << ": " << error;
+        test::expect_contains(error, "mesh 'on device'");
+        test::expect_contains(error, why);
     };
     refused("device address 0 of its positions", [](DeviceMesh& m) { m.positions = 0; });
     refused("must be a multiple of 4", [](DeviceMesh& m) { m.positions += 2; });

@@ -22,9 +22,7 @@ def hits():  # (hit, t, triangle) of each
 
 
 # Two triangles, one above the other, and rays that meet both, one and none.
-(here / "two.ply").write_text("ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n"
-                              "element face 2\nproperty list uchar int vertex_indices\nend_header\n"
-                              "0 0 2\n4 0 2\n0 4 2\n0 0 1\n2 0 1\n0 2 1\n3 0 1 2\n3 3 4 5\n")
+command.write_ply("two.ply", ["0 0 2", "4 0 2", "0 4 2", "0 0 1", "2 0 1", "0 2 1"], [(0, 1, 2), (3, 4, 5)])
 rays = [(0.5, 0.5, 0), (1.5, 1.5, 0), (5, 5, 0)]
 (here / "rays").write_bytes(b"".join(struct.pack("<8f", *origin, 0, 0, 0, 1, 9) for origin in rays))
 
@@ -95,7 +93,7 @@ npy("<f8", [number for origin in far_rays for number in (*origin, 0, 0, 0, 1, 9)
 for accel in ["sw", "hw"]:
     run("--accel", accel, "--json", "far.jsonl", rays="rays.npy")
     assert near(inside), hits()
-assert json.loads((here / "far.jsonl").read_text().splitlines()[0])["origin"] == [500002, 5400002, 2]
+assert command.records("far.jsonl")[0]["origin"] == [500002, 5400002, 2]
 said = subprocess.run([command.program, "trace", "two.ply", "--rays", "rays.npy", "--hits", "hits"],
                       capture_output=True, text=True, cwd=here)
 assert said.stderr.count("scene moved to local origin 500002 5400002 2\n") == 1, said.stderr

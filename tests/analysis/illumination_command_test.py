@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: MIT
 """Runs `twinray illumination` and `twinray centroid`. Usage: illumination_command_test.py TWINRAY"""
 import csv
-import json
 import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from command import here, run
+import command
+from command import expect_refusals, here, run, write_ply
 
 
 def table(name, header):
@@ -22,10 +22,7 @@ def near(value, exact, error):
 
 # Two unit squares of two triangles each; the upper one hides half of the lower one.
 corners = [(x + shift, y, z) for shift, z in [(0, 0), (0.5, 1)] for x, y in [(0, 0), (1, 0), (1, 1), (0, 1)]]
-(here / "squares.ply").write_text(
-    "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\nelement face 4\n"
-    "property list uchar int vertex_indices\nend_header\n" + "".join(f"{x} {y} {z}\n" for x, y, z in corners)
-    + "3 0 1 2\n3 0 2 3\n3 4 5 6\n3 4 6 7\n")
+write_ply("squares.ply", corners, [(0, 1, 2), (0, 2, 3), (4, 5, 6), (4, 6, 7)])
 light = ["illumination", "squares.ply", "--direction", "0", "0", "-.5"]
 for accel in ["sw", "hw"]:
     shown = run(*light, "--accel", accel, "-o", f"{accel}.csv", "--json", "all.jsonl")
@@ -34,7 +31,7 @@ for accel in ["sw", "hw"]:
         near(row[2], exact, 0.001)
         assert row[1].isdigit() and float(row[3]) <= exact <= float(row[4]) + 1e-9, row
 assert (here / "sw.csv").read_text() == (here / "hw.csv").read_text()
-records = [json.loads(line) for line in (here / "all.jsonl").read_text().splitlines()]
+records = command.records("all.jsonl")
 assert [r["backend"] for r in records] == ["sw", "hw"] and records[0]["n"] == 1000000, records
 near(records[0]["area"], 1.5, 0.001)
 
@@ -54,15 +51,14 @@ run("illumination", "squares.ply", "--sun", "sun.csv", "--samples", "100", "-o",
 near(table("hours.csv", "face,free_rays,hours,ci_low,ci_high")[0][2], 2.75, 0.3)
 
 shown = run("centroid", "squares.ply", "--direction", "0", "0", "1", "-o", "points.csv", "--json", "mean.jsonl")
-record = json.loads((here / "mean.jsonl").read_text())
+record = command.records("mean.jsonl")[0]
 assert "standard error" in shown and record["points_hit"] == len(table("points.csv", "x,y,z")), shown
 for value, exact in zip(record["mean"], [0.75, 0.5, 1 / 3], strict=True):
     near(value, exact, 0.001)
-(here / "nothing.ply").write_text("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-                                  "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 1 1\n2 2 2\n3 0 1 2\n")
+write_ply("nothing.ply", ["0 0 0", "1 1 1", "2 2 2"], [(0, 1, 2)])
 assert "there is no mean" in run("centroid", "nothing.ply", "--direction", "0", "0", "1", "--grid", "9")
 
-for arguments, status, words in [
+expect_refusals([
         (["--direction", "0", "0", "0"], 1, "must be finite and not 0"),
         (["--direction", "0", "0", "1", "--grid", "70000"], 2, "--grid is '70000', but must be a whole number from 1 to 65535"),
         (["--direction", "0", "0", "1", "-o", "none/a.csv"], 1, "there is no folder 'none'"),
@@ -70,8 +66,6 @@ for arguments, status, words in [
         ([], 2, "one of --direction, --sky, --sun is required"),
         (["--sky", "9", "--grid", "5"], 2, "--grid requires --direction"), (["--sky", "0"], 2, "--sky is '0', but must be a whole number from 1 to 1048576"),
         (["--sun", "none.csv"], 1, "sun file 'none.csv' cannot be read"),
-        (["--sun", "squares.ply"], 1, "'format ascii 1.0' is not x,y,z,hours")]:
-    shown = run("illumination", "squares.ply", *arguments, status=status)
-    assert words in shown, shown
+        (["--sun", "squares.ply"], 1, "'format ascii 1.0' is not x,y,z,hours")], "illumination", "squares.ply")
 assert "--direction is required" in run("centroid", "squares.ply", status=2)
 print("illumination: areas, shares, sky, hours and centroid are those of two squares")

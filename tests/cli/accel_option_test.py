@@ -1,42 +1,32 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Which accelerator commands take and what they say of it; --level and --strict. Usage: accel_option_test.py TWINRAY PATH_TRACER"""
-import json
-import os
 import pathlib
 import struct
-import subprocess
 import sys
-import tempfile
 
-twinray, path_tracer = (pathlib.Path(program).resolve() for program in sys.argv[1:3])
-here = pathlib.Path(tempfile.mkdtemp())
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import command as support
+from command import here, program as twinray, write_ply
+
+path_tracer = pathlib.Path(sys.argv[2]).resolve()
 NONE = {"TWINRAY_DISABLE": "ray_query,ray_tracing_pipeline"}  # as a device without ray tracing
 
 
-def run(program, *arguments, status=0, env=None):
-    done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, cwd=here,
-                          env={**os.environ, **(env or {})})
-    assert done.returncode == status, f"{arguments}: status {done.returncode}\n{done.stdout}{done.stderr}"
-    return done.stdout + done.stderr
+def run(program, *arguments, **options):
+    return support.run(*arguments, of=program, **options)
 
 
 def record(program, *arguments, env=None):
     """Of a run with --json."""
     (here / "all.jsonl").unlink(missing_ok=True)
     run(program, *arguments, "--json", "all.jsonl", env=env)
-    return json.loads((here / "all.jsonl").read_text().splitlines()[-1])
+    return support.records("all.jsonl")[-1]
 
 
-def ply(name, faces):
-    (here / name).write_text("ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\n"
-                             f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n" +
-                             "".join(f"{x} {y} {z}\n" for z in (0, 1) for y in (0, 1) for x in (0, 1)) +
-                             "".join(f"{len(face)} {' '.join(map(str, face))}\n" for face in faces))
-
-
+CORNERS = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)]
 CUBE = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
-ply("cube.ply", CUBE)
+write_ply("cube.ply", CORNERS, CUBE)
 (here / "rays").write_bytes(struct.pack("<8f", 0.25, 0.375, -1, 0, 0, 0, 1, 9) + struct.pack("<8f", 5, 5, -1, 0, 0, 0, 1, 9))
 trace = ["trace", "cube.ply", "--rays", "rays", "--hits", "hits"]
 light = ["--direction", 0, 0, -1, "--grid", 8]
@@ -88,7 +78,7 @@ of = record(twinray, "verify", "cube.ply", "--random", 500, "--aimed", 100, "--l
 assert (of["level"], of["backend"]) == ("certified", "sw"), of
 
 # Warnings of the importer are errors with --strict; without warnings it changes nothing.
-ply("odd.ply", CUBE + [(0, 1)])
+write_ply("odd.ply", CORNERS, CUBE + [(0, 1)])
 loads = [[twinray, *trace], [twinray, *commands[1]], [twinray, *commands[2]], [twinray, *commands[5]],
          [twinray, "distance", "cube.ply", "--random", 5], [twinray, "verify", "cube.ply", "--random", 10, "--aimed", 5], small]
 assert "twinray: warning: " in run(twinray, "distance", "odd.ply", "--random", 5)

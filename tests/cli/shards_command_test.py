@@ -11,9 +11,11 @@ import sys
 import tempfile
 import time
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from ranks import rank_of
+
 twinray, mpirun = sys.argv[1], "".join(sys.argv[2:])
 os.chdir(tempfile.mkdtemp())
-os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
 
 
 def write_files():
@@ -113,18 +115,6 @@ def check_refusals():
     run(*factors, "--shard", "0/2", "--resume")
     run(*factors, "--shard", "1/2")
     run(*factors, "--merge", "2")
-
-
-def rank_of(process, rank):
-    for child in pathlib.Path("/proc").iterdir():
-        try:
-            if child.name.isdigit() and (f"PPid:\t{process.pid}\n" in (child / "status").read_text()
-                                         and f"OMPI_COMM_WORLD_RANK={rank}\0".encode()
-                                         in (child / "environ").read_bytes()):
-                return int(child.name)
-        except OSError:
-            pass
-    raise AssertionError(f"there is no rank {rank}")
 
 
 def check_lost_rank():

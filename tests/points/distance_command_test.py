@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: MIT
 """Runs `twinray distance` as a user does. Usage: distance_command_test.py TWINRAY"""
 import functools
-import json
 import pathlib
 import struct
 import sys
@@ -19,14 +18,9 @@ def lines(name):
     return (here / name).read_text().splitlines()
 
 # A tetrahedron with its fronts outward, and the same without its last face.
-def ply(name, faces):
-    (here / name).write_text("ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
-                             f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n"
-                             "0 0 0\n4 0 0\n0 4 0\n0 0 4\n" + "".join(f"3 {face}\n" for face in faces))
-
-
-ply("solid.ply", ["0 2 1", "0 1 3", "0 3 2", "1 2 3"])
-ply("open.ply", ["0 2 1", "0 1 3", "0 3 2"])
+corners, faces = ["0 0 0", "4 0 0", "0 4 0", "0 0 4"], [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
+command.write_ply("solid.ply", corners, faces)
+command.write_ply("open.ply", corners, faces[:3])
 (here / "points.csv").write_text("x,y,z\n1,1,-2\n0.5, 0.75 ,0.25\n\n-3,0,4\n")
 
 run("solid.ply", "--points", "points.csv", "--validation", "--quiet", "-o", "out.csv", "--json", "all.jsonl")
@@ -38,7 +32,7 @@ run("solid.ply", "--points", "points.csv", "--max-distance", "2", "--quiet", "-o
 assert lines("out.csv")[3] == "2,inf,,,,,"
 run("solid.ply", "--points", "points.csv", "--within", "0.5", "--validation", "--quiet", "-o", "out.csv", "--json", "all.jsonl")
 assert lines("out.csv") == ["point,instance,triangle,distance", "1,0,0,0.25", "1,0,2,0.5"], lines("out.csv")
-records = [json.loads(line) for line in lines("all.jsonl")]
+records = command.records("all.jsonl")
 assert [(r["schema"], r["query"], r["n"], r["found"]) for r in records] == [
     ("twinray-distance/1", "closest", 3, 3), ("twinray-distance/1", "signed", 3, 3), ("twinray-distance/1", "within", 3, 2)]
 
@@ -92,7 +86,7 @@ def near(text, *wanted):
 
 said = run("far.ply", "--points", "far.csv", "--signed", "-o", "out.csv", "--json", "far.jsonl")
 assert said.count("scene moved to local origin 500002 5400002 2\n") == 1, said
-assert json.loads(lines("far.jsonl")[0])["origin"] == [500002, 5400002, 2]
+assert command.records("far.jsonl")[0]["origin"] == [500002, 5400002, 2]
 rows = [line.split(",")[1:5] for line in lines("out.csv")[1:]]
 assert near(rows[0], 2, east + 1, north + 1, 0) and near(rows[1], -0.25, east + 0.5, north + 0.75, 0), rows
 assert near(rows[2], 3, east, north, 4), rows

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: MIT
 """`path_tracer --denoise` with the library, without it and with another one in its place. It ends with 77, skipped,
 after the last two if the library is not found. Usage: path_tracer_denoise_test.py PATH_TRACER"""
-import json
 import os
 import pathlib
 import subprocess
@@ -18,8 +17,7 @@ box = ["builtin:cornell-box", "--height", "48", "--accel", "sw"]
 
 def run(*arguments, status=0, folder=None):
     """folder: for libraries, instead of those that the environment names; "": none."""
-    variables = os.environ if folder is None else {**os.environ, "LD_LIBRARY_PATH": str(folder)}
-    return command.run(*arguments, status=status, env=variables)
+    return command.run(*arguments, status=status, env=None if folder is None else {"LD_LIBRARY_PATH": str(folder)})
 
 
 def is_found(folder):
@@ -51,11 +49,11 @@ run(*box, "--spp", "4", "-o", "noisy.exr", "--keep-film")
 noisy = run(*box, "--resume", "--spp", "4", "-o", "noisy.exr", "--keep-film", "--mse-reference-image", "better.exr")
 shown = run(*box, "--spp", "4", "-o", "smooth.exr", "--keep-film", "--aovs", "--denoise",
             "--mse-reference-image", "better.exr", "--json", "smooth.jsonl")
-record = json.loads((here / "smooth.jsonl").read_text())
+record = command.records("smooth.jsonl")[0]
 assert "; with its noise: MSE" in shown and shown.split("with its noise: ")[1].strip() in noisy, (shown, noisy)
 assert record["relative_mse"] < 0.2 * record["noisy_relative_mse"], record
 assert b"albedo.R\0" in (here / "smooth.exr").read_bytes()[:1000]
-assert (here / "smooth.exr.film").read_bytes() == (here / "noisy.exr.film").read_bytes()
+assert command.same("smooth.exr.film", "noisy.exr.film")
 # A film that was rendered without it gets it by --resume.
 (here / "noisy.exr.film").rename(here / "later.exr.film")
 shown = run(*box, "--resume", "--spp", "4", "-o", "later.exr", "--denoise", "--mse-reference-image", "smooth.exr")

@@ -6,15 +6,17 @@ import pathlib
 import signal
 import subprocess
 import sys
-import tempfile
 import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from command import here, program as path_tracer, same
+from ranks import rank_of
 
 if len(sys.argv) < 3:
     print("built without MPI")
     sys.exit(77)
-path_tracer, mpirun, here = sys.argv[1], sys.argv[2], pathlib.Path(tempfile.mkdtemp())
+mpirun = sys.argv[2]
 box = ["builtin:cornell-box", "--height", "16", "--accel", "sw", "-o"]
-os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
 
 
 def start(ranks, *arguments):
@@ -29,24 +31,11 @@ def run(ranks, *arguments, status=0):
     return shown
 
 
-def rank_of(process):  # its second one
-    found = [child for child in pathlib.Path("/proc").iterdir() if child.name.isdigit() and is_rank_1(child, process.pid)]
-    return int(found[0].name)
-
-
-def is_rank_1(child, parent):
-    try:
-        return (f"PPid:\t{parent}\n" in (child / "status").read_text()
-                and b"OMPI_COMM_WORLD_RANK=1\0" in (child / "environ").read_bytes())
-    except OSError:
-        return False
-
-
 # Two processes give what one does, each sample once.
 assert "9 spp" in run(1, "one.png", "--spp", "9", "--keep-film")
 assert "9 spp" in run(2, "two.png", "--spp", "9", "--keep-film")
 for suffix in ["png", "png.film"]:
-    assert (here / f"one.{suffix}").read_bytes() == (here / f"two.{suffix}").read_bytes(), suffix
+    assert same(f"one.{suffix}", f"two.{suffix}"), suffix
 assert "under mpirun" in run(2, "no.png", "--target-error", "0.1", status=1)
 assert len(list(here.iterdir())) == 4, list(here.iterdir())
 
@@ -55,7 +44,7 @@ process = start(2, "lost.png", "--spp", "4000", "--checkpoint", "0")
 films = [here / f"lost.png.rank{rank}of2.film" for rank in range(2)]
 while process.poll() is None and not all(film.exists() for film in films):
     time.sleep(0.01)
-os.kill(rank_of(process), signal.SIGKILL)
+os.kill(rank_of(process, 1), signal.SIGKILL)
 shown = process.communicate()[0]
 assert process.returncode != 0 and "rank 1" in shown and all(film.exists() for film in films), shown
 done = subprocess.run([path_tracer, "merge", *films, "-o", "saved.png"], capture_output=True, text=True, cwd=here)

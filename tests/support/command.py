@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A program as a user runs it: the one that a test's first argument names, in a folder of the test's own."""
+import json
+import os
 import pathlib
 import subprocess
 import sys
@@ -8,9 +10,36 @@ import tempfile
 program, here = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(tempfile.mkdtemp())
 
 
-def run(*arguments, status=0, env=None):
-    """What it prints; it must end with this status, and without a message of the validation layer."""
-    done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, cwd=here, env=env)
+def run(*arguments, status=0, env=None, of=program):
+    """What it prints, with these variables beside those of the environment; it must end with this status, and without
+    a message of the validation layer."""
+    done = subprocess.run([of, *map(str, arguments)], capture_output=True, text=True, cwd=here, env=os.environ | (env or {}))
     assert done.returncode == status, f"{arguments}: status {done.returncode}\n{done.stdout}{done.stderr}"
     assert "VUID" not in done.stderr and "SYNC-HAZARD" not in done.stderr, done.stderr
     return done.stdout + done.stderr
+
+
+def expect_refusals(cases, *before):
+    """Each case: the arguments that follow those before, the status, and words of what is said."""
+    for arguments, status, words in cases:
+        said = run(*before, *arguments, status=status)
+        assert words in said, f"{arguments}: {said}"
+
+
+def records(name):
+    """Of a file with an object of JSON on each line."""
+    return [json.loads(line) for line in (here / name).read_text().splitlines()]
+
+
+def same(*names):
+    """Whether the files have the same bytes."""
+    return len({(here / name).read_bytes() for name in names}) == 1
+
+
+def write_ply(name, points, faces, number="float"):
+    """Points: rows of three numbers, or texts of them."""
+    rows = [point if isinstance(point, str) else " ".join(map(str, point)) for point in points]
+    rows += [f"{len(face)} {' '.join(map(str, face))}" for face in faces]
+    axes = "".join(f"property {number} {axis}\n" for axis in "xyz")
+    (here / name).write_text(f"ply\nformat ascii 1.0\nelement vertex {len(points)}\n{axes}element face {len(faces)}\n"
+                             "property list uchar int vertex_indices\nend_header\n" + "\n".join(rows) + "\n")

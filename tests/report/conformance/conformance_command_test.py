@@ -3,7 +3,6 @@
 """Runs `twinray verify --suite conformance` as a user does. Usage: conformance_command_test.py TWINRAY"""
 
 import functools
-import json
 import pathlib
 import sys
 
@@ -14,7 +13,7 @@ from command import here
 verify = functools.partial(command.run, "verify", "--quiet")
 
 said = verify("--suite", "conformance", "--json", here / "all.jsonl", "--validation")
-records = [json.loads(line) for line in (here / "all.jsonl").read_text().splitlines()]
+records = command.records("all.jsonl")
 cases = [record for record in records if not record["variant"]]
 controls = [record for record in records if record["variant"].startswith("control: ")]
 assert len(cases) > 90 and len(cases) + len(controls) == len(records)

@@ -5,30 +5,21 @@ import csv
 import json
 import pathlib
 import shutil
-import subprocess
 import sys
-import tempfile
 import xml.etree.ElementTree
 
-twinray, here = sys.argv[1], pathlib.Path(tempfile.mkdtemp())
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from command import here, records as lines, run
 
 
 def report(*arguments, status=0, seconds="8"):
     """In so few seconds what is least certain is not asked again; a busy machine gets more for its first round."""
-    run = subprocess.run(
-        [twinray, "report", "--quiet", "--validation", "--budget", seconds, *arguments], capture_output=True, text=True
-    )
-    assert run.returncode == status, f"{arguments}: status {run.returncode}\n{run.stdout}{run.stderr}"
-    assert "VUID" not in run.stderr and "SYNC-HAZARD" not in run.stderr, run.stderr
+    said = run("report", "--quiet", "--validation", "--budget", seconds, *arguments, status=status)
     if "-o" in arguments and "--resume" not in arguments and status == 0 and seconds != "60":
         records = pathlib.Path(arguments[arguments.index("-o") + 1], "report.jsonl").read_text()
         if "was spent before its turn" in records:
             return report(*arguments, status=status, seconds="60")
-    return run.stdout
-
-
-def lines(file):
-    return [json.loads(line) for line in (here / file).read_text().splitlines()]
+    return said
 
 
 first = here / "first"
@@ -85,9 +76,9 @@ with open(here / "old.jsonl", "a", encoding="utf-8") as old:
 assert f"{n} measurements compared" in report(*again, "-o", str(here / "mixed")), "its last line was cut short"
 with open(here / "old.jsonl", "a", encoding="utf-8") as old:
     old.write('\n')
-run = subprocess.run([twinray, "report", *again, "-o", str(here / "third")], capture_output=True, text=True)
 number = len((here / "old.jsonl").read_text().splitlines())
-assert run.returncode == 1 and f"{here / 'old.jsonl'}' line {number}: not a JSON object" in run.stderr, run.stderr
+said = run("report", *again, "-o", str(here / "third"), status=1)
+assert f"{here / 'old.jsonl'}' line {number}: not a JSON object" in said, said
 report("--only", "N07", "-o", str(here / "third"), "--baseline", str(here / "none.jsonl"), status=1)
 assert not (here / "third").exists(), "a report was begun although its baseline cannot be read"
 # Reports beside each other: nothing changed, and what was made worse is found.

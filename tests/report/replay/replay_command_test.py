@@ -16,16 +16,12 @@ def run(*arguments, status=0):
 
 # A flat grid of unit cells, where the boxes of drivers are flat, too.
 n = 8
-vertices = "".join(f"{x} 0 {z}\n" for z in range(n + 1) for x in range(n + 1))
-faces = "".join(f"3 {i} {i + n + 1} {i + 1}\n3 {i + 1} {i + n + 1} {i + n + 2}\n"
-                for z in range(n) for x in range(n) for i in [z * (n + 1) + x])
-(here / "grid.ply").write_text(f"ply\nformat ascii 1.0\nelement vertex {(n + 1) ** 2}\nproperty float x\n"
-                               "property float y\nproperty float z\n"
-                               f"element face {2 * n * n}\nproperty list uchar int vertex_indices\nend_header\n"
-                               + vertices + faces)
+firsts = [z * (n + 1) + x for z in range(n) for x in range(n)]
+faces = [face for i in firsts for face in ((i, i + n + 1, i + 1), (i + 1, i + n + 1, i + n + 2))]
+command.write_ply("grid.ply", [(x, 0, z) for z in range(n + 1) for x in range(n + 1)], faces)
 run("verify", "grid.ply", "--random", "100", "--aimed", "20000", "--replays", "out", "--json", "all.jsonl")
 assert not (here / "twinray_replays").exists(), "no fault of twinray, but a folder of that name"
-records = [json.loads(line) for line in (here / "all.jsonl").read_text().splitlines()]
+records = command.records("all.jsonl")
 leaks = sum(min(100, r["counts"]["HW_LEAK"]) for r in records if r["backend"] == "hw")
 files = sorted((here / "out").glob("*HW_LEAK*.json")) if leaks else []
 assert len(files) == leaks, (len(files), leaks)

@@ -9,7 +9,7 @@ import sys
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
-from command import here, program, run
+from command import here, program, records, run, write_ply
 
 
 def leaks(scene, *arguments, status=0):
@@ -28,12 +28,7 @@ def write_torus(file, rings, sides, missing=0):
             j, m = (i + 1) % rings, (k + 1) % sides
             vertices = [i * sides + k, j * sides + k, j * sides + m, i * sides + m]
             triangles += [vertices[:3], [vertices[0], *vertices[2:]]]
-    lines = ["ply", "format ascii 1.0", f"element vertex {len(points)}", "property float x", "property float y",
-             "property float z", f"element face {len(triangles) - missing}",
-             "property list uchar int vertex_indices", "end_header"]
-    lines += [" ".join(map(str, point)) for point in points]
-    lines += ["3 " + " ".join(map(str, triangle)) for triangle in triangles[missing:]]
-    (here / file).write_text("\n".join(lines) + "\n")
+    write_ply(file, points, triangles[missing:])
 
 
 def totals(file):
@@ -47,7 +42,7 @@ write_torus("open.ply", 96, 48, missing=1)
 # The promise.
 said = leaks("torus.ply", "--ray-count", 1_000_000, "--json", here / "all.jsonl")
 assert "1000000 rays: 0 leaks, 0 double hits by twinray" in said, said
-record = json.loads((here / "all.jsonl").read_text())
+record = records("all.jsonl")[0]
 assert record["n"] == 1_000_000 and record["faults"] == 0 and record["pass"] and record["backend"] == "sw"
 assert 2.9e-6 < record["bound95"] < 3.1e-6
 leaks("torus.ply", "--ray-count", 20_000, "--level", "refined", "--validation")
