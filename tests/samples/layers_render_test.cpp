@@ -61,36 +61,26 @@ void expect_values(Context& context, Floors& floors) {
 Material plastic_material() {
     return {.name = "plastic", .base_color = {0.8f, 0.4f, 0.2f, 1}, .metallic = 0, .roughness = 0.6f};
 }
-Bsdf plastic_bsdf(uint layers) {
-    Bsdf bsdf = opaque_of({0.8f, 0.4f, 0.2f}, 0, 0.6f, 1.5f);
-    bsdf.layers = layers;
-    return bsdf;
-}
+Bsdf plastic_bsdf() { return opaque_of({0.8f, 0.4f, 0.2f}, 0, 0.6f, 1.5f); }
 
 TEST_F(LayersRender, FactorsReachTheBsdf) {
     Floors floors;
-    floors.add("plain", plastic_material(), plastic_bsdf(0));
+    floors.add("plain", plastic_material(), plastic_bsdf());
 
     Material material = plastic_material();
     material.specular = 0.5f;
     material.specular_color = {2, 8, 1};
-    floors.add("specular", material, with_specular(plastic_bsdf(0), vec3(0), 0, 1.5f, 0.5f, {2, 8, 1}));
+    floors.add("specular", material, with_specular(plastic_bsdf(), vec3(0), 0, 1.5f, 0.5f, {2, 8, 1}));
 
     material = plastic_material();
     material.clearcoat = 0.75f;
     material.clearcoat_roughness = 0.5f;
-    Bsdf bsdf = plastic_bsdf(LAYER_COAT);
-    bsdf.coat = 0.75f;
-    bsdf.coat_alpha = 0.25f;
-    floors.add("coat", material, bsdf);
+    floors.add("coat", material, with_coat(plastic_bsdf(), 0.75f, 0.25f));
 
     material = plastic_material();
     material.sheen_color = {0.25f, 0.5f, 0.75f};
     material.sheen_roughness = 0.9f;
-    bsdf = plastic_bsdf(LAYER_SHEEN);
-    bsdf.sheen = {0.25f, 0.5f, 0.75f};
-    bsdf.sheen_roughness = 0.9f;
-    floors.add("sheen", material, bsdf);
+    floors.add("sheen", material, with_sheen(plastic_bsdf(), {0.25f, 0.5f, 0.75f}, 0.9f));
 
     for (const float turns : {0.0f, 0.125f, -0.25f}) {
         material = plastic_material();
@@ -98,11 +88,8 @@ TEST_F(LayersRender, FactorsReachTheBsdf) {
         material.roughness = 0.3f;
         material.anisotropy = 0.8f;
         material.anisotropy_rotation = turns * 2 * PI;
-        bsdf = opaque_of({0.8f, 0.4f, 0.2f}, 1, 0.3f, 1.5f);
-        bsdf.layers = LAYER_ANISOTROPY;
-        bsdf.grain = unit_circle(turns);
-        bsdf.alpha_grain = mix(0.09f, 1.0f, 0.64f);
-        floors.add("grain", material, bsdf);
+        const Bsdf metal = opaque_of({0.8f, 0.4f, 0.2f}, 1, 0.3f, 1.5f);
+        floors.add("grain", material, with_grain(metal, mix(0.09f, 1.0f, 0.64f), turns));
     }
     expect_values(context(), floors);
 }
@@ -117,38 +104,31 @@ TEST_F(LayersRender, TexturesScaleTheirFactor) {
     Material material = plastic_material();
     material.specular_texture.image = alpha;
     material.specular_color_texture.image = magenta;
-    floors.add("specular", material, with_specular(plastic_bsdf(0), vec3(0), 0, 1.5f, half, {1, 0, 1}));
+    floors.add("specular", material, with_specular(plastic_bsdf(), vec3(0), 0, 1.5f, half, {1, 0, 1}));
 
     material = plastic_material();
     material.clearcoat = material.clearcoat_roughness = 1;
     material.clearcoat_texture.image = red;
     material.clearcoat_roughness_texture.image = green;
-    Bsdf bsdf = plastic_bsdf(LAYER_COAT);
-    bsdf.coat = half;
-    bsdf.coat_alpha = half * half;
-    floors.add("coat", material, bsdf);
+    floors.add("coat", material, with_coat(plastic_bsdf(), half, half * half));
 
     // The normal at about (0.6, 0, 0.8) by tangent, bitangent and normal.
     material.clearcoat_normal_texture.image = floors.texel(204, 128, 230, 9);
-    bsdf.coat_normal = normalize(vec3(204 / 127.5f - 1, 128 / 127.5f - 1, 230 / 127.5f - 1));
-    floors.add("normal of a coat", material, bsdf);
+    const vec3 normal = normalize(vec3(204 / 127.5f - 1, 128 / 127.5f - 1, 230 / 127.5f - 1));
+    floors.add("normal of a coat", material, with_coat(plastic_bsdf(), half, half * half, normal));
 
     material = plastic_material();
     material.sheen_color = vec3(1);
     material.sheen_roughness = 1;
     material.sheen_color_texture.image = magenta;
     material.sheen_roughness_texture.image = alpha;
-    bsdf = plastic_bsdf(LAYER_SHEEN);
-    bsdf.sheen = {1, 0, 1};
-    bsdf.sheen_roughness = half;
-    floors.add("sheen", material, bsdf);
+    floors.add("sheen", material, with_sheen(plastic_bsdf(), {1, 0, 1}, half));
 
     material = plastic_material();
     material.anisotropy = 1;
     material.anisotropy_texture.image = floors.texel(255, 191, 128, 9);
-    bsdf = plastic_bsdf(LAYER_ANISOTROPY);
+    Bsdf bsdf = with_grain(plastic_bsdf(), mix(0.36f, 1.0f, half * half), 0);
     bsdf.grain = normalize(vec2(255 / 127.5f - 1, 191 / 127.5f - 1));
-    bsdf.alpha_grain = mix(0.36f, 1.0f, half * half);
     floors.add("grain", material, bsdf);
     expect_values(context(), floors);
 }
