@@ -3,7 +3,6 @@
 // and the reference.
 #pragma once
 
-#include <functional>
 #include <tuple>
 
 #include "engine/core/vulkan.h"

@@ -3,7 +3,6 @@
 #include <twinray/analysis.h>
 #include <twinray/queries.h>
 
-#include <bit>
 #include <random>
 
 #include <twinray/scene.h>

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <random>
-#include <set>
 
 #include "tests/accel/surfaces_fixture.h"
 #include "test_surface_kernel.spv.h"

@@ -2,7 +2,6 @@
 // sync() never waits, does nothing on a clean accelerator, and records into the caller's command buffer.
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 
 #include "engine/core/vma.h"

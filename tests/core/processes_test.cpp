@@ -3,8 +3,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <numeric>
-
 #include "engine/core/interruption.h"
 #include "engine/core/parallel.h"
 #include "tests/accel/accel_fixture.h"

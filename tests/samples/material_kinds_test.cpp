@@ -4,8 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <bit>
-
 #include <twinray/geometry.h>
 #include <twinray/scene.h>
 

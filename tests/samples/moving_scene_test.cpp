@@ -2,7 +2,6 @@
 // A scene that has moved is the scene as if it had been made so.
 #include "renderer/moving_scene.h"
 
-#include <cstring>
 #include <limits>
 
 #include "engine/scene/rig.h"

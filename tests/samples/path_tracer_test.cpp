@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 // What pictures must and must not depend on.
-#include <cstring>
-
 #include "tests/samples/render.h"
 
 namespace twinray::path_tracer {

@@ -2,8 +2,6 @@
 // Which moment, view and file the pictures of a sequence have.
 #include "renderer/sequence.h"
 
-#include <cmath>
-
 #include <gtest/gtest.h>
 
 #include <twinray/scene.h>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Placements that lose one direction: shown as what is left, by vertices that are flat themselves.
-#include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>

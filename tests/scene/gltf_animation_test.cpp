@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Animations, skins, morph targets and material variants of glTF files, and their faults.
-#include <functional>
-
 #include "engine/scene/rig.h"
 #include "tests/scene/gltf_builder.h"
 

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Every fault of a glTF file is one clear Error that names the file, the object and the limit.
-#include <functional>
-
 #include "tests/scene/gltf_builder.h"
 
 namespace twinray::test {

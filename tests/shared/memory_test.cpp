@@ -2,7 +2,6 @@
 // Memory as kernels read and write it, in words: positions and indices, boxes, and numbers of 16 bits.
 #include <gtest/gtest.h>
 
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <vector>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Costs of trees by quality of the build, and end_point_overlap() against its definition.
-#include <array>
 #include <cmath>
 #include <random>
 #include <set>

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <map>
 
 #include "tests/accel/accel_fixture.h"
 #include "twinray/glsl/vector_math.h"

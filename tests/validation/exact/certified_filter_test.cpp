@@ -3,7 +3,6 @@
 // is so.
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 #include <random>
