@@ -189,7 +189,7 @@ TEST_P(FeaturesOfAccel, WhatMayNotMoveDoesNot) {
     accel().sync();
     const Transform transform;
     const auto refused = [](const char* name, const std::function<void()>& action) {
-        test::expect_error(name + std::string(": the accelerator was made with AccelOptions::can_move = false"), action);
+        test::expect_error(text(name, ": the accelerator was made with AccelOptions::can_move = false"), action);
     };
     refused(": update_transform", [&] { accel().update_transform(handle, transform); });
     refused(": update_transform_at", [&] { accel().update_transform_at(handle, 0, transform); });

@@ -8,6 +8,7 @@
 #include "engine/core/vulkan.h"
 #include "engine/core/device_properties.h"
 #include "engine/core/requirement.h"
+#include "tests/support/errors.h"
 
 namespace twinray {
 namespace {
@@ -50,7 +51,7 @@ void expect_all_on(const Info& info) {
 TEST(Requirements, AreToldInSentences) {
     DeviceProperties properties = capable();
     for (const Requirement& met : requirements_of(properties))
-        EXPECT_NE(met.sentence().find("; this device has it"), std::string::npos) << met.sentence();
+        test::expect_contains(met.sentence(), "; this device has it");
     properties.scalar_block_layout = properties.acceleration_structure = false;
     std::vector<std::string> lacking;
     for (const Requirement& requirement : requirements_of(properties))
@@ -104,11 +105,8 @@ TEST(Requirements, TexturesAreImagesWhereNothingOfDescriptorIndexingLacks) {
         properties.*fact = false;
         EXPECT_FALSE(properties.has_image_arrays());
         EXPECT_TRUE(missing_for_software(properties).empty() && missing_for_hardware(properties).empty());
-        EXPECT_NE(requirements_of(properties)
-                      .back()
-                      .sentence()
-                      .find("this device lacks it, textures in buffers work without"),
-                  std::string::npos);
+        test::expect_contains(requirements_of(properties).back().sentence(),
+                              "this device lacks it, textures in buffers work without");
     }
 }
 

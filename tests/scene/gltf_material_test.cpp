@@ -153,16 +153,6 @@ TEST(GltfMaterial, LayersOutsideOfTheirRangeAreClamped) {
     EXPECT_GT(material.attenuation_distance, 0);
 }
 
-TEST(GltfMaterial, AnUnreadableNormalMapOfACoatIsLeftOut) {
-    GltfBuilder gltf = textured_triangle(
-        {{"extensions",
-          {{"KHR_materials_clearcoat", {{"clearcoatFactor", 1}, {"clearcoatNormalTexture", {{"index", 0}}}}}}}});
-    gltf.root["images"][0] = {{"uri", "missing.png"}};
-    const Scene scene = gltf.load();
-    EXPECT_TRUE(has_warning(scene, "missing.png': file not found"));
-    EXPECT_EQ(scene.materials[0].clearcoat_normal_texture.image, -1);
-}
-
 TEST(GltfMaterial, WhatIsNotShownIsNamedOnce) {
     GltfBuilder gltf = textured_triangle(
         {{"extensions", {{"KHR_materials_iridescence", json::object()}, {"KHR_materials_sheen", json::object()}}}});
@@ -373,12 +363,18 @@ void expect_checkerboard(const json& image, const std::string& warning) {
     EXPECT_EQ(scene.images[0].rgba[1], 0);
 }
 
+// That of a coat, too.
 TEST(GltfMaterial, ANormalMapThatCannotBeReadIsLeftOutWithAWarning) {
-    GltfBuilder gltf = textured_triangle({{"normalTexture", {{"index", 0}}}});
-    gltf.root["images"][0] = {{"uri", "missing.png"}};
-    const Scene scene = gltf.load();
-    EXPECT_TRUE(has_warning(scene, "missing.png': file not found"));
-    EXPECT_EQ(scene.materials[0].normal_texture.image, -1);
+    const json map = {{"index", 0}}, coat = {{"clearcoatFactor", 1}, {"clearcoatNormalTexture", map}};
+    for (const json& material :
+         {json{{"normalTexture", map}}, json{{"extensions", {{"KHR_materials_clearcoat", coat}}}}}) {
+        GltfBuilder gltf = textured_triangle(material);
+        gltf.root["images"][0] = {{"uri", "missing.png"}};
+        const Scene scene = gltf.load();
+        EXPECT_TRUE(has_warning(scene, "missing.png': file not found"));
+        EXPECT_EQ(scene.materials[0].normal_texture.image, -1);
+        EXPECT_EQ(scene.materials[0].clearcoat_normal_texture.image, -1);
+    }
 }
 
 TEST(GltfMaterial, AnImageThatCannotBeShownIsACheckerboardWithAReason) {
