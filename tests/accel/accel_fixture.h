@@ -20,10 +20,8 @@ enum class Kind { software, ray_query, pipeline, reference };
 class AccelTest : public VulkanTest, public ::testing::WithParamInterface<Kind> {
   protected:
     ContextDesc context_desc() const override {
-        ContextDesc desc;
-        desc.use_ray_query = GetParam() == Kind::ray_query;
-        desc.use_ray_tracing_pipeline = GetParam() == Kind::pipeline;
-        return desc;
+        return {.use_ray_query = GetParam() == Kind::ray_query,
+                .use_ray_tracing_pipeline = GetParam() == Kind::pipeline};
     }
     void SetUp() override {
         VulkanTest::SetUp();

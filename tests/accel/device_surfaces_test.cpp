@@ -117,11 +117,9 @@ INSTANTIATE_TEST_SUITE_P(Every, HostWork,
 // From push to trace, once memory for the plans of builds is there.
 TEST_P(HostWork, AMeshInDeviceMemoryIsNeitherWaitedForNorSeenByTheHost) {
     faults::FaultInjector vulkan;
-    ContextDesc desc;
-    desc.get_instance_proc_addr = vulkan.entry();
-    desc.use_ray_query = GetParam() == test::Kind::ray_query;
-    desc.use_ray_tracing_pipeline = GetParam() == test::Kind::pipeline;
-    const auto context = test::make_context(desc);
+    const auto context = test::make_context({.use_ray_query = GetParam() == test::Kind::ray_query,
+                                             .use_ray_tracing_pipeline = GetParam() == test::Kind::pipeline,
+                                             .get_instance_proc_addr = vulkan.entry()});
     if (!context) return;
     if (GetParam() != test::Kind::software && !missing_for_hardware(context->properties()).empty())
         TWINRAY_LACKS("ray_tracing", "no such ray tracing");

@@ -27,12 +27,10 @@ using test::Kind;
 class Faults : public ::testing::TestWithParam<Kind> {
   protected:
     ContextDesc desc() const {
-        ContextDesc desc;
-        desc.validation = test::has_validation();
-        desc.use_ray_query = GetParam() == Kind::ray_query;
-        desc.use_ray_tracing_pipeline = GetParam() == Kind::pipeline;
-        desc.get_instance_proc_addr = faults_.entry();
-        return desc;
+        return {.validation = test::has_validation(),
+                .use_ray_query = GetParam() == Kind::ray_query,
+                .use_ray_tracing_pipeline = GetParam() == Kind::pipeline,
+                .get_instance_proc_addr = faults_.entry()};
     }
     ContextDesc unvalidated() const {
         ContextDesc quick = desc();

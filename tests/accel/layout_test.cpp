@@ -160,9 +160,7 @@ class Tunings : public ::testing::TestWithParam<test::LayoutAndLevel> {
     }
     // Of all the scenes, hits of the closest and any query, and all hits, as bytes in turn.
     std::vector<std::vector<std::byte>> trace_all(TuningRow row) {
-        ContextDesc desc;
-        desc.tuning = row;
-        const std::unique_ptr<Context> context = test::make_context(desc);
+        const std::unique_ptr<Context> context = test::make_context({.tuning = row});
         if (!context) return {};
         EXPECT_EQ(context->state().tuning().row, row);
         std::vector<std::vector<std::byte>> found;

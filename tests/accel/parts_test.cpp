@@ -102,16 +102,13 @@ TEST(Parts, SoftwareTracesAndBuildsTheSame) {
 }
 
 TEST(Parts, HardwareTracesTheSame) {
-    for (const bool use_ray_query : {true, false}) {
-        ContextDesc desc;
-        desc.use_ray_query = use_ray_query;
+    for (const bool use_ray_query : {true, false})
         expect_equal_in_parts(
             [](Context& context, Found& found) {
                 HwTlas accel(context);
                 trace(accel, found);
             },
-            3 * 31, desc);
-    }
+            3 * 31, {.use_ray_query = use_ray_query});
 }
 
 TEST(Parts, LightIsTheSame) {

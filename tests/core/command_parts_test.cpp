@@ -20,10 +20,7 @@ struct PartArgs {
 class CommandPartsTest : public test::VulkanTest {
   protected:
     ContextDesc context_desc() const override {
-        ContextDesc desc;
-        desc.most_submission_seconds = 1e-9;
-        desc.get_instance_proc_addr = faults_.entry();
-        return desc;
+        return {.most_submission_seconds = 1e-9, .get_instance_proc_addr = faults_.entry()};
     }
     std::uint64_t submissions() { return context().last_submission().value; }
     // Three passes of a group and one that copies.

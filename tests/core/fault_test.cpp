@@ -23,11 +23,7 @@ using faults::outcome_of;
 
 class FaultsOfCore : public ::testing::Test {
   protected:
-    void SetUp() override {
-        ContextDesc desc;
-        desc.get_instance_proc_addr = faults_.entry();
-        context_ = test::make_context(desc);
-    }
+    void SetUp() override { context_ = test::make_context({.get_instance_proc_addr = faults_.entry()}); }
     void TearDown() override {
         if (!context_) return;
         for (const std::string& message : context_->validation_messages()) ADD_FAILURE() << message;

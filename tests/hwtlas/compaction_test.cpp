@@ -16,11 +16,7 @@ constexpr std::uint64_t slack = 4097;
 
 class Compaction : public test::VulkanTest {
   protected:
-    ContextDesc context_desc() const override {
-        ContextDesc desc;
-        desc.get_instance_proc_addr = driver_.entry();
-        return desc;
-    }
+    ContextDesc context_desc() const override { return {.get_instance_proc_addr = driver_.entry()}; }
     void SetUp() override {
         VulkanTest::SetUp();
         if (IsSkipped() || HasFailure()) return;

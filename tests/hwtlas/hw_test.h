@@ -35,11 +35,7 @@ class HwTlasTest : public VulkanTest, public ::testing::WithParamInterface<Way> 
         accel_.reset();
         VulkanTest::TearDown();
     }
-    ContextDesc context_desc() const override {
-        ContextDesc desc;
-        desc.use_ray_query = GetParam().use_ray_query;
-        return desc;
-    }
+    ContextDesc context_desc() const override { return {.use_ray_query = GetParam().use_ray_query}; }
     HwTlas& accel() { return *accel_; }
 
   private:

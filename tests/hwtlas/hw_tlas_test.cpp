@@ -25,11 +25,7 @@ TEST_P(HwTlasTest, TellsItsTracePath) {
 
 class HwTlasWithoutHardware : public VulkanTest {
   protected:
-    ContextDesc context_desc() const override {
-        ContextDesc desc;
-        desc.use_ray_query = desc.use_ray_tracing_pipeline = false;
-        return desc;
-    }
+    ContextDesc context_desc() const override { return {.use_ray_query = false, .use_ray_tracing_pipeline = false}; }
 };
 
 TEST_F(HwTlasWithoutHardware, NamesTheDeviceAndWhatItLacks) {

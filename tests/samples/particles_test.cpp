@@ -61,11 +61,7 @@ void step_reference(Motions& particles, std::vector<HeatMaterial>& materials) {
 
 class ParticlesBy : public test::VulkanTest, public ::testing::WithParamInterface<const char*> {
   protected:
-    ContextDesc context_desc() const override {
-        ContextDesc desc;
-        desc.get_instance_proc_addr = injector_.entry();
-        return desc;
-    }
+    ContextDesc context_desc() const override { return {.get_instance_proc_addr = injector_.entry()}; }
     std::unique_ptr<AbstractAccel> make_accel(const std::string& kind) {
         if (kind == "hw") return std::make_unique<HwTlas>(context());
         return std::make_unique<SwTlas>(context());

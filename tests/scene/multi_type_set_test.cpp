@@ -281,11 +281,7 @@ TEST_F(MultiTypeSetTest, SyncsIntoTheCallersCommands) {
 
 class MultiTypeSetFault : public MultiTypeSetTest {
   protected:
-    ContextDesc context_desc() const override {
-        ContextDesc desc;
-        desc.get_instance_proc_addr = injector_.entry();
-        return desc;
-    }
+    ContextDesc context_desc() const override { return {.get_instance_proc_addr = injector_.entry()}; }
     faults::FaultInjector injector_;
 };
 

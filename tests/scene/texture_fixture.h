@@ -23,11 +23,7 @@ static_assert(sizeof(TextureQuestion) == 24 && sizeof(TextureAnswer) == 60);
 
 class Textures : public VulkanTest, public ::testing::WithParamInterface<TextureStorage> {
   protected:
-    ContextDesc context_desc() const override {
-        ContextDesc desc;
-        desc.get_instance_proc_addr = injector_.entry();
-        return desc;
-    }
+    ContextDesc context_desc() const override { return {.get_instance_proc_addr = injector_.entry()}; }
     void SetUp() override {
         VulkanTest::SetUp();
         if (IsSkipped() || HasFatalFailure()) return;

@@ -137,11 +137,7 @@ TEST(ConformanceOfAHungDevice, TellsTheCaseAndEnds) {
 
 class ConformanceWithoutQueries : public test::VulkanTest {
   protected:
-    ContextDesc context_desc() const override {
-        ContextDesc desc;
-        desc.use_ray_query = false;
-        return desc;
-    }
+    ContextDesc context_desc() const override { return {.use_ray_query = false}; }
 };
 
 TEST_F(ConformanceWithoutQueries, ThePipelineAnswersAlone) {
@@ -158,11 +154,7 @@ TEST_F(ConformanceWithoutQueries, ThePipelineAnswersAlone) {
 
 class ConformanceWithoutHardware : public test::VulkanTest {
   protected:
-    ContextDesc context_desc() const override {
-        ContextDesc desc;
-        desc.use_ray_query = desc.use_ray_tracing_pipeline = false;
-        return desc;
-    }
+    ContextDesc context_desc() const override { return {.use_ray_query = false, .use_ray_tracing_pipeline = false}; }
 };
 
 TEST_F(ConformanceWithoutHardware, NothingIsRunAndEachSaysWhy) {
