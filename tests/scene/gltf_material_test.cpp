@@ -363,7 +363,7 @@ void expect_checkerboard(const json& image, const std::string& warning) {
     EXPECT_EQ(scene.images[0].rgba[1], 0);
 }
 
-// That of a coat, too.
+// So is that of a coat.
 TEST(GltfMaterial, ANormalMapThatCannotBeReadIsLeftOutWithAWarning) {
     const json map = {{"index", 0}}, coat = {{"clearcoatFactor", 1}, {"clearcoatNormalTexture", map}};
     for (const json& material :

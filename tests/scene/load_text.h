@@ -21,7 +21,7 @@ inline void expect_load_error(const std::string& content, const std::string& nam
     expect_contains(message, part);
 }
 
-// As many warnings as parts, in that order.
+// The scene has as many warnings as parts, in that order.
 inline void expect_warnings(const Scene& scene, const std::vector<std::string>& parts) {
     ASSERT_EQ(scene.warnings.size(), parts.size()) << joined(scene.warnings);
     for (std::size_t i = 0; i < parts.size(); ++i) expect_contains(scene.warnings[i], parts[i]);

@@ -27,7 +27,7 @@ def expect_refusals(cases, *before):
 
 
 def records(name):
-    """Of a file with an object of JSON on each line."""
+    """The records of a file, one a line, in JSON."""
     return [json.loads(line) for line in (here / name).read_text().splitlines()]
 
 
