@@ -104,7 +104,7 @@ std::unique_ptr<Context> make_context(const CommonOptions& options) {
 std::unique_ptr<AbstractAccel> make_accel(Context& context, const AccelChoice& choice, const Scene& scene,
                                           Level level) {
     std::unique_ptr<AbstractAccel> accel =
-        twinray::make_accel(context, choice, {.level = std::max(level, Level::watertight)});
+        twinray::make_accel(context, choice, {.level = std::max(level, Level::watertight), .keeps_meshes = false});
     push_scene(*accel, scene);
     context.wait(accel->sync());
     return accel;

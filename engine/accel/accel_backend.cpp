@@ -265,8 +265,7 @@ void AccelBackend::update_vertices(AccelHandle handle, std::span<const vec3> pos
     if (!pushed.held->built) prepare(geometry);
     pushed.held->stored.incoming = {};
     pushed.held->stored.device_wrote = false;
-    pushed.held->stored.edited =
-        pushed.held->built || pushed.held->stored.on_device() || pushed.held->stored.gathers;
+    pushed.held->stored.edited = pushed.held->built || pushed.held->stored.on_device() || pushed.held->stored.gathers;
     edit(pushed.held, Dirty::moves);
 }
 

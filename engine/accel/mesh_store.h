@@ -44,8 +44,8 @@ struct StoredMesh {
     bool device_wrote = false;   // positions that Geometry::positions lacks
     bool gathers = false;        // the next sync reads Geometry::device
     bool rebuilds = false;       // it is another mesh of the same size
-    Floats incoming;  // device memory in the user's units that the next sync copies the positions from; 0 =
-                      // Geometry::positions
+    Floats incoming;             // device memory in the user's units that the next sync copies the positions from; 0 =
+                                 // Geometry::positions
 
     bool on_device() const { return bool(copy); }
     std::uint64_t bytes() const { return (copy ? copy.buffer->bytes() : 0) + costs.bytes(); }

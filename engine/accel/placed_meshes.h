@@ -25,15 +25,15 @@ class PlacedMeshes {
     PlacedMeshes& operator=(PlacedMeshes&&) noexcept = default;
 
     const MeshView& mesh_of(uint instance) const { return meshes[instances[instance].mesh]; }
-    // Returns some of the meshes, by index. Those of an accelerator are the same memory that it has itself, unless it is
-    // of another device; it must not have changed since. The others are uploaded.
+    // Returns some of the meshes, by index. Those of an accelerator are the same memory that it has itself, unless it
+    // is of another device; it must not have changed since. The others are uploaded.
     std::vector<MeshOnDevice> on_device(Commands& commands, std::span<const uint> some) const;
 
     std::vector<MeshView> meshes;
     std::vector<MeshInstance> instances;
 
   private:
-    std::vector<SharedMesh> owned_;  // what the views of an accelerator's meshes refer to
+    std::vector<SharedMesh> owned_;     // what the views of an accelerator's meshes refer to
     std::vector<AccelHandle> handles_;  // of these
     AbstractAccel* accel_ = nullptr;
 };

@@ -115,8 +115,7 @@ void AccelBackend::stage_sources(Commands& commands, Staged& staged) {
     for (const HeldGeometry* held : staged.sources) {
         PackedMesh mesh = keeps_meshes_on_device() ? kept_mesh(*held, staged) : PackedMesh{};
         context_.fill_absent(mesh.positions, mesh.indices);
-        commands.write(held->block, GeometrySource{mesh, held->geometry.scale, 0},
-                       GEOMETRY_SOURCE_OFFSET);
+        commands.write(held->block, GeometrySource{mesh, held->geometry.scale, 0}, GEOMETRY_SOURCE_OFFSET);
     }
 }
 

@@ -115,7 +115,8 @@ void TriangleSet::set(const PlacedMeshes& placed, std::span<const uint> chosen, 
         const auto& [mesh, transform] = placed.instances[index];
         const auto place = static_cast<std::size_t>(std::ranges::lower_bound(used, mesh) - used.begin());
         table.push_back(make_run(meshes_[place], ids[mesh], transform, count_));
-        runs_.push_back(make_run(on_host(placed.meshes[mesh]), {address_of(std::span<const uint>(vertex_ids_[mesh]))}, transform, count_));
+        runs_.push_back(make_run(on_host(placed.meshes[mesh]), {address_of(std::span<const uint>(vertex_ids_[mesh]))},
+                                 transform, count_));
         count_ += placed.meshes[mesh].triangles.size();
     }
     table_ = Buffer(context_, {.name = "collide runs", .bytes = table.size() * sizeof(TriangleRun)});
@@ -148,9 +149,12 @@ std::vector<Uints> TriangleSet::upload_vertex_ids(Commands& commands) {
 
 void TriangleSet::build(BoxTree& tree) {
     Commands commands(context_, "collide triangles");
-    const WorldTrianglesArgs args{table_.ref<TriangleRun>(),             tree.prepare(count_),
-                                  world_triangles_.ref<WorldTriangle>(), names_.ref<TriangleName>(),
-                                  static_cast<uint>(runs_.size()),       static_cast<uint>(count_)};
+    const WorldTrianglesArgs args{table_.ref<TriangleRun>(),
+                                  tree.prepare(count_),
+                                  world_triangles_.ref<WorldTriangle>(),
+                                  names_.ref<TriangleName>(),
+                                  static_cast<uint>(runs_.size()),
+                                  static_cast<uint>(count_)};
     if (count_ != 0) kernel_.dispatch(commands, args, count_);
     tree.record(commands);
     commands.submit();

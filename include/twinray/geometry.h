@@ -310,20 +310,18 @@ struct MeshView {
     MeshView(const Mesh& mesh);
 };
 
-// An array that several owners read and none changes.
+// An array that its copies share and nobody changes.
 template <class T>
-class SharedArray {
+class SharedArray : public std::span<const T> {
   public:
     SharedArray() = default;
-    SharedArray(std::vector<T>&& items) : items_(std::make_shared<const std::vector<T>>(std::move(items))) {}
-    std::size_t size() const { return items_ ? items_->size() : 0; }
-    bool empty() const { return size() == 0; }
-    const T* data() const { return items_ ? items_->data() : nullptr; }
-    const T* begin() const { return data(); }
-    const T* end() const { return data() + size(); }
-    const T& operator[](std::size_t index) const { return (*items_)[index]; }
+    // Takes the items.
+    SharedArray(std::vector<T>&& items) : SharedArray(std::make_shared<const std::vector<T>>(std::move(items))) {}
 
   private:
+    explicit SharedArray(const std::shared_ptr<const std::vector<T>>& items)
+        : std::span<const T>(*items), items_(items) {}
+
     std::shared_ptr<const std::vector<T>> items_;
 };
 
@@ -333,7 +331,7 @@ struct SharedMesh {
     SharedArray<vec3> positions;
     SharedArray<uvec3> triangles;
 
-    operator MeshView() const { return {name, positions, triangles}; }
+    operator MeshView() const { return {name, positions, triangles}; }  // valid while this lives
 };
 
 // A mesh as an instance places it, by its index among meshes.

@@ -95,7 +95,7 @@ struct AccelOptions {
     // Keeps only what handle_of(), index_in_handle(), face_metadata() and geometry_metadata() there read: no mesh.
     bool keeps_metadata = false;
     // Keeps each mesh on the host, 12 bytes per vertex and per triangle. False: once a sync has built the mesh, nothing
-    // can read it back, so that update_vertices() from the host, save(), scene_of() and analyses of it throw.
+    // can read it back, so that update_vertices() from the host, save(), mesh(), scene_of() and analyses of it throw.
     bool keeps_meshes = true;
     // False: instances stay where push() puts them, and every call that would move them throws. Software then does not
     // transform rays for instances with the identity transform.

@@ -204,7 +204,8 @@ Session make_session(const Options& options, const Ranks& ranks) {
 }
 
 std::unique_ptr<AbstractAccel> make_accel(Context& context, const Scene& scene, const AccelChoice& choice) {
-    std::unique_ptr<AbstractAccel> accel = twinray::make_accel(context, choice);
+    // The scene has the meshes, too; the accelerator needs them where vertices move.
+    std::unique_ptr<AbstractAccel> accel = twinray::make_accel(context, choice, {.keeps_meshes = scene.rig != nullptr});
     push_scene(*accel, scene);
     accel->sync();
     return accel;

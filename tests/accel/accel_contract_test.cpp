@@ -255,8 +255,7 @@ TEST_P(Accel, ADeadHandleIsRefusedByEveryCallThatNeedsALiveOne) {
         [&] { static_cast<void>(accel().get_instance(dead, 0)); },
         [&] { static_cast<void>(accel().get_instances(dead)); },
     };
-    for (const std::function<void()>& call : calls)
-        expect_error(text("handle ", dead.id, " is not alive"), call);
+    for (const std::function<void()>& call : calls) expect_error(text("handle ", dead.id, " is not alive"), call);
     EXPECT_FALSE(accel().erase(dead));
     EXPECT_EQ(accel().n_instances(dead), 0u);
 }
@@ -345,8 +344,7 @@ TEST_P(Accel, WrongUseNamesTheObjectTheValueAndTheLimitAndChangesNothing) {
         {[&] { accel().update(pair, wild); }, "mesh 'wild': triangle 1"},
         {[&] { accel().update_transform({~0ull}, {}); }, "handle 18446744073709551615 is not alive"},
     };
-    for (const auto& [action, expected] : cases)
-        expect_error(expected, action);
+    for (const auto& [action, expected] : cases) expect_error(expected, action);
     EXPECT_EQ(accel().n_instances(), 2u);
     EXPECT_EQ(accel().view().revision, view.revision) << "no edit is pending";
     EXPECT_EQ(accel().get_instance(pair, 0).transform, Transform{});

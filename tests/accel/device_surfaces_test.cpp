@@ -83,9 +83,7 @@ TEST_P(DeviceSurfaces, AreThoseOfTheHostsMesh) {
 TEST_P(DeviceSurfaces, WhatCannotBeIsRefused) {
     add(make_icosphere(1), 1);
     Arrays arrays = on_device(placed_.front().shape);
-    const auto refused = [&](const char* why) {
-        test::expect_error(why, [&] { accel().push(arrays.mesh); });
-    };
+    const auto refused = [&](const char* why) { test::expect_error(why, [&] { accel().push(arrays.mesh); }); };
     std::vector<DeviceAttribute> wrong = {{"normals", 4, false, {16}}};
     arrays.mesh.attributes = wrong;
     refused("'normals' has 3 components per vertex, not 4");

@@ -245,7 +245,9 @@ TEST_P(Faults, TheSyncThatCompacts) {
     check_end(compacted);
 }
 
-TEST_P(Faults, Pushing) { fail_in_one_world([](World&) {}, &World::push_aside); }
+TEST_P(Faults, Pushing) {
+    fail_in_one_world([](World&) {}, &World::push_aside);
+}
 
 // Commands into which the sync could not be recorded are given up: the host reaches their value without them.
 TEST_P(Faults, TheSyncIntoTheHostsCommands) {
@@ -277,7 +279,9 @@ TEST_P(Faults, TheSyncIntoTheHostsCommands) {
     check_end(edited);
 }
 
-TEST_P(Faults, TracingForTheHost) { fail_in_one_world([](World&) {}, &World::check_hits); }
+TEST_P(Faults, TracingForTheHost) {
+    fail_in_one_world([](World&) {}, &World::check_hits);
+}
 
 TEST_P(Faults, WaitingAndTimings) {
     const auto wait = [](World& w) {

@@ -116,9 +116,8 @@ TEST_P(Layouts, InstancesMayComeAndGo) {
         const auto for_one = accel->make_program(test_program, one.features);
         const AccelHandle second = accel->push(test::square(0), Transform::translation({10, 0, 0}), {.mask = 2});
         EXPECT_EQ(is_hit(), std::pair(1u, 1u));
-        test::expect_error("several instances", [&] {
-            accel->closest_hits(rays, {.level = GetParam(), .program = for_one.get()});
-        });
+        test::expect_error("several instances",
+                           [&] { accel->closest_hits(rays, {.level = GetParam(), .program = for_one.get()}); });
         accel->erase(first);
         EXPECT_EQ(is_hit(), std::pair(0u, 1u));
         EXPECT_EQ(accel->closest_hits(rays, {.mask = 1, .level = GetParam()})[1].hit, 0u) << "of another mask";

@@ -270,8 +270,7 @@ TEST_P(Vertices, WrongUseNamesTheObjectTheValueAndTheLimitAndChangesNothing) {
         {[&] { (void)accel().sah({~0ull}); }, "is not alive"},
         {[&] { accel().update_vertices(boxes, std::span<const vec3>{}); }, "holds boxes, 'crate'"},
     };
-    for (const auto& [action, expected] : cases)
-        expect_error(expected, action);
+    for (const auto& [action, expected] : cases) expect_error(expected, action);
     EXPECT_EQ(accel().view().revision, view.revision) << "no edit is pending";
 }
 

@@ -194,15 +194,13 @@ TEST_P(SharedMemory, WhatCannotBeSharedIsRefused) {
         TWINRAY_LACKS("external_memory", text("no ", platform::shared_memory.extension));
     const Buffer own(context(), {.name = "own", .bytes = 64});
     expect_error("buffer 'own' is not exportable", [&] { own.exported(); });
-    expect_error("buffer 'mapped' to be shared: only memory of the device", [&] {
-        Buffer::exportable(context(), {.name = "mapped", .bytes = 64, .memory = Memory::upload});
-    });
+    expect_error("buffer 'mapped' to be shared: only memory of the device",
+                 [&] { Buffer::exportable(context(), {.name = "mapped", .bytes = 64, .memory = Memory::upload}); });
     expect_error("no handle", [&] { Buffer::imported(context(), {.name = "none", .bytes = 64}, {}); });
     const Buffer small = Buffer::exportable(context(), {.name = "small", .bytes = 64});
     const ExportedMemory exported = small.exported();
-    expect_error("bytes were exported; 1048576 are needed", [&] {
-        Buffer::imported(context(), {.name = "large", .bytes = 1 << 20}, exported);
-    });
+    expect_error("bytes were exported; 1048576 are needed",
+                 [&] { Buffer::imported(context(), {.name = "large", .bytes = 1 << 20}, exported); });
     const std::intptr_t copy = platform::copy_handle(exported.handle);
     EXPECT_NE(copy, platform::no_handle) << "the handle is no longer the caller's";
     for (const std::intptr_t handle : {copy, exported.handle}) platform::close_handle(handle);

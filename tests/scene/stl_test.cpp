@@ -94,8 +94,8 @@ TEST(Stl, OtherFacetsThanTrianglesAndOtherWords) {
         "0\nendloop\nendfacet\n"
         "facet\ncolor 1 0 0\nvertex 0 0 0\nvertex 2 0 0\n");
     EXPECT_EQ(scene.meshes[0].triangles, (std::vector<uvec3>{{0, 1, 2}, {0, 2, 3}}));
-    expect_warnings(scene, {"skipped 1 faces of fewer than 3 vertices",
-                            "passed over lines that begin with 'color' (line 11)"});
+    expect_warnings(
+        scene, {"skipped 1 faces of fewer than 3 vertices", "passed over lines that begin with 'color' (line 11)"});
 }
 
 TEST(Stl, FaultsAreNamed) {
