@@ -35,7 +35,9 @@ Scene load_any(const Options& options) {
 void print_notes(const Scene& scene, const Options& options) {
     if (!options.quiet && scene.origin != dvec3(0))
         std::fprintf(stderr, "path_tracer: scene moved to local origin %s\n", origin_text(scene.origin).c_str());
-    samples::report_warnings(scene.warnings, options.scene, "path_tracer", options.strict, options.quiet);
+    std::vector<std::string> warnings = scene.warnings;
+    for (std::string& stopped : stopped_lights(scene)) warnings.push_back(std::move(stopped));
+    samples::report_warnings(warnings, options.scene, "path_tracer", options.strict, options.quiet);
 }
 
 Scene load(const Options& options) {

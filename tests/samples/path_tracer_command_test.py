@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Runs `path_tracer` as a user does. Usage: path_tracer_command_test.py PATH_TRACER"""
+import base64
+import json
 import os
 import pathlib
 import shutil
@@ -155,6 +157,24 @@ shown = tetrahedron("far.ply", (500000, 5400000, 2))
 assert shown.count("scene moved to local origin 500000 5400000 2\n") == 1, shown
 assert "moved" not in tetrahedron("near.ply", (0, 0, 0)) and same("far.ply.png", "near.ply.png")
 assert [record["origin"] for record in records("far.jsonl")] == [[500000, 5400000, 2], [0, 0, 0]]
+
+# A light that no path can reach.
+corners = base64.b64encode(struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0)).decode()
+(here / "stopped.gltf").write_text(json.dumps({
+    "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}],
+    "extensionsUsed": ["KHR_lights_punctual", "KHR_materials_transmission"],
+    "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "name": "bulb"}]}},
+    "nodes": [{"mesh": 0}, {"extensions": {"KHR_lights_punctual": {"light": 0}}, "translation": [0, 0, 3]}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
+    "materials": [{"name": "frosted", "pbrMetallicRoughness": {"roughnessFactor": 0.5, "metallicFactor": 0},
+                   "extensions": {"KHR_materials_transmission": {"transmissionFactor": 1}}}],
+    "buffers": [{"uri": "data:application/octet-stream;base64," + corners, "byteLength": 36}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}]}))
+small = ["stopped.gltf", "--height", "8", "--spp", "1", "--accel", "sw", "-o", "stopped.png"]
+assert "light of 'bulb' cannot pass material 'frosted'" in run(*small)
+assert "cannot pass" in run(*small, "--strict", status=1)
+assert "cannot pass" not in run(*small, "--quiet")
 
 # The window is another program's: the one beside this, else the one in PATH.
 alone = here / "alone"
