@@ -101,7 +101,8 @@ bool is_framing(const Options& options, const Scene& scene);
 CameraRays rays_of(const Options& options, const Camera& camera, const RenderSettings& settings);
 
 // Returns an accelerator that holds the scene, built.
-std::unique_ptr<AbstractAccel> make_accel(Context& context, const Scene& scene, const AccelChoice& choice);
+std::unique_ptr<AbstractAccel> make_accel(Context& context, const Scene& scene, const AccelChoice& choice,
+                                          bool is_animated = false);
 
 // "compute", "ray query" or "ray tracing pipeline".
 std::string trace_path(const AbstractAccel& accel);
