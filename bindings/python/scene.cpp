@@ -129,14 +129,17 @@ uint Scene::add(Mesh&& mesh, const Transform& transform) {
     const Lock lock(*this);
     mesh.name = "geometry " + std::to_string(parts_.size());
     const std::optional<Transform> flat = flatten(mesh, transform);
-    const uint geometry = push(mesh, flat.value_or(transform));
+    const Transform placed = flat.value_or(transform);
+    const auto kept = std::make_shared<KeptMesh>(
+        KeptMesh{{std::move(mesh.name), std::move(mesh.positions), std::move(mesh.triangles)}});
+    const uint geometry = keep(push_mesh(*accel_, *kept, placed, options_of_next()), kept, placed);
     parts_[geometry]->is_flat = flat.has_value();
     return geometry;
 }
 
-uint Scene::push(const MeshView& mesh, const Transform& transform) {
-    const AccelHandle handle = accel_->push(mesh, transform, options_of_next());
-    return keep(handle, std::make_shared<KeptMesh>(KeptMesh{accel_->mesh(handle)}), transform);
+AccelHandle Scene::push_mesh(AbstractAccel& accel, const SharedMesh& mesh, const Transform& transform,
+                             const InstanceOptions& options) {
+    return accel.push(mesh, std::span(&transform, 1), std::span(&options, 1));
 }
 
 Scene::Part& Scene::movable(uint geometry, const char* action) {

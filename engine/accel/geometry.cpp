@@ -43,6 +43,15 @@ Geometry::Geometry(const MeshView& mesh, float unit)
     move_to(mesh.positions);
 }
 
+Geometry::Geometry(const SharedMesh& mesh, float unit)
+    : name(mesh.name),
+      scale(unit),
+      positions(mesh.positions),
+      triangles((checked(mesh), mesh.triangles)),
+      non_finite_triangles(count_non_finite_triangles(mesh)) {
+    if (unit != 1) move_to(mesh.positions);
+}
+
 Geometry::Geometry(const DeviceMesh& mesh, float unit) : name(mesh.name), scale(unit) {
     if (mesh.triangle_count == 0) return;
     check_device_mesh(mesh);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "engine/core/parallel.h"
 #include "engine/core/ray.h"
 
 namespace twinray {
@@ -32,6 +33,20 @@ std::uint64_t cell(double offset, double scale) {
     return static_cast<std::uint64_t>(std::min(offset * scale, cells_per_axis - 1));
 }
 
+// Sorts parts of the array, then merges neighbours; no two keys are equal, so that the result is that of one sort.
+void sort_in_parallel(std::vector<Keyed>& keys) {
+    const std::size_t parts = keys.size() < 1 << 15 ? 1 : 16;
+    const auto begin_of = [&](std::size_t part) {
+        return keys.begin() + static_cast<std::ptrdiff_t>(keys.size() * part / parts);
+    };
+    parallel_for(parts, [&](std::size_t part) { std::sort(begin_of(part), begin_of(part + 1)); });
+    for (std::size_t width = 1; width < parts; width *= 2)
+        parallel_for(parts / (2 * width), [&](std::size_t pair) {
+            const std::size_t first = pair * 2 * width;
+            std::inplace_merge(begin_of(first), begin_of(first + width), begin_of(first + 2 * width));
+        });
+}
+
 }  // namespace
 
 std::vector<uint> morton_order(std::span<const vec3> centers) {
@@ -45,33 +60,29 @@ std::vector<uint> morton_order(std::span<const vec3> centers) {
     const double scale = extent > 0 ? cells_per_axis / extent : 0;
 
     std::vector<Keyed> keys(centers.size());
-    for (std::size_t i = 0; i < centers.size(); ++i) {
+    parallel_for(centers.size(), [&](std::size_t i) {
         const dvec3 p = dvec3(centers[i]) - lo;
         const std::uint64_t code = is_last(centers[i]) ? UINT64_MAX
                                                        : spread(cell(p.x, scale)) << 2 | spread(cell(p.y, scale)) << 1 |
                                                              spread(cell(p.z, scale));
         keys[i] = {code, static_cast<uint>(i)};
-    }
-    std::sort(keys.begin(), keys.end());
+    });
+    sort_in_parallel(keys);
     std::vector<uint> order(keys.size());
     std::transform(keys.begin(), keys.end(), order.begin(), [](const Keyed& key) { return key.index; });
     return order;
 }
 
 std::vector<vec3> triangle_centers(std::span<const vec3> positions, std::span<const uvec3> triangles) {
-    std::vector<vec3> centers;
-    centers.reserve(triangles.size());
-    for (const uvec3& triangle : triangles) {
+    std::vector<vec3> centers(triangles.size());
+    parallel_for(triangles.size(), [&](std::size_t i) {
+        const uvec3 triangle = triangles[i];
         const vec3 a = positions[triangle.x], b = positions[triangle.y], c = positions[triangle.z];
-        if (!is_finite(a) || !is_finite(b) || !is_finite(c)) {
-            centers.emplace_back(NAN);
-            continue;
-        }
         Bounds box{a, a};
         box.include(b);
         box.include(c);
-        centers.push_back(box.center());
-    }
+        centers[i] = is_finite(a) && is_finite(b) && is_finite(c) ? box.center() : vec3(NAN);
+    });
     return centers;
 }
 

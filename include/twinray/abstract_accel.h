@@ -40,6 +40,9 @@ class AbstractAccel {
     // Adds one geometry with one instance per transform; options is empty or has one entry per transform.
     AccelHandle push(const MeshView& mesh, std::span<const Transform> transforms,
                      std::span<const InstanceOptions> options = {});
+    // The same without a copy of the host's arrays.
+    AccelHandle push(const SharedMesh& mesh, std::span<const Transform> transforms,
+                     std::span<const InstanceOptions> options = {});
     // The same for boxes; only traces with a program can hit them.
     AccelHandle push(const BoxesView& boxes, const Transform& transform = {}, const InstanceOptions& options = {});
     AccelHandle push(const BoxesView& boxes, std::span<const Transform> transforms,
@@ -105,8 +108,7 @@ class AbstractAccel {
     std::size_t n_geometries() const;                    // a mesh or boxes of several handles count once
     std::size_t n_primitives(AccelHandle handle) const;  // triangles or boxes of its geometry; 0 for a dead handle
     std::vector<AccelHandle> handles() const;            // those alive, in push order
-    // Returns the positions and triangles of the handle's mesh, as kernels have left them; none for boxes. Waits if
-    // only the device has them. Throws Error with AccelOptions::keeps_meshes = false.
+    // Returns the handle's mesh, as kernels have left it; an empty one for boxes. Waits if only the device has it.
     SharedMesh mesh(AccelHandle handle) const;
 
     // Builds what changed since the last sync and returns the point at which the GPU has built it; does nothing if

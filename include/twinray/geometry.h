@@ -325,7 +325,7 @@ class SharedArray : public std::span<const T> {
     std::shared_ptr<const std::vector<T>> items_;
 };
 
-// A mesh that an accelerator keeps: AbstractAccel::mesh().
+// A mesh that a host and an accelerator share: AbstractAccel::push(), AbstractAccel::mesh().
 struct SharedMesh {
     std::string name;
     SharedArray<vec3> positions;

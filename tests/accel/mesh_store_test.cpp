@@ -8,6 +8,8 @@
 namespace twinray {
 namespace {
 
+using test::expect_contains;
+
 class MeshStoreTest : public test::AccelTest {
   protected:
     static constexpr uint first_mesh = 0;
@@ -109,6 +111,24 @@ TEST_P(MeshStoreTest, TheHostsArraysAreShared) {
     EXPECT_EQ(accel().mesh(handle).triangles.data(), shared.triangles.data());
     drop_accel();
     EXPECT_TRUE(std::ranges::equal(MeshView(shared).triangles, mesh.triangles));
+}
+
+TEST_P(MeshStoreTest, AHostCanShareItsArrays) {
+    const Mesh mesh = make_icosphere(2);
+    SharedMesh shared{mesh.name, std::vector<vec3>(mesh.positions), std::vector<uvec3>(mesh.triangles)};
+    const Transform place;
+    const AccelHandle handle = accel().push(shared, std::span(&place, 1));
+    EXPECT_EQ(accel().mesh(handle).triangles.data(), shared.triangles.data());
+    if (is_ours()) {
+        EXPECT_EQ(accel().mesh(handle).positions.data(), shared.positions.data());
+    }
+    const auto copying = make_accel();
+    copying->push(mesh);
+    const Ray ray = test::down(0.125f, 0.25f);
+    EXPECT_EQ(closest(ray), copying->closest_hits(std::span(&ray, 1)).front());
+    shared.triangles = std::vector<uvec3>{{0, 1, 1000}};
+    expect_contains(test::error_of([&] { accel().push(shared, std::span(&place, 1)); }),
+                    "triangle 0 has vertex index 1000");
 }
 
 }  // namespace
