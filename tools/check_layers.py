@@ -65,7 +65,7 @@ MOST_HEADERS = {  # of this project behind a header, directly or not; lower them
 }
 MOST_PUBLIC = {"headers": 15, "lines": 3737}  # of include/twinray, its GLSL apart
 MOST_LINES = {"include/twinray/abstract_accel.h": 271}
-MOST_LONELY = 19  # private headers that one file reads, beside their own .cpp; lower it whenever it falls
+MOST_LONELY = 15  # private headers that one file reads, beside their own .cpp; lower it whenever it falls
 GLSL = re.compile(r"\.(glsl|comp|rgen|rmiss|rchit|rahit|rint|rcall|vert|frag)$")  # outside shaders/, sees them all
 SOURCE = re.compile(r"\.(h|hpp|c|cc|cpp|inl)$|" + GLSL.pattern)
 GENERATED = re.compile(  # by the build, or as installed

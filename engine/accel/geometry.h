@@ -26,7 +26,7 @@ struct Welded {
     bool is_empty() const { return triangles.empty(); }
 };
 
-// A mesh or boxes as an accelerator keeps them: its own copy of what tracing needs.
+// A mesh or boxes as an accelerator keeps them on the host.
 struct Geometry {
     std::string name;
     uint kind = GEOMETRY_TRIANGLES;

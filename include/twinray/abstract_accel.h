@@ -40,7 +40,7 @@ class AbstractAccel {
     // Adds one geometry with one instance per transform; options is empty or has one entry per transform.
     AccelHandle push(const MeshView& mesh, std::span<const Transform> transforms,
                      std::span<const InstanceOptions> options = {});
-    // The same without a copy of the host's arrays.
+    // The same without a copy of the arrays; HwTlas copies the positions, unless it builds in units of 1.
     AccelHandle push(const SharedMesh& mesh, std::span<const Transform> transforms,
                      std::span<const InstanceOptions> options = {});
     // The same for boxes; only traces with a program can hit them.

@@ -60,7 +60,7 @@ struct Case : frame::Case {
     std::string not_by_pipeline;  // why only ray queries can tell; "" = both can
 };
 
-// The catalogue, a function and a file for each topic.
+// The catalogue: a function for each topic, or for a topic and what is tested with it.
 std::vector<Case> build_cases();
 std::vector<Case> format_cases();
 std::vector<Case> update_cases();
