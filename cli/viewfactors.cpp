@@ -214,8 +214,6 @@ void write_matrices(const Options& options, const std::vector<double>& areas, co
 
 void run(Options options) {
     const Shards shards(options.shards, options.common, options.output);
-    check_writable(options.output);
-    check_pictures(options.pictures);
     check_writable(options.matrix);
     const Analysed analysed(options);
     const auto& [scene, context, choice, accel] = analysed;

@@ -5,6 +5,8 @@
 #include <bit>
 #include <cstdint>
 
+#include "swtlas/structures.h"
+
 namespace twinray {
 namespace {
 

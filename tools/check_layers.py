@@ -63,7 +63,7 @@ SYSTEM = re.compile(r"\b(_?WIN(32|64)|_MSC_VER|__MINGW(32|64)__|__CYGWIN__|__lin
 MOST_HEADERS = {  # of this project behind a header, directly or not; lower them whenever they fall
     "include/twinray/tlas.h": 12, "engine/accel/accel_backend.h": 38,
 }
-MOST_PUBLIC = {"headers": 15, "lines": 3737}  # of include/twinray, its GLSL apart
+MOST_PUBLIC = {"headers": 15, "lines": 3740}  # of include/twinray, its GLSL apart
 MOST_LINES = {"include/twinray/abstract_accel.h": 271}
 MOST_LONELY = 15  # private headers that one file reads, beside their own .cpp; lower it whenever it falls
 GLSL = re.compile(r"\.(glsl|comp|rgen|rmiss|rchit|rahit|rint|rcall|vert|frag)$")  # outside shaders/, sees them all

@@ -142,7 +142,7 @@ void Scene::push_parts(AbstractAccel& accel, AccelHandle Part::*handle) {
         Part& part = *parts_[number];
         const InstanceOptions options{.custom_index = number};
         const auto [known, is_new] = pushed.try_emplace(part.mesh.get());
-        part.*handle = is_new ? push_mesh(accel, *part.mesh, part.transform, options)
+        part.*handle = is_new ? accel.push(*part.mesh, part.transform, options)
                               : push_instance(accel, known->second, part.transform, options);
         if (is_new) known->second = part.*handle;
     }

@@ -132,14 +132,9 @@ uint Scene::add(Mesh&& mesh, const Transform& transform) {
     const Transform placed = flat.value_or(transform);
     const auto kept = std::make_shared<KeptMesh>(
         KeptMesh{{std::move(mesh.name), std::move(mesh.positions), std::move(mesh.triangles)}});
-    const uint geometry = keep(push_mesh(*accel_, *kept, placed, options_of_next()), kept, placed);
+    const uint geometry = keep(accel_->push(*kept, placed, options_of_next()), kept, placed);
     parts_[geometry]->is_flat = flat.has_value();
     return geometry;
-}
-
-AccelHandle Scene::push_mesh(AbstractAccel& accel, const SharedMesh& mesh, const Transform& transform,
-                             const InstanceOptions& options) {
-    return accel.push(mesh, std::span(&transform, 1), std::span(&options, 1));
 }
 
 Scene::Part& Scene::movable(uint geometry, const char* action) {

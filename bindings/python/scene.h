@@ -249,7 +249,7 @@ class Scene {
     };
 
   private:
-    // The same arrays as the accelerator's.
+    // The accelerator's own arrays, where it builds in units of 1.
     struct KeptMesh : SharedMesh {
         std::optional<Bounds> box = {};  // once it was asked for
         const Bounds& bounds();
@@ -267,8 +267,6 @@ class Scene {
     // The one of this process. Throws Error where there is none.
     Device& open_device();
     void push_parts(AbstractAccel& accel, AccelHandle Part::*handle);
-    static AccelHandle push_mesh(AbstractAccel& accel, const SharedMesh& mesh, const Transform& transform,
-                                 const InstanceOptions& options);
     Part& part(uint geometry, const char* action);
     Part& movable(uint geometry, const char* action);  // throws Error for a flat one
     uint keep(AccelHandle handle, std::shared_ptr<KeptMesh> mesh, const Transform& transform);

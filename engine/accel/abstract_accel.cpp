@@ -14,10 +14,6 @@ AccelHandle AbstractAccel::push(const MeshView& mesh, std::span<const Transform>
                                 std::span<const InstanceOptions> options) {
     return backend_->push(mesh, transforms, options);
 }
-AccelHandle AbstractAccel::push(const SharedMesh& mesh, std::span<const Transform> transforms,
-                                std::span<const InstanceOptions> options) {
-    return backend_->push(mesh, transforms, options);
-}
 AccelHandle AbstractAccel::push(const BoxesView& boxes, const Transform& transform, const InstanceOptions& options) {
     return push(boxes, std::span(&transform, 1), std::span(&options, 1));
 }

@@ -55,10 +55,6 @@ AccelHandle AccelBackend::push(const MeshView& mesh, std::span<const Transform> 
                                std::span<const InstanceOptions> options) {
     return place(geometry_of(mesh), surface_of(mesh), transforms, options);
 }
-AccelHandle AccelBackend::push(const SharedMesh& mesh, std::span<const Transform> transforms,
-                               std::span<const InstanceOptions> options) {
-    return place(geometry_of(mesh), surface_of(MeshView(mesh)), transforms, options);
-}
 AccelHandle AccelBackend::push(const BoxesView& boxes, std::span<const Transform> transforms,
                                std::span<const InstanceOptions> options) {
     return place(Geometry(boxes), {}, transforms, options);
@@ -76,9 +72,7 @@ SurfaceSlice AccelBackend::surface_of(const Mesh& mesh) {
     return surface_slice(options_.keeps_surfaces ? mesh : metadata_of(mesh), surfaces_->names());
 }
 
-// `HostMesh` is MeshView or SharedMesh.
-template <class HostMesh>
-Geometry AccelBackend::geometry_of(const HostMesh& mesh) const {
+Geometry AccelBackend::geometry_of(const MeshView& mesh) const {
     Geometry geometry(mesh, unit_of(mesh.positions));
     prepare(geometry);
     return geometry;

@@ -40,8 +40,6 @@ class AccelBackend {
     AccelBackend& operator=(const AccelBackend&) = delete;
     AccelHandle push(const MeshView& mesh, std::span<const Transform> transforms,
                      std::span<const InstanceOptions> options = {});
-    AccelHandle push(const SharedMesh& mesh, std::span<const Transform> transforms,
-                     std::span<const InstanceOptions> options = {});
     AccelHandle push(const BoxesView& boxes, std::span<const Transform> transforms,
                      std::span<const InstanceOptions> options = {});
     AccelHandle push(const DeviceMesh& mesh, std::span<const Transform> transforms,
@@ -263,8 +261,7 @@ class AccelBackend {
     void replace(AccelHandle handle, Geometry&& geometry, SurfaceSlice&& surface);
     template <class Mesh>
     SurfaceSlice surface_of(const Mesh& mesh);
-    template <class HostMesh>
-    Geometry geometry_of(const HostMesh& mesh) const;
+    Geometry geometry_of(const MeshView& mesh) const;
     Geometry geometry_of(const DeviceMesh& mesh, const char* action) const;
     void check_option_count(const std::string& mesh, std::size_t transforms, std::size_t options) const;
     std::vector<InstanceRecord> newest_records(const InstanceSlice& slice) const;

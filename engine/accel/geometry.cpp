@@ -18,10 +18,11 @@ void check_count(std::string_view name, std::size_t count, const char* what) {
 
 std::string coordinates_of(vec3 v) { return text(v.x, ", ", v.y, ", ", v.z); }
 
-std::span<const uvec3> checked(const MeshView& mesh) {
+SharedArray<uvec3> checked(const MeshView& mesh) {
     check_count(mesh.name, mesh.triangles.size(), "triangles");
     check_indices(mesh);
-    return mesh.triangles;
+    if (mesh.shared) return mesh.shared->triangles;
+    return std::vector<uvec3>(mesh.triangles.begin(), mesh.triangles.end());
 }
 
 std::span<const Bounds> checked(const BoxesView& view) {
@@ -36,20 +37,11 @@ std::span<const Bounds> checked(const BoxesView& view) {
 }  // namespace
 
 Geometry::Geometry(const MeshView& mesh, float unit)
-    : name(mesh.name),
-      scale(unit),
-      triangles(std::vector<uvec3>(checked(mesh).begin(), mesh.triangles.end())),
-      non_finite_triangles(count_non_finite_triangles(mesh)) {
-    move_to(mesh.positions);
-}
-
-Geometry::Geometry(const SharedMesh& mesh, float unit)
-    : name(mesh.name),
-      scale(unit),
-      positions(mesh.positions),
-      triangles((checked(mesh), mesh.triangles)),
-      non_finite_triangles(count_non_finite_triangles(mesh)) {
-    if (unit != 1) move_to(mesh.positions);
+    : name(mesh.name), scale(unit), triangles(checked(mesh)), non_finite_triangles(count_non_finite_triangles(mesh)) {
+    if (mesh.shared && unit == 1)
+        positions = mesh.shared->positions;
+    else
+        move_to(mesh.positions);
 }
 
 Geometry::Geometry(const DeviceMesh& mesh, float unit) : name(mesh.name), scale(unit) {

@@ -50,8 +50,6 @@ struct Geometry {
     // Throws Error naming the mesh and the limit: an index out of range, more than max_primitives.
     explicit Geometry(const MeshView& mesh) : Geometry(mesh, near_unit(mesh.positions)) {}
     Geometry(const MeshView& mesh, float unit);
-    // Shares its arrays; in a unit of 1 also positions.
-    Geometry(const SharedMesh& mesh, float unit);
     // Throws Error as check_device_mesh() does.
     Geometry(const DeviceMesh& mesh, float unit);
     // Throws Error naming the box: one that is empty or not finite, or more than max_primitives.

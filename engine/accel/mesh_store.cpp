@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include "engine/accel/batches.h"
 #include "engine/core/device_list.h"
 #include "engine/scene/mesh.h"
 #include "engine_copy_floats.spv.h"
@@ -20,27 +21,35 @@ MeshGather::Item gather_item(const Geometry& geometry, const PackedMesh& target)
     return {&*geometry.device, geometry.name, geometry.scale, target};
 }
 
+constexpr std::uint64_t most_bytes = 1 << 30;  // of a buffer of several meshes
+
 std::uint64_t triangles_at(const Geometry& geometry) { return geometry.vertex_count() * sizeof(vec3); }
 
-}  // namespace
-
-std::vector<MeshOnDevice> upload_meshes(Commands& commands, std::span<const MeshView> meshes) {
+// Appends them, in one buffer.
+void upload_run(Commands& commands, std::span<const MeshView> meshes, std::vector<MeshOnDevice>& uploaded) {
     std::vector<Commands::Region> regions;
-    std::vector<std::uint64_t> offsets;
     std::uint64_t bytes = 0;
-    for (const MeshView& mesh : meshes) {
-        offsets.push_back(bytes);
+    for (const MeshView& mesh : meshes)
         for (const std::span<const std::byte> part : {std::as_bytes(mesh.positions), std::as_bytes(mesh.triangles)}) {
             regions.push_back({bytes, part});
             bytes += part.size();
         }
-    }
-    if (bytes == 0) return std::vector<MeshOnDevice>(meshes.size());
     const auto buffer = std::make_shared<Buffer>(commands.context(), BufferDesc{.name = "meshes", .bytes = bytes});
     commands.upload_regions(*buffer, regions);
-    std::vector<MeshOnDevice> uploaded;
     for (std::size_t i = 0; i < meshes.size(); ++i)
-        uploaded.push_back(mesh_in(buffer, offsets[i], meshes[i].positions.size(), 1));
+        uploaded.push_back(bytes ? mesh_in(buffer, regions[2 * i].offset, meshes[i].positions.size(), 1)
+                                 : MeshOnDevice{});
+}
+
+}  // namespace
+
+std::vector<MeshOnDevice> upload_meshes(Commands& commands, std::span<const MeshView> meshes) {
+    std::vector<std::uint64_t> bytes;
+    for (const MeshView& mesh : meshes) bytes.push_back(mesh.positions.size_bytes() + mesh.triangles.size_bytes());
+    std::vector<MeshOnDevice> uploaded;
+    const auto pass = commands.pass("meshes");
+    for (const Batches::Run& run : cut_into_batches(bytes, most_bytes).runs)
+        upload_run(commands, meshes.subspan(run.first, run.count), uploaded);
     return uploaded;
 }
 

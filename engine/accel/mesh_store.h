@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Positions and triangles of meshes in device memory, once each: for accelerators, and for analyses, contacts and
-// distances that ask for the same mesh.
+// The positions and triangles of meshes in device memory. Accelerators own them and lend them to analyses, contacts and
+// distances.
 #pragma once
 
 #include <memory>
@@ -28,7 +28,7 @@ struct MeshOnDevice {
     explicit operator bool() const { return buffer != nullptr; }
 };
 
-// Records the upload of meshes in host memory, all into one buffer.
+// Records the upload of meshes in host memory, many into one buffer.
 std::vector<MeshOnDevice> upload_meshes(Commands& commands, std::span<const MeshView> meshes);
 // Returns the memory of all of them, each buffer once.
 std::uint64_t bytes_of(std::span<const MeshOnDevice> meshes);
@@ -80,7 +80,8 @@ class MeshStore {
     // Returns the stored meshes, by item.
     std::vector<StoredMesh*> commit(Staged&& staged, SyncPoint done);
 
-    // Returns the mesh as the last sync left it; records the commands that bring it to the device if it is not there.
+    // Returns the mesh as the last sync left it, one in place as it is now. If it is not on the device, this records
+    // the commands that bring it there; the caller drops it unless they are submitted.
     MeshOnDevice lend(Commands& commands, const Geometry& geometry, StoredMesh& stored) const;
     // Waits. Downloads the part of the mesh that the host lacks, in units of the geometry's scale.
     void download(Geometry& geometry, const StoredMesh& stored) const;

@@ -33,9 +33,13 @@ std::uint64_t cell(double offset, double scale) {
     return static_cast<std::uint64_t>(std::min(offset * scale, cells_per_axis - 1));
 }
 
+// For fewer keys, threads take longer to start than the work that they share.
+unsigned threads_for(std::size_t keys) { return keys < 1 << 15 ? 1 : 0; }
+
 // Sorts parts of the array, then merges neighbours; no two keys are equal, so that the result is that of one sort.
 void sort_in_parallel(std::vector<Keyed>& keys) {
-    const std::size_t parts = keys.size() < 1 << 15 ? 1 : 16;
+    if (threads_for(keys.size()) == 1) return std::sort(keys.begin(), keys.end());
+    constexpr std::size_t parts = 16;
     const auto begin_of = [&](std::size_t part) {
         return keys.begin() + static_cast<std::ptrdiff_t>(keys.size() * part / parts);
     };
@@ -60,13 +64,17 @@ std::vector<uint> morton_order(std::span<const vec3> centers) {
     const double scale = extent > 0 ? cells_per_axis / extent : 0;
 
     std::vector<Keyed> keys(centers.size());
-    parallel_for(centers.size(), [&](std::size_t i) {
-        const dvec3 p = dvec3(centers[i]) - lo;
-        const std::uint64_t code = is_last(centers[i]) ? UINT64_MAX
-                                                       : spread(cell(p.x, scale)) << 2 | spread(cell(p.y, scale)) << 1 |
-                                                             spread(cell(p.z, scale));
-        keys[i] = {code, static_cast<uint>(i)};
-    });
+    parallel_for(
+        centers.size(),
+        [&](std::size_t i) {
+            const dvec3 p = dvec3(centers[i]) - lo;
+            const std::uint64_t code =
+                is_last(centers[i])
+                    ? UINT64_MAX
+                    : spread(cell(p.x, scale)) << 2 | spread(cell(p.y, scale)) << 1 | spread(cell(p.z, scale));
+            keys[i] = {code, static_cast<uint>(i)};
+        },
+        threads_for(keys.size()));
     sort_in_parallel(keys);
     std::vector<uint> order(keys.size());
     std::transform(keys.begin(), keys.end(), order.begin(), [](const Keyed& key) { return key.index; });
@@ -75,14 +83,17 @@ std::vector<uint> morton_order(std::span<const vec3> centers) {
 
 std::vector<vec3> triangle_centers(std::span<const vec3> positions, std::span<const uvec3> triangles) {
     std::vector<vec3> centers(triangles.size());
-    parallel_for(triangles.size(), [&](std::size_t i) {
-        const uvec3 triangle = triangles[i];
-        const vec3 a = positions[triangle.x], b = positions[triangle.y], c = positions[triangle.z];
-        Bounds box{a, a};
-        box.include(b);
-        box.include(c);
-        centers[i] = is_finite(a) && is_finite(b) && is_finite(c) ? box.center() : vec3(NAN);
-    });
+    parallel_for(
+        triangles.size(),
+        [&](std::size_t i) {
+            const uvec3 triangle = triangles[i];
+            const vec3 a = positions[triangle.x], b = positions[triangle.y], c = positions[triangle.z];
+            Bounds box{a, a};
+            box.include(b);
+            box.include(c);
+            centers[i] = is_finite(a) && is_finite(b) && is_finite(c) ? box.center() : vec3(NAN);
+        },
+        threads_for(centers.size()));
     return centers;
 }
 

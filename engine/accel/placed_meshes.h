@@ -16,17 +16,17 @@ class PlacedMeshes {
     PlacedMeshes() = default;
     // The scene must outlive it.
     PlacedMeshes(const Scene& scene);
-    // Takes what an accelerator holds after a sync, which may change or end: see scene_of().
+    // Takes what an accelerator holds after a sync: see scene_of().
     explicit PlacedMeshes(AbstractAccel& accel);
-    // What the views refer to must outlive it.
+    // The arrays that the views refer to must outlive it.
     PlacedMeshes(std::span<const MeshView> some_meshes, std::span<const MeshInstance> some_instances)
         : meshes(some_meshes.begin(), some_meshes.end()), instances(some_instances.begin(), some_instances.end()) {}
     PlacedMeshes(PlacedMeshes&&) noexcept = default;
     PlacedMeshes& operator=(PlacedMeshes&&) noexcept = default;
 
     const MeshView& mesh_of(uint instance) const { return meshes[instances[instance].mesh]; }
-    // Returns some of the meshes, by index. Those of an accelerator are the same memory that it has itself, unless it
-    // is of another device; it must not have changed since. The others are uploaded.
+    // Returns some of the meshes, by index. An accelerator of this device, which must be there unchanged, lends them;
+    // the others are uploaded.
     std::vector<MeshOnDevice> on_device(Commands& commands, std::span<const uint> some) const;
 
     std::vector<MeshView> meshes;

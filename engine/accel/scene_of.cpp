@@ -83,8 +83,13 @@ MeshOnDevice AccelBackend::lend_mesh(Commands& commands, AccelHandle handle) {
 }
 
 SharedMesh AccelBackend::mesh(AccelHandle handle) const {
-    const Geometry held = geometry(handle);
-    return {held.name, held.given_positions(), held.triangles};
+    const auto shared = [](const Geometry& geometry) {
+        return SharedMesh{geometry.name, geometry.given_positions(), geometry.triangles};
+    };
+    const HeldGeometry& held = *live(handle, "mesh").held;
+    if (held.geometry.device || held.stored.device_wrote) return shared(geometry(handle));
+    check_mesh_is_kept(held, "mesh");
+    return shared(held.geometry);
 }
 
 std::vector<uint> AccelBackend::face_metadata(AccelHandle handle) const {

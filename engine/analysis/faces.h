@@ -50,7 +50,7 @@ struct Faces::State {
     std::vector<MeshOnDevice> meshes;
     Buffer instance_buffer, face_buffer;
 
-    // Numbers the faces, computes their areas and copies their triangles to the device.
+    // Numbers the faces, computes their areas and brings their meshes to the device.
     void fill(Context& context);
     FaceTable table() const { return {instance_buffer.ref<FacesOfInstance>(), face_buffer.ref<Face>()}; }
 };

@@ -9,8 +9,8 @@ namespace twinray {
 // Exact for coordinates in the range of exact_sign.h.
 PairClass exact_class(const WorldTriangle& a, const WorldTriangle& b);
 
-// The same for triangles of meshes: those of one instanced mesh that share vertices are separate unless they have more
-// in common than these and the edge between two of them.
+// The same for triangles of meshes: two of one run that share vertices are separate unless they have more in common
+// than these and the edge between two of them.
 PairClass exact_class(const WorldTriangle& a, const TriangleName& a_name, const WorldTriangle& b,
                       const TriangleName& b_name);
 

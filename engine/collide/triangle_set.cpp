@@ -44,9 +44,9 @@ std::vector<uint> ids_by_position(std::span<const vec3> positions) {
     return ids;
 }
 
-template <class T>
-std::uint64_t address_of(std::span<const T> values) {
-    return reinterpret_cast<std::uint64_t>(values.data());
+// Returns null for an empty array.
+Uints address_of(std::span<const uint> values) {
+    return {values.empty() ? 0 : reinterpret_cast<std::uint64_t>(values.data())};
 }
 
 // Returns the meshes of the instances, ascending, each once.
@@ -66,7 +66,10 @@ TriangleRun make_run(const MeshOnDevice& on_device, Uints vertex_ids, const Tran
 }
 
 MeshOnDevice on_host(const MeshView& mesh) {
-    return {{}, {{address_of(mesh.positions)}, {address_of(mesh.triangles)}}, 1};
+    return {{},
+            {{reinterpret_cast<std::uint64_t>(mesh.positions.data())},
+             {reinterpret_cast<std::uint64_t>(mesh.triangles.data())}},
+            1};
 }
 
 }  // namespace
@@ -95,38 +98,49 @@ TriangleSet::TriangleSet(Context& context)
       kernel_(context, {.name = "collide_world_triangles", .spirv = collide_world_triangles_spirv}) {}
 
 void TriangleSet::set(const PlacedMeshes& placed, std::span<const uint> chosen, SharedVertices shared) {
-    count_ = 0;
+    clear();
     std::uint64_t total = 0;
     for (const uint index : chosen) total += placed.mesh_of(index).triangles.size();
     if (total > BoxTree::max_count)
         fail("the instances in question have ", total, " triangles; at most ", BoxTree::max_count, " fit");
-    runs_.clear();
-    chosen_.assign(chosen.begin(), chosen.end());
-    vertex_ids_.assign(placed.meshes.size(), {});
+    vertex_ids_.resize(placed.meshes.size());
     if (total == 0) return;
     const std::vector<uint> used = meshes_of(placed, chosen);
     if (shared == SharedVertices::by_position)
         for (const uint mesh : used) vertex_ids_[mesh] = ids_by_position(placed.meshes[mesh].positions);
     Commands commands(context_, "collide meshes");
-    meshes_ = placed.on_device(commands, used);
+    std::vector<MeshOnDevice> on_device = placed.on_device(commands, used);
     const std::vector<Uints> ids = upload_vertex_ids(commands);
-    std::vector<TriangleRun> table;
+    std::vector<TriangleRun> runs, table;
+    std::size_t count = 0;
     for (const uint index : chosen) {
         const auto& [mesh, transform] = placed.instances[index];
         const auto place = static_cast<std::size_t>(std::ranges::lower_bound(used, mesh) - used.begin());
-        table.push_back(make_run(meshes_[place], ids[mesh], transform, count_));
-        runs_.push_back(make_run(on_host(placed.meshes[mesh]), {address_of(std::span<const uint>(vertex_ids_[mesh]))},
-                                 transform, count_));
-        count_ += placed.meshes[mesh].triangles.size();
+        table.push_back(make_run(on_device[place], ids[mesh], transform, count));
+        runs.push_back(make_run(on_host(placed.meshes[mesh]), address_of(vertex_ids_[mesh]), transform, count));
+        count += placed.meshes[mesh].triangles.size();
     }
     table_ = Buffer(context_, {.name = "collide runs", .bytes = table.size() * sizeof(TriangleRun)});
-    world_triangles_ = Buffer(context_, {.name = "collide triangles", .bytes = count_ * sizeof(WorldTriangle)});
-    names_ = Buffer(context_, {.name = "collide names", .bytes = count_ * sizeof(TriangleName)});
+    world_triangles_ = Buffer(context_, {.name = "collide triangles", .bytes = count * sizeof(WorldTriangle)});
+    names_ = Buffer(context_, {.name = "collide names", .bytes = count * sizeof(TriangleName)});
     {
         const auto pass = commands.pass("collide runs");
         commands.upload(table_, std::span<const TriangleRun>(table));
     }
     commands.submit();
+    chosen_.assign(chosen.begin(), chosen.end());
+    runs_ = std::move(runs);
+    meshes_ = std::move(on_device);
+    count_ = count;
+}
+
+// It is empty then, until set() has done everything.
+void TriangleSet::clear() {
+    count_ = 0;
+    runs_.clear();
+    chosen_.clear();
+    meshes_.clear();
+    vertex_ids_.clear();
 }
 
 // Returns where they are, by mesh; absent where vertices are not shared by position.

@@ -47,6 +47,7 @@ class TriangleSet {
     }
 
   private:
+    void clear();
     std::vector<Uints> upload_vertex_ids(Commands& commands);
     std::size_t run_of(uint item) const;
 

@@ -284,6 +284,7 @@ const std::vector<OpenEdge>& PointQuery::State::open_edges() {
     if (edges) return *edges;
     std::vector<std::optional<std::vector<BoundaryEdge>>> of_mesh(placed.meshes.size());
     std::vector<OpenEdge> all;
+    if (triangles.count() == 0) return edges.emplace();
     uint first_item = 0;
     for (const MeshInstance& instance : placed.instances) {
         auto& boundary = of_mesh[instance.mesh];

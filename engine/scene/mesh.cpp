@@ -115,6 +115,12 @@ Bounds bounds_of(std::span<const PlacedMesh> placed) {
     return bounds;
 }
 
+SharedMesh::operator MeshView() const {
+    MeshView view(name, positions, triangles);
+    view.shared = this;
+    return view;
+}
+
 void check_indices(const MeshView& mesh) {
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
         for (int corner = 0; corner < 3; ++corner)

@@ -35,13 +35,11 @@ class AbstractAccel {
     AbstractAccel(const AbstractAccel&) = delete;
     AbstractAccel& operator=(const AbstractAccel&) = delete;
 
-    // Adds one geometry with one instance. The mesh is copied. An empty mesh is allowed and never hit.
+    // Adds one geometry with one instance. The mesh is copied; the arrays of a SharedMesh are shared, its positions
+    // only if the geometry is built in units of 1. An empty mesh is allowed and never hit.
     AccelHandle push(const MeshView& mesh, const Transform& transform = {}, const InstanceOptions& options = {});
     // Adds one geometry with one instance per transform; options is empty or has one entry per transform.
     AccelHandle push(const MeshView& mesh, std::span<const Transform> transforms,
-                     std::span<const InstanceOptions> options = {});
-    // The same without a copy of the arrays; HwTlas copies the positions, unless it builds in units of 1.
-    AccelHandle push(const SharedMesh& mesh, std::span<const Transform> transforms,
                      std::span<const InstanceOptions> options = {});
     // The same for boxes; only traces with a program can hit them.
     AccelHandle push(const BoxesView& boxes, const Transform& transform = {}, const InstanceOptions& options = {});
@@ -108,7 +106,8 @@ class AbstractAccel {
     std::size_t n_geometries() const;                    // a mesh or boxes of several handles count once
     std::size_t n_primitives(AccelHandle handle) const;  // triangles or boxes of its geometry; 0 for a dead handle
     std::vector<AccelHandle> handles() const;            // those alive, in push order
-    // Returns the handle's mesh, as kernels have left it; an empty one for boxes. Waits if only the device has it.
+    // Returns the handle's mesh, as kernels have left it; an empty one for boxes. Waits if only the device has it, and
+    // then needs work recorded by sync(Commands&) to be submitted.
     SharedMesh mesh(AccelHandle handle) const;
 
     // Builds what changed since the last sync and returns the point at which the GPU has built it; does nothing if

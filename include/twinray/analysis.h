@@ -78,14 +78,14 @@ dvec3 area_vector(const Scene& scene, Face face);
 // Returns a checksum of the data that distinguishes faces of scenes: meshes, instances, materials of triangles.
 std::uint32_t checksum_of(const Scene& scene);
 
-// The faces of a scene at the time when this is made, with a copy of their triangles on the device.
+// The faces of a scene as they are when this is made.
 class Faces {
   public:
-    // The scene must outlive it. Throws Error above 2^32 - 16 faces, and for a coordinate above 2^124 in world space:
-    // distances would overflow.
+    // The scene must outlive it, unchanged. Throws Error above 2^32 - 16 faces, and for a coordinate above 2^124 in
+    // world space: distances would overflow.
     Faces(Context& context, const Scene& scene);
     Faces(Context& context, const Scene&& scene) = delete;
-    // Takes what an accelerator holds after a sync, as scene_of() does.
+    // Takes what an accelerator holds after a sync, as scene_of() does. On the device both may share the meshes.
     explicit Faces(AbstractAccel& accel);
     Faces(Faces&&) noexcept;
     Faces& operator=(Faces&&) noexcept;
@@ -94,7 +94,7 @@ class Faces {
     Face operator[](std::size_t face) const;                  // by its number
     const std::vector<double>& areas() const;                 // by face
     const std::vector<std::size_t>& triangle_counts() const;  // by instance
-    std::uint64_t bytes() const;                              // device memory
+    std::uint64_t bytes() const;                              // device memory, with that of shared meshes
     // These two need Faces of an accelerator and throw Error for others.
     // Returns whether the accelerator has not been synced with edits since.
     bool is_current(AbstractAccel& accel) const;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Basic types of twinray: errors, vectors, affine maps, boxes, rays, hits and meshes.
 //
-// bytes because GLSL holds them as two words.
+//     twinray::Mesh mesh = twinray::make_icosphere(4);
 //     mesh.positions.push_back(glm::vec3(0, 1, 2));  // vectors of any library with x, y and z
 //
 // Lengths are in the units of the scene, angles in radians, indices count from 0.
@@ -232,6 +232,7 @@ struct Bounds {
 };
 
 // Eight bytes: a device address when pushed to the GPU, a host address in code that runs on both. They are aligned to
+// 4 bytes because GLSL holds them as two words.
 using Address [[gnu::aligned(4)]] = std::uint64_t;
 using Uint64 [[gnu::aligned(4)]] = std::uint64_t;
 
@@ -302,6 +303,7 @@ struct MeshView {
     std::span<const uint> face_metadata = {};        // lets kernels tell triangles apart, such as a material
     std::span<const AttributeView> attributes = {};  // further ones; meshes of an accelerator may share their names
     std::span<const std::byte> metadata = {};        // for the mesh as a whole: any struct that is copied as bytes
+    const struct SharedMesh* shared = nullptr;       // whose arrays these are; accelerators then share them
 
     // Takes positions and triangles only.
     MeshView(std::string_view mesh_name, std::span<const vec3> points, std::span<const uvec3> vertex_indices)
@@ -310,11 +312,13 @@ struct MeshView {
     MeshView(const Mesh& mesh);
 };
 
-// An array that its copies share and nobody changes.
+// An array of constants that its copies share.
 template <class T>
 class SharedArray : public std::span<const T> {
   public:
     SharedArray() = default;
+    SharedArray(const SharedArray&) = default;  // also in place of moves
+    SharedArray& operator=(const SharedArray&) = default;
     // Takes the items.
     SharedArray(std::vector<T>&& items) : SharedArray(std::make_shared<const std::vector<T>>(std::move(items))) {}
 
@@ -325,13 +329,13 @@ class SharedArray : public std::span<const T> {
     std::shared_ptr<const std::vector<T>> items_;
 };
 
-// A mesh that a host and an accelerator share: AbstractAccel::push(), AbstractAccel::mesh().
+// A mesh that a host and accelerators share: AbstractAccel::push(), update() and mesh().
 struct SharedMesh {
     std::string name;
     SharedArray<vec3> positions;
     SharedArray<uvec3> triangles;
 
-    operator MeshView() const { return {name, positions, triangles}; }  // valid while this lives
+    operator MeshView() const;  // valid while this lives
 };
 
 // A mesh as an instance places it, by its index among meshes.

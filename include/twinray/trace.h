@@ -261,7 +261,7 @@ struct MemoryUsage {
     std::uint64_t vertices = 0;    // copies of meshes whose vertices move, or that are refined or have surfaces
     std::uint64_t surfaces = 0;    // the other data that AccelOptions::keeps_surfaces keeps
     std::uint64_t scratch = 0;     // kept from one sync to the next
-    std::uint64_t host = 0;        // in host memory: meshes (AccelOptions::keeps_meshes), boxes and records
+    std::uint64_t host = 0;        // in host memory: meshes, also those that are shared, boxes and records
 
     std::uint64_t structures() const { return geometries + scene; }  // both levels
     // All that is on the device.

@@ -7,6 +7,7 @@
 #include "engine/core/error.h"
 #include "engine/core/vma.h"
 #include <twinray/geometry.h>
+#include <twinray/queries.h>
 #include "engine/core/vulkan.h"
 #include "tests/accel/fault_world.h"
 #include "tests/support/caller.h"
@@ -188,6 +189,35 @@ TEST_P(Faults, CreatingTheAccelerator) {
     }
     around.push_base();
     around.check_hits();
+    check_end(around);
+}
+
+// The accelerator lends a copy of its meshes, which a failure may leave without its contents. One collider is used
+// throughout, and ids of vertices come and go.
+TEST_P(Faults, ContactsOfItsMeshes) {
+    World around = world();
+    const Mesh box = make_box(vec3(0), vec3(1));
+    around.accel().push(box, std::vector{Transform{}, Transform::translation({0.5f, 0.25f, 0.125f})});
+    auto collider = std::make_unique<NarrowPhase>(around.context());
+    const auto contacts_by = [&](SharedVertices shared) {
+        std::vector<std::pair<uint, uint>> pairs;
+        for (const TriangleContact& contact : collider->find(around.accel(), {.shared = shared}).list)
+            pairs.emplace_back(contact.triangle_a, contact.triangle_b);
+        return pairs;
+    };
+    const auto expected = contacts_by(SharedVertices::by_index);
+    EXPECT_FALSE(expected.empty());
+    for (std::uint64_t n = 1; !HasFailure(); ++n) {
+        faults().inject({.first = n});
+        std::string what;
+        outcome_of([&] { contacts_by(SharedVertices::by_position); }, &what);
+        faults().heal();
+        if (!faults().injected()) break;
+        count_point();
+        SCOPED_TRACE(text("call ", n, ", ", faults().failed(), ": ", what));
+        EXPECT_EQ(contacts_by(SharedVertices::by_index), expected);
+    }
+    collider.reset();
     check_end(around);
 }
 
