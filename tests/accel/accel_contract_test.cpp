@@ -413,7 +413,7 @@ TEST_P(Accel, HitsAreVisibleToLaterPassesOfTheSameCommands) {
     EXPECT_EQ(download<Hit>(context(), copy, 1).front().t, 10.0f);
 }
 
-// Where hardware finds two triangles at one distance, the driver chooses.
+// If hardware finds two triangles at one distance, the driver chooses.
 TEST_P(Accel, EqualDistancesAreDecidedByInstanceThenPrimitive) {
     Mesh twice = square(0);
     for (const uvec3 triangle : square(0).triangles) twice.triangles.push_back(triangle);
@@ -472,7 +472,7 @@ TEST_P(Accel, TransformsComeFromDeviceMemory) {
     EXPECT_EQ(closest(down(2.5f, 0.25f)).t, 9.0f);
     EXPECT_EQ(closest(down(4.5f, 0.25f)).custom_index, 2u);
     EXPECT_EQ(accel().get_instance(handle, 2).transform, moved[2]);
-    // A host edit that comes later wins, and only where it was made.
+    // A later host edit wins, but only where it was made.
     accel().update_transforms(handle, source.ref<Transform>(), 3);
     accel().update_transform_at(handle, 0, Transform::translation({0, 0, 5}));
     EXPECT_EQ(closest(down(0.5f, 0.25f)).t, 5.0f);
@@ -556,7 +556,7 @@ TEST_P(Accel, HandlesShareAGeometry) {
     EXPECT_EQ(accel().handle_of(closest(down(2.0f, 0.0f))), second);
     EXPECT_EQ(accel().handle_of(closest(down(0.0f, 0.0f))), first);
     EXPECT_EQ(accel().index_in_handle(closest(down(4.0f, 0.0f))), 1u);
-    // A change applies to all of them, and it lives as long as one of them.
+    // A change applies to all instances, and the geometry lives as long as one of its handles.
     accel().update(first, square(3));
     EXPECT_EQ(closest(down(4.5f, 0.25f)).t, 7.0f);
     EXPECT_TRUE(accel().erase(first));
@@ -577,7 +577,7 @@ TEST_P(Accel, AHandleHasTheBoxOfItsGeometry) {
     Mesh mesh = make_box(vec3(-1, -2, -3), vec3(4, 5, 6));
     mesh.normals.clear();
     mesh.uvs.clear();
-    mesh.positions.push_back(vec3(100));  // of no triangle
+    mesh.positions.push_back(vec3(100));  // no triangle uses it
     const AccelHandle handle = accel().push(mesh, Transform::translation({50, 0, 0})), empty = accel().push(Mesh{});
     expect_error("edits are pending", [&] { accel().object_bound(handle); });
     accel().sync();
@@ -642,7 +642,7 @@ TEST_P(Accel, UnusableTransformsFromTheDeviceAreInactiveAndCounted) {
     EXPECT_TRUE(was_logged("3 instances have a transform that is singular or not finite"));
 }
 
-// Scales along axes, then a rotation, in either order.
+// Combines scales along axes with a rotation, in either order.
 TEST_P(Accel, EveryTransformThatPushAcceptsIsActive) {
     std::mt19937 random(1);
     const AccelHandle base = accel().push(make_box(vec3(-1), vec3(1)));
@@ -660,7 +660,7 @@ TEST_P(Accel, EveryTransformThatPushAcceptsIsActive) {
     for (const float tiny : {1e-38f, 1e-40f})
         expect_error("denormal", [&] { accel().push(square(0), Transform::scaling(vec3(tiny))); });
     accel().sync();
-    accel().world_bound();  // counts those that are not
+    accel().world_bound();  // counts inactive ones
     accel().update_transform_at(base, 0, Transform::translation({0, 0, 1}));
     accel().sync();
     EXPECT_FALSE(was_logged("inactive"));
@@ -804,7 +804,7 @@ TEST_P(Accel, TheWorldBoundIsThatOfFloat64RoundedOutward) {
     }
 }
 
-// As the count of rays of a trace, which reads it on the device.
+// The bound serves as the ray count of a trace, which reads it on the device.
 TEST_P(Accel, KernelsReadTheWorldBoundOnTheDevice) {
     const AccelHandle handle = accel().push(square(0), std::vector<Transform>(3));
     const Buffer source =
@@ -856,7 +856,8 @@ TEST_P(Accel, TinyAndHugeScenesAreHitLikeOrdinaryOnes) {
     }
 }
 
-// Everything at once, checked by the reference: no leak, no false hit of ours; whatever the driver does has a name.
+// Checks everything at once against the reference: ours has no leak and no false hit; whatever the driver does has a
+// name.
 TEST_P(Accel, AgreesWithTheReferenceOnRandomScenes) {
     std::mt19937 random(2026);
     std::uniform_real_distribution<float> unit(-1, 1);

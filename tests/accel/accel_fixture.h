@@ -37,15 +37,16 @@ class AccelTest : public VulkanTest, public ::testing::WithParamInterface<Kind> 
         VulkanTest::TearDown();
     }
 
-    // Not the driver: held to every rule to the letter.
+    // Returns whether the accelerator is ours, not the driver's: ours keeps every rule to the letter.
     bool is_ours() const { return GetParam() == Kind::software || GetParam() == Kind::reference; }
-    // Not the order of the input alone, whatever the driver makes of it.
+    // Returns whether costs are those of trees, not those of the input's order, which a driver builds from as it likes.
     bool measures_its_trees() const { return is_ours() || context().state().tuning().builds_in_input_order; }
-    // For a whole scene. A GPU's driver may invert instances' maps by a determinant in float32 (docs/requirements.md).
+    // Returns the smallest scale of a whole scene. A GPU's driver may invert instances' maps by a determinant in
+    // float32 (docs/requirements.md).
     float smallest_scale() const {
         return is_ours() || context().state().tuning().row == TuningRow::cpu_driver ? 1e-18f : 1e-12f;
     }
-    // On this device; the reference has all on any.
+    // Returns whether the accelerator has the level on this device; the reference has all levels on any device.
     bool has_level(Level level) const {
         if (GetParam() == Kind::reference) return true;
         const auto capability_on = is_ours() ? SwTlas::capability_on : HwTlas::capability_on;
@@ -64,7 +65,7 @@ class AccelTest : public VulkanTest, public ::testing::WithParamInterface<Kind> 
     Hit closest(const Ray& ray) { return accel().closest_hits(std::span(&ray, 1)).front(); }
     Hit any(const Ray& ray) { return accel().any_hits(std::span(&ray, 1)).front(); }
 
-    // Writes as a kernel would, that many bytes behind where a handle's instances begin.
+    // Writes as a kernel would, `offset` bytes behind the start of a handle's instances.
     template <class T>
     void write_instances(const InstanceRange& range, std::uint64_t offset, const T& value) {
         Commands commands(context(), "write");
@@ -76,7 +77,7 @@ class AccelTest : public VulkanTest, public ::testing::WithParamInterface<Kind> 
         commands.submit();
     }
 
-    // Classes of the hits that this accelerator found.
+    // Returns the classes of the hits that this accelerator found.
     HitClassCounts classes_of(const ReferenceScene& reference, std::span<const Ray> rays, std::span<const Hit> hits) {
         const std::span<const Hit> none;
         HitClassCounts classes;
@@ -86,7 +87,7 @@ class AccelTest : public VulkanTest, public ::testing::WithParamInterface<Kind> 
         return classes;
     }
 
-    // Through this very view.
+    // Traces the ray through this view.
     Hit trace(const AccelView& view, const Ray& ray) {
         const Buffer rays = device_copy(std::vector<Ray>{ray}), hits(context(), {.name = "hits", .bytes = sizeof(Hit)});
         Commands commands(context(), "trace");
@@ -128,7 +129,7 @@ inline Ray down(float x, float y) { return {vec3(x, y, 10), 0, vec3(0, 0, -1), I
                                                ::twinray::test::Kind::pipeline),                                  \
                              ::twinray::test::name_of_kind)
 
-// Of the contract, which the reference answers too.
+// For tests of the contract, which the reference keeps as well.
 #define TWINRAY_OVER_EVERY_ACCEL_AND_THE_REFERENCE(Fixture)                                                        \
     INSTANTIATE_TEST_SUITE_P(Every, Fixture,                                                                       \
                              ::testing::Values(::twinray::test::Kind::software, ::twinray::test::Kind::ray_query,  \

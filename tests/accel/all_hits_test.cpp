@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Every hit of rays: listed, against closest hits that begin behind each other; and one by one in kernels of users.
+// All hits of rays: as lists, compared with closest hits that each begin behind the one before; and one by one in
+// users' kernels.
 #include <twinray/queries.h>
 
 #include <algorithm>
@@ -39,7 +40,7 @@ TEST_P(AllHitsTest, EachTriangleOnTheWayOnceInOrder) {
     ASSERT_EQ(found.first.size(), rays.size() + 1);
     std::size_t total = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
-        // Closest hits, each from behind the one before: hits of random triangles are apart.
+        // Traces closest hits, each from behind the one before: hits of random triangles are apart.
         Ray rest = rays[i];
         for (const Hit& hit : found.of(i)) {
             const Hit next = closest(rest);
@@ -121,7 +122,7 @@ TEST_P(NextHit, GivesAllHitsInTheirOrder) {
     if (accel().capability(Feature::kernel_queries).support == Support::unsupported)
         return;  // a pipeline has no queries
     const Mesh soup = make_soup(400, 5, 0.5f), square = test::square(0.5f);
-    const Transform twice[] = {Transform{}, Transform{}};  // at one distance, each of them
+    const Transform twice[] = {Transform{}, Transform{}};  // both are hit at one distance
     accel().push(soup, Transform::translation({0.1f, 0, 0}));
     accel().push(square, twice);
     accel().sync();
@@ -160,7 +161,7 @@ TEST_P(NextHit, GivesAllHitsInTheirOrder) {
     EXPECT_GT(ties, 100u);
 }
 
-// Specialised for one mesh where it stands, then for whatever comes.
+// The kernel is specialised for one mesh without a transform, then for whatever the scene gets.
 TEST_P(NextHit, AQueryKernelFollowsWhatTheSceneNeeds) {
     if (accel().capability(Feature::kernel_queries).support == Support::unsupported) return;
     QueryKernel<NextHitArgs> kernel(accel(), {.name = "test_next_hit"}, test_next_hit_sw_spirv, test_next_hit_hw_spirv);
@@ -183,7 +184,7 @@ TEST_P(NextHit, AQueryKernelFollowsWhatTheSceneNeeds) {
     EXPECT_EQ(count(), 3);
 }
 
-// And what was recorded before is given up: nothing waits for it.
+// The commands recorded before are given up, and nothing waits for them.
 TEST_P(NextHit, AKernelThatTheDeviceCannotRunIsRefused) {
     Commands commands(context(), "given up");
     accel().push(test::square(0.5f));

@@ -21,7 +21,7 @@ class Certified : public test::VulkanTest {
         if (SwTlas::capability_on(context().properties(), Feature::level_certified).support == Support::unsupported)
             TWINRAY_LACKS("float64", context().properties().name + " has no float64");
     }
-    // Rays for which SwTlas names another hit than the reference.
+    // Returns the number of rays for which SwTlas names another hit than the reference.
     std::size_t wrong(const Scene& scene, std::span<const Ray> rays, Level level, const TraceDesc& desc = {}) {
         SwTlas accel(context(), {.level = level, .compiles_in_background = false});
         for (const Instance& instance : scene.instances) accel.push(scene.meshes[instance.mesh], instance.transform);
@@ -87,7 +87,7 @@ TEST_F(Certified, NearlySingularTransformsAreHitAsTheyWereGiven) {
     }
 }
 
-// Moving an origin rounds it, and maps that squeeze an axis make much of that.
+// Moving an origin rounds it, and maps that squeeze an axis magnify that error.
 TEST_F(Certified, FarRaysHitSqueezedInstances) {
     for (const float squeeze : {1e-3f, 1e-6f}) {
         const Scene scene =

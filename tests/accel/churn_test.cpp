@@ -117,7 +117,7 @@ void Churn::move_by_device() {
     accel().update_transforms(placed.handle, placed.sources.back().ref<Transform>(), placed.transforms.size());
 }
 
-// Most of the time a small change; now and then a corner that is not finite.
+// Returns slightly changed positions most of the time; now and then a corner is not finite.
 std::vector<vec3> Churn::random_positions(const Mesh& mesh) {
     std::vector<vec3> positions = mesh.positions;
     const float size = random_() % 4 == 0 ? 1.0f : 0.05f;
@@ -177,7 +177,7 @@ void Churn::expect_exact_counts() {
     ASSERT_EQ(accel().n_geometries(), placed_.size());
 }
 
-// Half of the rays: few would meet anything otherwise.
+// Aims half of the rays at triangles, since few would hit anything otherwise.
 void Churn::aim_at_triangles(const Scene& scene, std::vector<Ray>& rays) {
     if (scene.instances.empty()) return;
     for (std::size_t i = 0; i < rays.size(); i += 2) {
@@ -207,7 +207,7 @@ void Churn::expect_agreement(std::size_t count) {
     ASSERT_EQ(classes.faults_of_ours() + classes.faults_of_hardware(), 0u);
 }
 
-// Ten edits a round. The pipeline differs from ray queries in how it traces, not in what edits do.
+// Makes ten edits per round. The pipeline differs from ray queries in how it traces, not in what edits do.
 TEST_P(Churn, LongHistoriesOfEditsAgreeWithTheReference) {
     const int rounds = GetParam() == test::Kind::pipeline ? 200 : 1000;
     closest(test::down(0, 0));  // makes what the first trace makes
@@ -226,7 +226,7 @@ TEST_P(Churn, LongHistoriesOfEditsAgreeWithTheReference) {
     EXPECT_GT(vertex_edits_, 2u * static_cast<unsigned>(rounds));
 }
 
-// Against what the allocator has handed out, which rounds each buffer up.
+// Compares with the memory that the allocator has handed out, which rounds each buffer up.
 TEST_P(Churn, MemoryIsToldBeforeAndAfterItIsTaken) {
     accel().sync();
     const std::uint64_t empty = memory() - accel().memory_usage().total();

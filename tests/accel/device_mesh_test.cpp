@@ -26,7 +26,7 @@ struct Packing {
     IndexFormat indices = IndexFormat::uint32;
 };
 
-// Nearest, of numbers in [-1, 1] that are a multiple of 2^-7: exact in all formats but snorm16.
+// Returns the nearest float16 of a number in [-1, 1] that is a multiple of 2^-7: exact in all formats but snorm16.
 std::uint16_t half_bits(float value) {
     if (value == 0) return 0;
     const int exponent = std::ilogb(value);
@@ -89,7 +89,7 @@ class DeviceMeshTest : public test::AccelTest {
         }
         return rays;
     }
-    // The result of another accelerator that got the mesh from the host.
+    // Expects the hits of another accelerator that got the mesh from the host.
     void expect_hits_of(const Mesh& mesh, const char* what) {
         const auto other = make_accel();
         other->push(mesh);
@@ -101,7 +101,8 @@ class DeviceMeshTest : public test::AccelTest {
 };
 TWINRAY_OVER_EVERY_ACCEL(DeviceMeshTest);
 
-// Three vertices of its own for each triangle, at multiples of 2^-7, which all formats but snorm16 have.
+// Makes a mesh with three vertices of its own for each triangle, at multiples of 2^-7, which all formats but snorm16
+// have.
 Mesh coarse_soup() {
     Mesh mesh = make_soup(200, 4, 0.3f);
     for (vec3& p : mesh.positions)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Surfaces of meshes that are in device memory with all their arrays, and what building them asks of the host.
+// Surfaces of meshes that are in device memory with all their arrays, and the host's work to build them.
 #include <cstring>
 
 #include "tests/accel/surfaces_fixture.h"
@@ -16,7 +16,7 @@ class DeviceSurfaces : public test::SurfacesTest {
             options.level = Level::refined;
         return options;
     }
-    // A full mesh's arrays on the device.
+    // The arrays of a full mesh on the device.
     struct Arrays {
         std::vector<Buffer> buffers;
         std::vector<DeviceAttribute> attributes;
@@ -69,7 +69,7 @@ TEST_P(DeviceSurfaces, AreThoseOfTheHostsMesh) {
             arrays.mesh.in_place = in_place;
             given->push(arrays.mesh, placed.transforms, placed.options);
             if (in_place) kept.push_back(std::move(arrays));
-            given->sync();  // from here on what is copied is not read again
+            given->sync();  // from here on, copied arrays are not read again
         }
         const std::vector<Hit> found = given->closest_hits(rays, refined);
         EXPECT_EQ(std::memcmp(found.data(), hits.data(), hits.size() * sizeof(Hit)), 0) << in_place;
@@ -105,14 +105,14 @@ TEST_P(DeviceSurfaces, WhatCannotBeIsRefused) {
 
 }  // namespace
 
-// No fixture that holds a context: the calls of one of its own are counted.
+// The fixture holds no context: tests count the calls of a context of their own.
 class HostWork : public ::testing::TestWithParam<test::Kind> {};
 
 INSTANTIATE_TEST_SUITE_P(Every, HostWork,
                          ::testing::Values(test::Kind::software, test::Kind::ray_query, test::Kind::pipeline),
                          test::name_of_kind);
 
-// From push to trace, once memory for the plans of builds is there.
+// Counts calls from push to trace, once memory for the plans of builds is there.
 TEST_P(HostWork, AMeshInDeviceMemoryIsNeitherWaitedForNorSeenByTheHost) {
     faults::FaultInjector vulkan;
     const auto context = test::make_context({.use_ray_query = GetParam() == test::Kind::ray_query,

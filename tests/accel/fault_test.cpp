@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Every call into Vulkan that can fail, failed once, for every accelerator: an Error comes out, nothing is left
+// Each call into Vulkan that can fail is made to fail once, for every accelerator: an Error comes out, nothing is left
 // half-changed, nothing leaks, and the same work succeeds afterwards. The validation layer is on and below the faults:
-// it sees a failed call as one never made, so whatever it says is ours. One file: all scenarios share the fixture.
+// it sees a failed call as one never made, so whatever it says is our fault. One file, since all scenarios share the
+// fixture.
 #include <cstdio>
 
 #include "engine/core/error.h"
@@ -51,11 +52,11 @@ class Faults : public ::testing::TestWithParam<Kind> {
     void count_point() { ++points_[test::name_of_kind({GetParam(), 0})]; }
 
     World world() { return World(faults_, GetParam(), desc()); }
-    // Fails every call of `act` in turn, each in the world that `next` gives, ready for it.
+    // Fails every call of `act` in turn, each in a world that `next` returns ready for it.
     void fail_every_call(const std::function<World&()>& next, const std::function<void(World&)>& act);
-    // The same in one world whose base is synced; `prepare` makes it ready.
+    // Does the same in one world whose base is synced; `prepare` makes it ready.
     void fail_in_one_world(const std::function<void(World&)>& prepare, const std::function<void(World&)>& act);
-    // Fails every call of what makes nothing that lives on.
+    // Fails every call of `make`, which makes nothing that lives on.
     void fail_every_call_of(const std::function<void()>& make);
     void check_after_fault(World& world, const World::State& before, Outcome outcome,
                            const std::function<void(World&)>& act);
@@ -236,10 +237,10 @@ TEST_P(Faults, TheFirstSync) {
 
 TEST_P(Faults, TheSyncOfAnEdit) { fail_in_one_world(&World::edit, &World::sync); }
 
-// Only transforms change: the first time it rebuilds, from then on it refits in place.
+// Only transforms change: the first sync rebuilds, later ones refit in place.
 TEST_P(Faults, TheSyncOfAMove) { fail_in_one_world(&World::move, &World::sync); }
 
-// The first time it builds what can be refitted, from then on it refits in place.
+// The first sync builds what can be refitted, later ones refit in place.
 TEST_P(Faults, TheSyncOfMovedVertices) {
     World deformed = world();
     deformed.push_base();
@@ -256,7 +257,7 @@ TEST_P(Faults, TheSyncOfMovedVertices) {
     check_end(deformed);
 }
 
-// On a driver that asks for more memory than it needs.
+// The driver asks for more memory than it needs.
 TEST_P(Faults, TheSyncThatCompacts) {
     faults().set_structure_slack(GetParam() == Kind::software ? 0 : 4097);
     World compacted = world();
@@ -333,7 +334,7 @@ void occupy_queue(Context& context) {
     commands.submit();
 }
 
-// The wait that fails is that of the context's destructor: it must neither throw nor free what the GPU works on.
+// The failing wait is that of the context's destructor, which must neither throw nor free what the GPU works on.
 TEST_P(Faults, EndingWhileTheGpuIsBusy) {
     for (const Fault& fault :
          {Fault{}, Fault{.function = "vkWaitSemaphores", .count = every_call}, Fault{.result = VK_ERROR_DEVICE_LOST}}) {
@@ -350,7 +351,7 @@ TEST_P(Faults, EndingWhileTheGpuIsBusy) {
     }
 }
 
-// Buffers that take what the allocator holds already, down to the last bytes.
+// Returns buffers that take all memory that the allocator holds already, down to the last bytes.
 std::vector<Buffer> fill_memory(Context& context) {
     std::vector<Buffer> buffers;
     for (std::uint64_t bytes = 64 << 20; bytes >= 16;)
@@ -360,7 +361,7 @@ std::vector<Buffer> fill_memory(Context& context) {
     return buffers;
 }
 
-// Not one refused allocation, which VMA works around, but none from now on.
+// Refuses all allocations from now on, not just one, which VMA works around.
 TEST_P(Faults, OutOfMemory) {
     for (const char* function : {"vkAllocateMemory", "vkCreateBuffer"}) {
         SCOPED_TRACE(function);
@@ -381,8 +382,9 @@ TEST_P(Faults, OutOfMemory) {
     }
 }
 
-// count 1: the driver forgets the loss, and the context must not. every_call: it stays lost, as drivers do; a sample
-// will do. Without the validation layer, which knows nothing of the loss and takes half of the time.
+// With count 1 the driver forgets the loss, and the context must not. With every_call the device stays lost, as with
+// real drivers; a sample suffices. The test runs without the validation layer, which knows nothing of the loss and
+// takes half of the time.
 TEST_P(Faults, LosingTheDevice) {
     const auto session = [](World& w) {
         w.push_base();

@@ -43,7 +43,7 @@ class World {
         vertices_ = {};
         context_.reset();
     }
-    // Messages of the validation layer, those of destroy() too.
+    // Returns the messages of the validation layer, including those of destroy().
     std::vector<std::string> messages() const {
         std::vector<std::string> messages;
         for (const std::string& message : log_)
@@ -66,7 +66,7 @@ class World {
         tower_lift_ = std::fmod(tower_lift_ + 1, 5.0f);
         accel().update_transform(tower_, Transform::translation({4, 0, tower_lift_}));
     }
-    // Another mesh, whose vertices have not moved.
+    // Replaces the tower by another mesh, whose vertices have not moved.
     void renew_tower() {
         tower_top_ = 1;
         accel().update(tower_, make_box(vec3(0), vec3(1)));
@@ -79,7 +79,7 @@ class World {
         vertices_ = test::device_copy(context(), positions);
         accel().update_vertices(tower_, vertices_.ref<float>(), positions.size());
     }
-    // No ray comes here.
+    // Pushes a box that no ray reaches.
     void push_aside() { accel().push(make_box(vec3(20, 0, 0), vec3(21, 1, 1))); }
     void sync() {
         accel().sync();
@@ -96,7 +96,7 @@ class World {
             EXPECT_EQ(any[i].hit, expected()[i] < 0 ? 0u : 1u) << "ray " << i;
         sync();
     }
-    // Fails it unless the view of the last sync still has the hits of then.
+    // Fails the test unless the view of the last sync still has the hits that it had then.
     void check_view_of_last_sync() {
         if (!view_.accel) return;
         const Buffer ray_buffer = test::device_copy(context(), world_rays);
@@ -108,7 +108,7 @@ class World {
         EXPECT_EQ(distances(download<Hit>(context(), hits, world_rays.size())), view_expected_);
     }
 
-    // State that must not change when something fails.
+    // The state that must not change when something fails.
     struct State {
         std::size_t n_instances, n_geometries;
         std::uint64_t revision, structure_bytes;
@@ -158,7 +158,7 @@ class World {
     AccelHandle floor_, tower_, guest_;
     float tower_lift_ = 0, tower_top_ = 1, guest_height_ = 0;
     Buffer vertices_;
-    AccelView view_;  // of the last sync, with the hits of then
+    AccelView view_;  // of the last sync, with its hits
     std::vector<float> view_expected_;
 };
 

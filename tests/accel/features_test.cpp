@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Programs that leave out what a trace does not need: the same hits, bit for bit, as the one that leaves out nothing.
+// Programs that leave out what a trace does not need: their hits are, bit for bit, those of the program that leaves out
+// nothing.
 #include <cstring>
 #include <map>
 #include <random>
@@ -12,7 +13,7 @@
 namespace twinray {
 namespace {
 
-// Random ones, and others along axes and within planes, with zeros of both signs.
+// Returns random rays, and others along axes and within planes, with zeros of both signs.
 std::vector<Ray> rays_with_zeros() {
     std::vector<Ray> rays = random_rays({vec3(-1.5f), vec3(1.5f)}, 6000, 4);
     std::mt19937 random(5);
@@ -54,7 +55,7 @@ class Features : public test::VulkanTest, public ::testing::WithParamInterface<t
         accel().sync();
         return accel().features_for(desc);
     }
-    // Traced by a program with what features_for() says, and by one with all.
+    // Expects equal hits from a program with the features of features_for() and from one with all.
     void expect_equal(TraceDesc desc = {}) {
         desc.level = level();
         const uint needed = features_for(desc);
@@ -77,8 +78,8 @@ class Features : public test::VulkanTest, public ::testing::WithParamInterface<t
         expect_equal_answers(rays, desc);
     }
 
-    // Rays that want an answer alone, some of them with an end at their closest hit: by the program that serves until
-    // the one without features that they do not need is compiled, and by that.
+    // Expects equal answers to rays that only ask whether there is a hit, some of which end at their closest hit: from
+    // the program that serves until the one without needless features is compiled, and from that one.
     void expect_equal_answers(std::vector<Ray> rays, TraceDesc desc) {
         desc.program = nullptr;
         desc.level = level();
@@ -109,7 +110,7 @@ class Features : public test::VulkanTest, public ::testing::WithParamInterface<t
         commands.submit();
         return download<Hit>(context(), hits, rays.size());
     }
-    // To the last bit; at level fast, whose arithmetic compilers may rearrange, but for the signs of zeros.
+    // Compares to the last bit; at level fast, whose arithmetic compilers may rearrange, signs of zeros may differ.
     static bool is_same(const Hit& a, const Hit& b) {
         if (level() != Level::fast) return std::memcmp(&a, &b, sizeof(Hit)) == 0;
         return a.hit == b.hit && a.primitive_index == b.primitive_index && a.instance_index == b.instance_index &&
@@ -199,7 +200,7 @@ TEST_P(FeaturesOfAccel, WhatMayNotMoveDoesNot) {
     EXPECT_EQ(accel().instance_buffer(handle).count, 1u) << "may be read";
 }
 
-// Whichever program serves, and however many have been compiled by then.
+// Hits do not depend on which program serves, nor on how many have been compiled by then.
 TEST_P(FeaturesOfAccel, ProgramsChangeInTheBackgroundAndHitsDoNot) {
     accel().push(make_icosphere(3), Transform{}, {.mask = 1});
     const std::vector<Ray> rays = rays_with_zeros();

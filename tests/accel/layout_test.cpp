@@ -73,7 +73,7 @@ TEST_P(Layouts, AgreeOnInstancesOfEveryKind) {
     expect_equal(rays, {.cull = Cull::front});
 }
 
-// Boxes that overlap, many levels of them: more waits than registers hold, below the top level and in it.
+// Boxes overlap on many levels: more entries wait than registers hold, below the top level and in it.
 TEST_P(Layouts, AgreeWhereMuchWaits) {
     const Mesh soup = make_soup(3000, 7, 0.5f);
     const std::vector<Ray> rays = random_rays({vec3(-1), vec3(1)}, 2'000, 8);
@@ -84,7 +84,7 @@ TEST_P(Layouts, AgreeWhereMuchWaits) {
     expect_equal(rays);
 }
 
-// Rays within planes of boxes, through corners, from far away, and along axes.
+// Rays run within planes of boxes, through corners, from far away, and along axes.
 TEST_P(Layouts, AgreeWhereBoxesAreMetExactly) {
     const Mesh grid = make_grid(16, 16);
     for (const auto& accel : accels_) accel->push(grid, Transform::scaling({16, 16, 16}));
@@ -157,7 +157,7 @@ class Tunings : public ::testing::TestWithParam<test::LayoutAndLevel> {
         if (SwTlas::capability_on(context->properties(), feature_of(level())).support == Support::unsupported)
             TWINRAY_LACKS("float64", context->properties().name + " has no float64");
     }
-    // Of all the scenes, hits of the closest and any query, and all hits, as bytes in turn.
+    // Returns hits of the closest and any query, and all hits, of all the scenes, as bytes in turn.
     std::vector<std::vector<std::byte>> trace_all(TuningRow row) {
         const std::unique_ptr<Context> context = test::make_context({.tuning = row});
         if (!context) return {};
@@ -175,7 +175,7 @@ class Tunings : public ::testing::TestWithParam<test::LayoutAndLevel> {
         for (const auto& push : scenes()) {
             SwTlas accel(context, options);
             push(accel);
-            // More than a group's, so that invocations have runs where they may.
+            // Makes more rays than a group's, so that invocations have runs where they may.
             const std::vector<Ray> rays = random_rays({vec3(-3), vec3(3)}, 40'000, 4);
             const TraceDesc desc{.level = level()};
             const std::vector<Hit> closest = accel.closest_hits(rays, desc), any = accel.any_hits(rays, desc);
@@ -183,7 +183,7 @@ class Tunings : public ::testing::TestWithParam<test::LayoutAndLevel> {
             found.push_back(bytes_of(closest));
             found.push_back(bytes_of(any));
             found.push_back(bytes_of(AllHits(accel)(std::span(rays).first(4000), desc).hits));
-            // A kernel of every feature takes one instance for a scene of many.
+            // A kernel with every feature takes one instance for a scene of many.
             const std::unique_ptr<TraceProgram> program = accel.make_program(test_program);
             found.push_back(bytes_of(accel.closest_hits(rays, {.level = desc.level, .program = program.get()})));
         }
@@ -194,7 +194,8 @@ class Tunings : public ::testing::TestWithParam<test::LayoutAndLevel> {
         return {bytes.begin(), bytes.end()};
     }
 
-    // One mesh of shared edges; boxes that overlap, in which the stack loses entries; instances of every kind.
+    // Returns scenes of one mesh with shared edges, of overlapping boxes, for which the stack loses entries, and of
+    // instances of every kind.
     static std::vector<std::function<void(SwTlas&)>> scenes() {
         return {[](SwTlas& accel) { accel.push(make_icosphere(4)); },
                 [](SwTlas& accel) { accel.push(make_soup(3000, 7, 0.8f)); },

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A sync leaves out what nobody needs: it is seen by its passes.
+// A sync leaves out work that nobody needs, as its passes show.
 #include <algorithm>
 #include <cstddef>
 #include <optional>
@@ -17,7 +17,7 @@ using test::square;
 
 class LeftOut : public test::AccelTest {
   protected:
-    // The state after the last sync.
+    // Returns the names of the passes of the last sync.
     std::vector<std::string> passes() {
         accel().wait_for_gpu();
         std::vector<std::string> names;
@@ -58,7 +58,7 @@ TEST_P(LeftOut, TheBoundIsThereAfterTheFirstQuestionThatDoesNotWait) {
     EXPECT_EQ(accel().world_bound_if_ready()->hi, vec3(1, 1, 0));
 }
 
-// Kernels write after it, and nothing has changed before the next one.
+// Kernels write after the sync, and nothing has changed before the next one.
 TEST_P(LeftOut, TheBoundIsThatOfTheLastSync) {
     const AccelHandle handle = accel().push(square(0));
     accel().sync();
@@ -111,7 +111,7 @@ TEST_P(LeftOut, OneInstanceOfTwoAndTwoOfOne) {
     }
 }
 
-// A trace takes the bits of 1.0f, which are more than 3, for its count of rays.
+// A trace takes the bits of 1.0f, which are more than 3, as its count of rays.
 TEST_P(LeftOut, TheBoundUntilAKernelReadsIt) {
     accel().push(square(5));
     accel().sync();
@@ -139,7 +139,7 @@ TEST_P(LeftOut, AreasUntilSomebodyAsks) {
     EXPECT_EQ(accel().sah(), built) << "measured once";
 }
 
-// The host's copy of a mesh, and whatever would need it.
+// The accelerator leaves out the host's copy of a mesh, and refuses whatever would need it.
 TEST_P(LeftOut, MeshesThatTheHostNeedNotKeep) {
     const Mesh mesh = make_icosphere(4);
     const auto bare = make_accel({.keeps_meshes = false, .compiles_in_background = false});
@@ -165,7 +165,7 @@ TEST_P(LeftOut, MeshesThatTheHostNeedNotKeep) {
     EXPECT_LT(bare->memory_usage().host, 1000u);
 }
 
-// Nothing is sorted, and of a tree's stages one is left.
+// Nothing is sorted, and only one of a tree's stages is left.
 TEST_P(LeftOut, StagesOfTreesWithOneLeaf) {
     Mesh one;
     one.name = "one";

@@ -14,7 +14,7 @@ class MeshStoreTest : public test::AccelTest {
   protected:
     static constexpr uint first_mesh = 0;
 
-    // As analyses and contacts get it.
+    // Returns the mesh as analyses and contacts get it.
     MeshOnDevice lent(AbstractAccel& accel, Context& device) {
         const PlacedMeshes placed(accel);
         Commands commands(device, "lend");
@@ -23,7 +23,7 @@ class MeshStoreTest : public test::AccelTest {
         return mesh;
     }
     MeshOnDevice lent(AbstractAccel& accel) { return lent(accel, accel.context()); }
-    // In the user's units.
+    // Returns the positions in the user's units.
     std::vector<vec3> positions_of(const MeshOnDevice& mesh, std::size_t count, Context* device = nullptr) {
         std::vector<vec3> positions = download<vec3>(device ? *device : context(), *mesh.buffer, count);
         for (vec3& position : positions) position *= mesh.scale;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Up to so many hits of each ray, one after the other.
+// Finds up to `most` hits of each ray, one after the other.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/next_hit.glsl"

@@ -13,7 +13,7 @@
 namespace twinray {
 namespace {
 
-// Bytes of plain values, one after the other.
+// The bytes of plain values, one after the other.
 class Found {
   public:
     template <class... Values>
@@ -44,7 +44,8 @@ class Found {
 
 using Work = std::function<void(Context&, Found&)>;
 
-// By as many submissions as it takes without a limit, and by at least `more` with one that no work can keep.
+// Expects equal results from as many submissions as the work takes without a limit, and from at least `more` with a
+// limit that no work can keep.
 void expect_equal_in_parts(const Work& work, std::uint64_t more, ContextDesc desc = {}) {
     Found found[2];
     std::uint64_t submissions[2] = {};

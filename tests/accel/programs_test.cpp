@@ -60,7 +60,7 @@ TEST(FeaturesOf, HardwareLeavesTheRestToTheDriver) {
     EXPECT_EQ(features_of(hardware, SceneTraits::of_every_kind(), TraceTraits::of_every_kind()), FEATURE_HITS);
 }
 
-// So that an accelerator keeps as many programs at most.
+// So an accelerator keeps at most that many programs.
 TEST(FeaturesOf, AnAcceleratorHas32SetsAtMostAndOneHoldsThemAll) {
     const uint all = features_of(software, SceneTraits::of_every_kind(), TraceTraits::of_every_kind());
     std::set<uint> sets;
@@ -102,7 +102,7 @@ class PipelineVariantsTest : public ::testing::Test {
         return std::make_unique<PipelineVariants>(
             [this](uint features) { return std::make_unique<Program>(*this, features); }, all_programs, in_background);
     }
-    // With the program for features 1, and the general one.
+    // Makes variants with the program for features 1 and the general one.
     std::unique_ptr<PipelineVariants> make_with_both() {
         std::unique_ptr<PipelineVariants> programs = make(true);
         for (int i = 0; i < 2; ++i) serving(*programs, 1);

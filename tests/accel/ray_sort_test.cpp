@@ -14,8 +14,8 @@
 namespace twinray {
 namespace {
 
-// Within a cube of -2 to 2, both of which occur: cells have exact bounds. Every seventh is not to be traced, and
-// origins that are not finite come first.
+// Returns rays within a cube from -2 to 2, both of which occur, so that cells have exact bounds. Every seventh ray is
+// not to be traced, and origins that are not finite come first.
 std::vector<Ray> mixed_rays(std::size_t count) {
     std::vector<Ray> rays;
     for (std::size_t i = 0; rays.size() < count; ++i) {
@@ -40,7 +40,7 @@ const Hit untouched{7, 7, 7, 7, 7, 7, 7, 7};
 
 class SortedRays : public test::AccelTest {
   protected:
-    // The rays that `desc` asks for, over hits that nobody has touched.
+    // Traces the rays that `desc` asks for into hits that nothing has touched, and returns these.
     std::vector<Hit> hits_of(const std::vector<Ray>& rays, TraceDesc desc) {
         const Buffer input = device_copy(rays), hits = device_copy(std::vector<Hit>(rays.size(), untouched));
         desc.rays = input.ref<Ray>();
@@ -51,7 +51,7 @@ class SortedRays : public test::AccelTest {
         commands.submit();
         return download<Hit>(context(), hits, rays.size());
     }
-    // Between the two orders; gives the hits.
+    // Expects equal hits in both orders, and returns them.
     std::vector<Hit> expect_equal(const std::vector<Ray>& rays, TraceDesc desc = {}) {
         const std::vector<Hit> given = hits_of(rays, desc);
         desc.order = RayOrder::sorted;
@@ -63,7 +63,7 @@ class SortedRays : public test::AccelTest {
             }
         return given;
     }
-    // To the last bit; a driver may name another of the triangles that meet in the point.
+    // Compares to the last bit; a driver may name another of the triangles that meet in the point.
     bool is_same(const Hit& a, const Hit& b) const {
         if (std::memcmp(&a, &b, sizeof(Hit)) == 0) return true;
         return !is_ours() && a.hit == b.hit && std::abs(a.t - b.t) <= 1e-5f * a.t;
@@ -243,7 +243,7 @@ TEST_F(RaySortTest, OrdersAllRaysByTheirKeys) {
     }
 }
 
-// A trace reads the first places alone.
+// A trace reads only the first places.
 TEST_F(RaySortTest, RaysBeyondTheCountComeLast) {
     const std::vector<Ray> rays = mixed_rays(1000);
     for (const uint written : {0u, 1u, 300u, 5000u}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Level::refined: what float64 says of the hit that counts, from whatever distance.
+// Level::refined: float64 decides on the hit that counts, from any distance.
 #include <algorithm>
 #include <random>
 
@@ -24,7 +24,7 @@ class Refined : public test::AccelTest {
 };
 TWINRAY_OVER_EVERY_ACCEL(Refined);
 
-// A grid of unit cells, and rays onto it from `distance` cells away.
+// Returns rays onto a grid of unit cells, from `distance` cells away.
 std::vector<Ray> rays_from(float distance, std::size_t count, uint cells, unsigned seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> on(0, static_cast<float>(cells)), aside(-0.3f, 0.3f);
@@ -156,7 +156,7 @@ TEST_P(Refined, TheIntervalHoldsInUnitsOfTheRay) {
     EXPECT_EQ(t(), -1.0f) << "the ray ends long before the scene";
 }
 
-// A plane that no axis is along; each ray ends on it exactly, and its t is rounded.
+// No axis is parallel to the plane; each ray ends on it exactly, and its t is rounded.
 TEST_P(Refined, ASurfaceAtTheEndOfARayIsLeftOutAndHidesNothing) {
     const vec3 u(3, 1, 2), v(-1, 4, 1);
     const auto sheet = [&](const vec3& at) {

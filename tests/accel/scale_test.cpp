@@ -28,7 +28,7 @@ std::vector<Ray> scaled(std::vector<Ray> rays, float factor) {
     return rays;
 }
 
-// Random rays, and rays at vertices, where ties are decided.
+// Returns random rays, and rays at vertices, where ties are decided.
 std::vector<Ray> rays_at(const Mesh& mesh) {
     std::vector<Ray> rays = random_rays({vec3(-2), vec3(2)}, 2000, 3);
     for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
@@ -41,7 +41,7 @@ std::vector<Ray> rays_at(const Mesh& mesh) {
 // Multiplying everything by a power of two is exact.
 class Scale : public test::AccelTest {
   protected:
-    // Hits stay as they are, but for t, when `scale_by` makes the scene that many times as large.
+    // Expects the same hits, but for t, when `scale_by` makes the scene that many times as large.
     void expect_same_hits(const std::vector<Ray>& rays, int step, const std::function<void(float)>& scale_by) {
         const std::vector<Hit> expected = accel().closest_hits(rays);
         const int most = -std::ilogb(smallest_scale());
@@ -80,10 +80,12 @@ TEST_P(Scale, OfTheTransformByAPowerOfTwoLeavesIdsAndWeights) {
 
 using test::House;
 
-// Rays closer to the plane of their wall are left out: rounding of the wall moves their hits by it over this cosine.
+// Rays closer to the plane of their wall are left out: rounding of the wall moves their hits by its error over this
+// cosine.
 constexpr double least_steepness = 0.2;
 
-// Where a ray enters a house and leaves it again, by float64. Steepness: cosine of its angle to the wall's normal.
+// The distances, by float64, at which a ray enters and leaves a house. Steepness is the cosine of its angle to the
+// wall's normal.
 struct HousePassage {
     double enter = -INFINITY, leave = INFINITY, steepness = 0;
 };
@@ -116,10 +118,10 @@ bool is_near_a_house(const dvec3& point) {
     });
 }
 
-// The exact place in the file of what is rounded relative to the scene's origin.
+// Returns the exact place in the file of a point that is rounded relative to the scene's origin.
 dvec3 place_of(const Scene& scene, vec3 point) { return scene.origin + dvec3(point); }
 
-// From around the houses at points in them.
+// Returns rays from around the houses at points in them.
 std::vector<Ray> rays_for(const Scene& scene, std::size_t count) {
     std::mt19937_64 random(20);
     std::uniform_real_distribution<double> unit(0, 1);
@@ -140,7 +142,7 @@ std::vector<Ray> rays_for(const Scene& scene, std::size_t count) {
     return rays;
 }
 
-// The point by its triangle and barycentrics, in the file's coordinates.
+// Returns the point of a hit by its triangle and barycentrics, in the file's coordinates.
 dvec3 place_of(const Scene& scene, const Hit& hit) {
     const Instance& instance = scene.instances[hit.instance_index];
     const Mesh& mesh = scene.meshes[instance.mesh];
@@ -156,7 +158,7 @@ dvec3 place_of(const Scene& scene, const Hit& hit) {
     return place;
 }
 
-// In metres, at most; that of a ray that wrongly misses is infinite.
+// The largest errors, in metres; that of a ray that wrongly misses is infinite.
 struct Errors {
     double t = 0, along_ray = 0, in_triangle = 0;  // the latter two: of the point, by t or by barycentrics
     double share_off = 0;                          // of rays whose t is off by more than a centimetre
@@ -209,7 +211,7 @@ TEST_P(FarScene, IsHitToTenMicrometres) {
     }
 }
 
-// The other test would see it. Most rays meet a roof, whose height float32 holds; a quarter to a third are off.
+// The other test would see this error. Most rays meet a roof, whose height float32 holds; a quarter to a third are off.
 TEST_P(FarScene, WithoutALocalOriginIsOffByCentimetres) {
     for (const std::filesystem::path& file : files_) EXPECT_GT(trace(file, dvec3(0), 1000).share_off, 0.2) << file;
 }

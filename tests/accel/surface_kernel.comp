@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Surfaces in a kernel of a user's, for hits of a batch.
+// Computes surfaces in a user's kernel, for a batch of hits.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/surface.glsl"

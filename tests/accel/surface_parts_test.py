@@ -50,7 +50,7 @@ with tempfile.TemporaryDirectory() as work:
 print("instructions:", ", ".join(f"{name} {count}" for name, count in counts.items()))
 assert counts["metadata"] < counts["uv"] < counts["both"], counts
 assert counts["position"] < counts["normal"] < counts["both"] < counts["all"], counts
-# The code that normal and uv share, for the triangle and the point on it, exists once; nothing of the uv is in the
-# normal's.
+# The code that normal and uv share, for the triangle and the point on it, exists once; the normal has no code of the
+# uv.
 assert counts["both"] - counts["normal"] > 30, counts
 assert counts["metadata"] * 4 < counts["normal"], counts

@@ -86,7 +86,7 @@ TEST_P(SurfaceUse, OfASharedGeometryAreEachHandles) {
     }
 }
 
-// Whether the accelerator keeps them or not.
+// Expects errors, whether the accelerator keeps the arrays or not.
 void expect_arrays_that_do_not_fit_to_be_named(AbstractAccel& accel) {
     Mesh mesh = test::square(0);
     const auto error_of = [&](const MeshView& view) { return test::error_if_any([&] { accel.push(view); }); };

@@ -12,7 +12,7 @@
 
 namespace twinray::test {
 
-// A mesh with everything that surfaces may have, in random numbers.
+// A mesh with random values for everything that surfaces may have.
 struct FullMesh {
     Mesh mesh;
     std::vector<float> heat, weights;  // by vertex; by face, three each
@@ -101,7 +101,7 @@ class SurfacesTest : public AccelTest {
                             vec3(unit_(random_), unit_(random_), unit_(random_)), INFINITY});
         return rays;
     }
-    // Which mesh an instance is of, and its transform.
+    // Returns the mesh that an instance is of, and the index of its transform.
     std::pair<const Placed*, std::size_t> owner(uint instance) const {
         for (const Placed& placed : placed_) {
             if (instance < placed.transforms.size()) return {&placed, instance};

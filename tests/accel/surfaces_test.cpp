@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// From hits to surfaces: against float64, against the same functions on the host, on both accelerators.
+// Surfaces of hits, compared with float64 and with the same functions on the host, on both accelerators.
 #include "engine/accel/surface_tables.h"
 
 #include <algorithm>
@@ -28,14 +28,14 @@ dvec3 mapped(const Transform& m, const dvec3& p, double w) {
     return result;
 }
 
-// The inverse transpose of the linear part, times its determinant: cofactors.
+// Maps a normal by the inverse transpose of the linear part, times its determinant: by cofactors.
 dvec3 by_cofactors(const Transform& m, const dvec3& n) {
     const dvec3 a(m.rows[0]), b(m.rows[1]), c(m.rows[2]);
     const dvec3 x = cross(b, c), y = cross(c, a), z = cross(a, b);
     return dvec3(dot(x, n), dot(y, n), dot(z, n)) * (dot(a, x) < 0 ? -1.0 : 1.0);
 }
 
-// The result of interpolation in float64, and its bound.
+// Expects the result of interpolation in float64, within its bound.
 template <class V>
 void expect_interpolated(const std::vector<V>& values, const Surface& surface, const V& found, const char* what) {
     const double weights[] = {1 - double(surface.uv.x) - double(surface.uv.y), surface.uv.x, surface.uv.y};
@@ -81,7 +81,7 @@ TEST_P(Surfaces, AreWhatFloat64MakesOfTheHit) {
         ASSERT_EQ(s.vertices, mesh.triangles[s.primitive_index]);
         const dvec3 a(mesh.positions[s.vertices.x]), b(mesh.positions[s.vertices.y]), c(mesh.positions[s.vertices.z]);
 
-        // The point lies on the triangle, and on the ray, within the bound and what t is rounded by.
+        // The point lies on the triangle, and on the ray, within the bound and the rounding of t.
         const dvec3 on_triangle = mapped(transform, a + (b - a) * double(s.uv.x) + (c - a) * double(s.uv.y), 1);
         ASSERT_LE(length(dvec3(s.point.position) - on_triangle), 2 * double(s.point.offset) + 1e-12);
         const dvec3 on_ray = dvec3(rays[i].origin) + dvec3(rays[i].direction) * double(s.t);
@@ -117,7 +117,7 @@ TEST_P(Surfaces, AreWhatFloat64MakesOfTheHit) {
         const uint own = placed->options[index].custom_index;
         ASSERT_EQ(s.face_metadata, own ? own : mesh.materials[s.primitive_index]);
 
-        // The bitangent, of mirrored instances, too: the map of the mesh's own.
+        // The bitangent, also of mirrored instances, is the map of the mesh's own.
         dvec4 tangent(0);
         for (int k = 0; k < 3; ++k) tangent += w[k] * dvec4(mesh.tangents[s.vertices[static_cast<std::size_t>(k)]]);
         const dvec3 world_tangent = mapped(transform, dvec3(tangent), 0);
@@ -134,7 +134,7 @@ TEST_P(Surfaces, AreWhatFloat64MakesOfTheHit) {
     EXPECT_LE(widest, 1);
 }
 
-// The first of their words that are not the same bits; -1: none.
+// Returns the first word whose bits differ, or -1.
 int differing_word(const Surface& a, const Surface& b) {
     std::array<uint, sizeof(Surface) / 4> words[2];
     std::memcpy(&words[0], &a, sizeof(Surface));
@@ -143,7 +143,7 @@ int differing_word(const Surface& a, const Surface& b) {
     return differing == words[0].end() ? -1 : static_cast<int>(differing - words[0].begin());
 }
 
-// For the same ids the same bits, whoever found them.
+// The same ids give the same bits, whichever accelerator found them.
 TEST_P(Surfaces, AreTheSameBitsOnEveryAccelerator) {
     add_some();
     push_all(accel());
@@ -198,7 +198,7 @@ struct HostTable {
     }
 };
 
-// To the last bit on a device that rounds quotients to nearest, but for what has been made a unit vector.
+// Surfaces agree to the last bit on a device that rounds quotients to nearest, except for normalised vectors.
 TEST_P(Surfaces, AreWhatTheSameFunctionsGiveOnTheHost) {
     add_some();
     push_all(accel());

@@ -126,7 +126,7 @@ TEST_P(Sync, ACleanOneIsFree) {
     EXPECT_EQ(context().last_submission().value, done.value);
 }
 
-// The data in use before the GPU has built; then the hits of the rays.
+// Measures memory in use before the GPU has built; then compares the hits of the rays.
 TEST_P(Sync, TheScratchBudgetBoundsWhatABuildTakes) {
     std::vector<Mesh> meshes;
     for (uint i = 0; i < 60; ++i) meshes.push_back(make_soup(1000 + i, i));

@@ -69,7 +69,8 @@ assert "--counts requires --query all" in run("--counts", "counts", status=2)
 assert "'rays'" in run(status=1)
 
 
-# Far away, in float64: the same triangles 0.13 and 0.27 m from where float32 has a number. NumPy's format, by its own text.
+# Far away, in float64: the same triangles 0.13 and 0.27 m off the numbers of float32. npy() writes NumPy's format by
+# hand.
 east, north = 500000.13, 5400000.27
 (here / "two.ply").write_text((here / "two.ply").read_text().replace("property float", "property double").replace(
     "0 0 2\n4 0 2\n0 4 2\n0 0 1\n2 0 1\n0 2 1\n",
@@ -86,7 +87,7 @@ def near(wanted):
     return all(h[0] == w[0] and h[2] == w[2] and abs(h[1] - w[1]) < 1e-6 for h, w in zip(hits(), wanted, strict=True))
 
 
-# Half a millimetre inside the corners, and as much outside.
+# Rays pass half a millimetre inside the corners, and as much outside.
 far_rays = [(east + 5e-4, north + 5e-4, 0), (east + 3.9985, north + 5e-4, 0), (east - 5e-4, north + 1, 0)]
 inside = [(1, 1, 1), (1, 2, 0), (0, -1, 0)]
 npy("<f8", [number for origin in far_rays for number in (*origin, 0, 0, 0, 1, 9)], "(3, 8)")

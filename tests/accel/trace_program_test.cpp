@@ -37,7 +37,7 @@ class Program : public test::AccelTest {
         for (const Sphere& sphere : spheres) boxes.push_back(sphere.bounds());
         return boxes;
     }
-    // Down onto the unit square.
+    // Returns rays down onto the unit square.
     std::vector<Ray> rays_down(std::size_t count) {
         std::vector<Ray> rays;
         for (std::size_t i = 0; i < count; ++i)
@@ -50,7 +50,7 @@ class Program : public test::AccelTest {
 };
 TWINRAY_OVER_EVERY_ACCEL(Program);
 
-// By float64, of spheres under one transform that scales and moves.
+// Computes, in float64, the hit of spheres under one transform that scales and moves.
 Hit expected_sphere(std::span<const Sphere> spheres, const Ray& ray, double scale, dvec3 offset) {
     Hit best = miss();
     double best_t = INFINITY;

@@ -17,8 +17,8 @@ CLOSEST, ANY, WATERTIGHT = 0, 1, 1
 OPTIONAL = {"sw": ["BOXES", "FILTERS", "BVH2", "COMPRESSED8", "INSTANCES", "MASKS", "CULLING", "TRANSFORMS", "HITS"],
             "hw": ["BOXES", "FILTERS", "REMAP", "HITS"]}
 LEAST = {"sw": ["COMPRESSED"], "hw": []}
-# With one of these an any hit of software needs its distance, and the test of triangles without one, which is longer though
-# it runs less, is not in the kernel: so each is added to a kernel that has another.
+# With one of these, an any hit of software needs its distance, so its kernel lacks the triangle test without a
+# distance, which is longer though fewer of its instructions run. So each is added to a kernel that has another.
 NEEDS_HIT = {"HITS": "FILTERS", "BOXES": "HITS", "FILTERS": "HITS"}
 
 arguments = [a for a in sys.argv[1:] if a != "--record"]

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Vertices that move, what that makes of the trees, and when a sync rebuilds them.
+// Vertices that move: how the trees change, and when a sync rebuilds them.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -17,7 +17,7 @@ using test::square;
 
 class Vertices : public test::AccelTest {
   protected:
-    // With the reference, on a mesh that is all there is.
+    // Expects agreement with the reference on a mesh that is alone.
     void expect_agreement(const Mesh& mesh);
 };
 TWINRAY_OVER_EVERY_ACCEL(Vertices);
@@ -102,7 +102,7 @@ TEST_P(Vertices, UpdateReplacesMovedVertices) {
     EXPECT_EQ(closest(down(0.5f, 0.25f)).hit, 0u);
 }
 
-// From one triangle to a mesh of several groups; a sphere that becomes a spiked one.
+// Meshes range from one triangle to several groups; the sphere becomes a spiked one.
 TEST_P(Vertices, MovedVerticesAgreeWithTheReference) {
     for (Mesh mesh : {make_soup(1, 3), make_soup(2, 4), make_box(vec3(0), vec3(1)), make_icosphere(4)}) {
         const AccelHandle handle = accel().push(mesh);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Scenes ten thousand kilometres from 0: what float32 cannot tell apart there, and hits in float64.
+// Scenes ten thousand kilometres from 0: details that float32 cannot tell apart there, and hits in float64.
 #include <twinray/world.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ struct WorldReference {
     double margin = 0;  // how far from the triangle's border, in barycentrics
 };
 
-// Moeller and Trumbore's test in float64 against every triangle.
+// Tests every triangle in float64, by Moeller and Trumbore's method.
 WorldReference reference_hit(std::span<const dvec3> positions, std::span<const uvec3> triangles, const Ray64& ray) {
     WorldReference best;
     for (std::size_t i = 0; i < triangles.size(); ++i) {
@@ -46,7 +46,7 @@ class WorldAccelTest : public test::AccelTest {
             options.level = GetParam() == test::Kind::software ? Level::certified : Level::refined;
         return options;
     }
-    // A sphere of 10 m around a point, in numbers that float32 has about that point.
+    // Returns a sphere of 10 m around a point, in numbers that float32 has about that point.
     static std::vector<dvec3> sphere_at(dvec3 place) {
         std::vector<dvec3> positions;
         for (const vec3& p : sphere_.positions)
@@ -65,7 +65,7 @@ class WorldAccelTest : public test::AccelTest {
         }
         return rays;
     }
-    // t within this of float64's: 2 units in the last place of coordinates from 32 to 64 m, from where rays come.
+    // The tolerance of t: 2 units in the last place of coordinates from 32 to 64 m, which is where rays come from.
     static constexpr double tolerance = 2 * 0x1p-18;
     void expect_hits(std::span<const dvec3> positions, std::span<const Ray64> rays, const std::vector<Hit>& hits) {
         std::size_t count = 0, wrong = 0;
@@ -79,7 +79,7 @@ class WorldAccelTest : public test::AccelTest {
             }
             if (!hits[i].hit) continue;
             ++count;
-            // Rounding moves rays sideways, too: along a slanted triangle, t grows by that over the cosine.
+            // Rounding also moves rays sideways: along a slanted triangle, t grows by that over the cosine.
             worst = std::max(
                 worst, std::abs(hits[i].t - expected.t) * std::abs(cosine(positions, rays[i], expected.triangle)));
         }
@@ -105,7 +105,7 @@ TEST_P(WorldAccelTest, HitsFarAwayAreAsGoodAsNear) {
     world.push(MeshView64{"sphere", positions, sphere_.triangles});
     const std::vector<Ray64> rays = rays_at(far_away, 1500);
     expect_hits(positions, rays, world.closest_hits(rays));
-    // The same without an origin takes these, in metres.
+    // Without an origin, the same coordinates lose this much, in metres.
     WorldAccel far_origin(accel(), {});
     EXPECT_GT(std::abs(double(far_origin.local(positions[0]).x) - positions[0].x), 0.01);
 }
@@ -216,8 +216,8 @@ TEST_P(WorldAccelTest, RaysFromFarOffMeetWhatTheirLinesDo) {
     EXPECT_EQ(world.any_hits(std::span(&ray, 1)).front().hit, 1u);
 }
 
-// A plane met from nearer than float32 tells apart there, at slopes down to 10^-5: some of the rounded rays begin on
-// its other side.
+// The plane is met from nearer than float32 tells apart there, at slopes down to 10^-5: some of the rounded rays begin
+// on its other side.
 TEST_P(WorldAccelTest, ExactHitsKeepToTheRaysInterval) {
     if (!context().properties().shader_float64) TWINRAY_LACKS("float64", "no float64");
     WorldAccel world(accel(), {});

@@ -21,7 +21,7 @@ namespace {
 
 using Surface = std::vector<Polygon64>;
 
-// Two triangles, as make_quad() makes them.
+// Makes two triangles, as make_quad() does.
 Surface quad(const dvec3& vertex, const dvec3& u, const dvec3& v) {
     return {{vertex, vertex + u, vertex + u + v}, {vertex, vertex + u + v, vertex + v}};
 }
@@ -32,7 +32,7 @@ double area_of(const Surface& surface) {
     return area;
 }
 
-// Contours alone tell it: nothing is in between.
+// Sums the exchanges by contours alone, since nothing is in between.
 ContourExchange exchange_of(const Surface& a, const Surface& b) {
     ContourExchange sum;
     for (const Polygon64& one : a)
@@ -127,7 +127,7 @@ TEST(Contour, OfSliversIsWhatIsLeftOfTheWhole) {
         }
 }
 
-// Clipping leaves edges of 1e-8, of vertices that miss the planes of other walls by that.
+// Clipping leaves edges of 1e-8, since vertices miss the planes of other walls by that much.
 TEST(Contour, OfRoomsRoundedToFloat32IsAsExactAsOfOthers) {
     for (const double angle : {0.1, 0.3, 0.7, 1.3}) {
         const Surface room = FacePolygons(test::rounded_room(2, angle)).faces;
@@ -237,9 +237,9 @@ TEST(Shaft, IsNotBlockedByWhatTouchesItFromOutside) {
     EXPECT_FALSE(is_blocked({dvec3(0.3, 0.9, 0.1), dvec3(0.4, 0.9, 0.1), dvec3(0.3, 0.9, 0.9)})) << "within its box";
 }
 
-// Each is parted by planes of one kind alone.
+// Only planes of one kind part each of these faces.
 TEST(Shaft, TriesAllPlanesThatMayPart) {
-    // Through the edge of the shaft from (0, 0, 0) to (0, 0, 1) and the closest one of the face.
+    // This plane goes through the edge of the shaft from (0, 0, 0) to (0, 0, 1) and the closest one of the face.
     const dvec3 near(-0.01, -0.004, 0.5), along(-0.15, 0.37, 0.2), away(-0.28, -0.11, 0.3);
     EXPECT_FALSE(is_blocked({near - along, near + along, near + away}));
     EXPECT_TRUE(is_blocked({near - along + dvec3(0.1, 0.04, 0), near + along + dvec3(0.1, 0.04, 0), near + away}));

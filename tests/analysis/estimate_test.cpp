@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Estimates of rays that were counted or weighed, with their intervals; and the points that rays start from.
+// Estimates from rays that were counted or weighed, with their intervals; and the points that rays start from.
 #include "engine/analysis/estimate.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ TEST(Within, NothingLeavesWhatIsPossibleAndIntervalsHoldTheirValues) {
     expect(2, {1.25, 1.5}, 2, {1.25, 2});
 }
 
-// Weights of rays are rounded, so that their sum may be, too.
+// Weights of rays are rounded, and so may their sum be.
 TEST(FractionEstimator, OfAllRaysIsNoMoreThanAll) {
     Replicates fractions;
     fractions.fill(1 + 0x1p-50);
@@ -51,7 +51,7 @@ TEST(FractionEstimator, OfManyEventsIsStudentsInterval) {
     EXPECT_NEAR(estimate.interval_95.low + estimate.interval_95.high, 0.5, 1e-15);
 }
 
-// Stratified rays from a panel beside a wide floor, of which every replicate sees exactly half.
+// Stratified rays leave a panel beside a wide floor, and every replicate sees exactly half of them reach it.
 TEST(FractionEstimator, OfReplicatesThatAgreeLeavesRoomForWhatNoRaySaw) {
     Replicates fractions;
     fractions.fill(0.5);
@@ -134,7 +134,7 @@ TEST(Sobol, KeysAreIndependent) {
 
 constexpr std::size_t chunk = 64;
 
-// Rays of weights 1 +- `scatter`, of which a part is blocked.
+// Returns the sums of rays with weights of 1 +- `scatter`, some of which are blocked.
 PairSums sums_of(std::size_t chunks, double blocked, uint seed, float scatter = 0.5f) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> uniform(0, 1);
@@ -163,7 +163,7 @@ TEST(PairSums, IsTheMeanOfFreeRays) {
 }
 
 TEST(PairSums, IntervalsHoldHoweverFewRaysAreBlockedOrFree) {
-    // Without scatter the blocked rays alone tell: points of Sobol's come near that.
+    // Without scatter only the blocked rays tell the error; Sobol's points come near that.
     for (const float scatter : {0.5f, 0.0f})
         for (const double blocked : {0.0, 0.001, 0.02, 0.5, 0.98, 0.999}) {
             int inside = 0;

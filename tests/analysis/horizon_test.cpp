@@ -10,7 +10,7 @@ constexpr float hole = NAN;
 
 class HorizonTest : public VulkanTest {
   protected:
-    // Eastward, of the cell in column 0 of the middle row.
+    // Returns the slope eastward from the cell in column 0 of the middle row.
     float slope_east(const std::vector<float>& heights, uint columns, HorizonDesc desc = {}) {
         const vec2 east(1, 0);
         const uint rows = static_cast<uint>(heights.size()) / columns;
@@ -50,7 +50,7 @@ TEST_F(HorizonTest, HolesHideNothing) {
     EXPECT_TRUE(std::isnan(slope_east({0, 0, hole, 0}, 2, {.measure = HorizonMeasure::light})));
 }
 
-// Along a row, a column and a diagonal, of cells in a corner, at the border and inside.
+// Ways lead along a row, a column and a diagonal, from cells in a corner, at the border and inside.
 TEST_F(HorizonTest, AnswersAreByCellThenByWay) {
     const std::vector<float> heights = {5, 0, 0, 0,  //
                                         0, 0, 0, 0,  //

@@ -13,7 +13,7 @@ class IlluminationTest : public AnalysisTest {
         fill(scene);
         return illuminate(accel(), Faces(context(), scene), desc);
     }
-    // The area of one instance of a scene of several.
+    // Returns the area of one instance in a scene of several.
     static double area_of(const Illumination& result, uint first, uint count = 2) {
         double area = 0;
         for (uint face = first; face < first + count; ++face) area += result.groups[face].area;
@@ -30,8 +30,8 @@ IlluminationDesc lit_along(dvec3 direction, uint side = 200) {
     return {.grid = {.direction = direction, .side = side}};
 }
 
-// The upper one hides half of the lower one. The one in between them is a unit square as well, turned away by 60
-// degrees.
+// Makes three squares: the upper one hides half of the lower one, and the one in between them is a unit square as well,
+// turned away by 60 degrees.
 Scene squares() {
     Mesh tilted = make_quad(vec3(3, 0, 0), vec3(0.5f, 0, 0.8660254f), vec3(0, 1, 0));
     return scene_of({square(0), make_quad(vec3(0.5f, 0, 1), vec3(1, 0, 0), vec3(0, 1, 0)), tilted});
@@ -129,13 +129,13 @@ TEST_P(IlluminationTest, EveryAcceleratorCountsTheSameHits) {
     EXPECT_LT((total.high - total.low) / expected.cell_area, 250);
 }
 
-// A square and a roof. More rays may meet a face than are its share, but no more light.
+// The scene is a square and a roof. More rays may meet a face than its share, but no more light.
 TEST_P(IlluminationRulesTest, WhatIsLitWhollyIsNotLitMore) {
     const Scene scene = scene_of({square(0), make_quad(vec3(3, 0, 0), vec3(1, 0, 1), vec3(0, 1, 0)),
                                   make_quad(vec3(4, 0, 1), vec3(1, 0, -1), vec3(0, 1, 0))});
     fill(scene);
     const Faces faces(context(), scene);
-    uint more = 0;  // rays than their share
+    uint more = 0;  // faces that more rays meet than their share
     for (const uint side : {7u, 30u, 50u})
         for (const GridPoints points : {GridPoints::random, GridPoints::centers})
             for (const FaceGrouping by : {FaceGrouping::face, FaceGrouping::mesh}) {
@@ -179,9 +179,9 @@ TEST_P(IlluminationRulesTest, IntervalsCoverAndEstimatesHaveNoBias) {
     }
     for (int i = 0; i < 3; ++i) {
         EXPECT_LE(missed[i], 5) << i;
-        EXPECT_NEAR(sum[i] / runs, exact[i], width[i] / 10) << i;  // a tenth: of the mean of 100
+        EXPECT_NEAR(sum[i] / runs, exact[i], width[i] / 10) << i;  // a tenth, since it is the mean of 100
     }
-    const double cells = 1.5 / (37 * 37);  // area of one
+    const double cells = 1.5 / (37 * 37);  // the area of one
     EXPECT_LT(width[0], 90 * cells);
     EXPECT_LT(width[2], 12 * cells);
 }
@@ -222,7 +222,7 @@ TEST_P(IlluminationRulesTest, NothingToSeeIsNoLight) {
         EXPECT_EQ(result.total.fraction(), 0);
         EXPECT_EQ(result.groups.size(), count_triangles(scene));
     }
-    // Seen from its edge, and all at one point.
+    // The square is seen from its edge, and then lies all at one point.
     EXPECT_EQ(lit(scene_of({square(0)}), lit_along({0, 1, 0})).total.area, 0);
     EXPECT_EQ(lit(scene_of({make_quad(vec3(0), vec3(0), vec3(0))}), lit_along({0, 1, 0})).total.hits, 0u);
 }

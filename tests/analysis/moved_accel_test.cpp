@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Analyses of an accelerator as it is, after the device has moved what it holds, against the scene that it has become.
+// Analyses of an accelerator as it is, after the device has moved its contents, compared with the scene that it has
+// become.
 #include <twinray/queries.h>
 
 #include <cmath>
@@ -13,7 +14,7 @@ class AnalysesOfMovedAccels : public AnalysisTest {
   protected:
     AccelOptions accel_options() const override { return {.keeps_surfaces = true, .compiles_in_background = false}; }
 
-    // A floor, a dented sphere three times and a box, with materials; where they are pushed, and where they end.
+    // A floor, a dented sphere three times and a box, with materials: before() has them as pushed, after() as they end.
     Scene before() {
         Scene scene;
         Mesh floor = make_grid(4, 4), sphere = make_icosphere(1, 0.3f), box = make_box(vec3(-0.2f), vec3(0.2f));
@@ -36,7 +37,7 @@ class AnalysesOfMovedAccels : public AnalysisTest {
         scene.instances[4].transform = Transform::translation({0.6f, 0.5f, 0.5f});
         return scene;
     }
-    // Pushes the one and has the device make the other of it.
+    // Pushes the scene of before() and has the device turn it into that of after().
     std::vector<AccelHandle> push_and_move() {
         const Scene first = before(), last = after();
         std::vector<AccelHandle> handles;
@@ -81,7 +82,7 @@ TEST_P(AnalysesOfMovedAccels, TheSceneIsThatWhichTheyHold) {
     }
 }
 
-// To the last bit: the same rays meet the same triangles.
+// Results agree to the last bit, since the same rays meet the same triangles.
 TEST_P(AnalysesOfMovedAccels, EveryAnalysisIsThatOfTheSceneThatTheyHold) {
     push_and_move();
     const Scene scene = after();

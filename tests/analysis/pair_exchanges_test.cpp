@@ -31,7 +31,7 @@ TWINRAY_OVER_EVERY_ACCEL(PairExchangesOfAccels);
 class PairExchangesTest : public PairExchangesOfAccels {};
 TWINRAY_OVER_SOFTWARE(PairExchangesTest);
 
-// A square below another, and a plate between them.
+// Makes a square below another, and a plate between them.
 Scene plate_between(float distance) {
     Scene scene = test::parallel_squares(distance);
     scene.meshes.push_back(make_quad(vec3(0.2f, 0.2f, distance / 2), vec3(0, 0.6f, 0), vec3(0.6f, 0, 0)));
@@ -39,7 +39,7 @@ Scene plate_between(float distance) {
     return scene;
 }
 
-// The edge in common taken apart.
+// Takes the common edge of two rectangles apart.
 Scene perpendicular_apart(float gap) {
     Scene scene = test::perpendicular_rectangles(1, 1);
     scene.instances[0].transform = Transform::translation(vec3(gap, 0, 0));
@@ -72,7 +72,7 @@ TEST_P(PairExchangesTest, IntervalsOfAreasHoldTheTruthAsOftenAsTheyShould) {
     }
 }
 
-// A triangle, and another of which the part above the first one's plane, `height` of it, alone is seen.
+// Makes a triangle, and another that is only seen where it is above the first one's plane, by up to `height`.
 Scene mostly_behind(float height, const Transform& transform = {}) {
     Mesh seen, other;
     seen.positions = {vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)};
@@ -102,7 +102,7 @@ TEST_P(PairExchangesTest, IntervalsHoldTheTruthWhereAFaceIsMostlyBehindTheOther)
     }
 }
 
-// Of faces that see hardly anything else, rays may tell more than there is.
+// If faces see hardly anything else, rays may count more than there is.
 TEST_P(PairExchangesTest, NoFaceSendsMoreThanItHas) {
     const Scene scene = test::parallel_squares(0.09f);
     fill(scene);
@@ -119,7 +119,7 @@ TEST_P(PairExchangesTest, NoFaceSendsMoreThanItHas) {
     EXPECT_TRUE(is_cut);
 }
 
-// A square at half the height of parallel squares with a hole of 1/16 in its middle, and further out than they are.
+// Makes a square half way between parallel squares, larger than they are, with a hole of 1/16 in its middle.
 Mesh pierced_plate() {
     Mesh mesh;
     for (const float half : {1.5f, 0x1p-5f})
@@ -134,7 +134,7 @@ Mesh pierced_plate() {
     return mesh;
 }
 
-// Whether rays of an area find the hole is chance, of which the mean must not depend.
+// It is chance whether rays of an area find the hole, but the mean must not depend on it.
 TEST_P(PairExchangesTest, FewRaysThroughAHoleHaveNoBias) {
     Scene scene = test::parallel_squares(1);
     scene.meshes.push_back(pierced_plate());
@@ -198,7 +198,7 @@ TEST_P(PairExchangesTest, RowsThatContoursFillNeedFewRays) {
         for (const ViewFactor& entry : row.factors) sum += entry.value;
         EXPECT_NEAR(sum, 1, 1e-6);
     }
-    room.meshes[0].triangles.pop_back();  // a hole: what is open is told by rays
+    room.meshes[0].triangles.pop_back();  // a hole: rays tell what is open
     for (const ViewFactorRow& row : rows(room, {.rays = 1 << 15}, PairEstimator::automatic))
         EXPECT_EQ(row.rays, row.open.value > 0 ? 1u << 15 : 1024u);
 }

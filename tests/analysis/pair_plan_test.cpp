@@ -32,7 +32,7 @@ std::string refusal_of(const Scene& scene, PairEstimator estimator) {
     return "";
 }
 
-// Squares with sides of 1 at a distance, and a smaller one half way between.
+// Makes squares with sides of 1 at a distance, and a smaller one half way between.
 Scene plate_between(float distance) {
     return test::scene_of({make_quad(vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)),
                            make_quad(vec3(0, 0, distance), vec3(0, 1, 0), vec3(1, 0, 0)),
@@ -77,7 +77,7 @@ TEST(PairPlan, WhatMayBeBlockedIsLeftToAreasOrHitsByItsGap) {
     }
 }
 
-// A triangle, another one that a corner of `height` above its plane sees, and a square between them.
+// Makes a triangle, another that it sees only by a corner of `height` above its plane, and a square between them.
 Scene corner_behind_plate(float height) {
     Mesh seen, corner;
     seen.positions = {vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Scenes of which tests know what is seen.
+// Scenes for which tests know what is seen.
 #pragma once
 
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace twinray::test {
 
-// One instance of each mesh, or as many as there are transforms of the only one.
+// Makes one instance of each mesh, or as many of the only mesh as there are transforms.
 inline Scene scene_of(std::vector<Mesh> meshes, const std::vector<Transform>& transforms = {{}}) {
     Scene scene;
     scene.materials.resize(1);
@@ -20,8 +20,8 @@ inline Scene scene_of(std::vector<Mesh> meshes, const std::vector<Transform>& tr
     return scene;
 }
 
-// A cube about `middle` with sides of 2 as seen from inside, each wall cut into n by n squares, turned about two axes
-// and rounded to float32: walls miss their planes by that.
+// Makes a cube about `middle` with sides of 2, seen from inside, with each wall cut into n by n squares. It is turned
+// about two axes and rounded to float32: walls miss their planes by that.
 inline Scene rounded_room(uint n, double angle, const dvec3& middle = dvec3(0)) {
     const double c = std::cos(angle), s = std::sin(angle);
     Mesh mesh;

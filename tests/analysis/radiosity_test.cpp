@@ -11,7 +11,7 @@
 namespace twinray {
 namespace {
 
-// With the flow of row 0 known exactly, in float32; `half` is half of every interval.
+// Returns the factors of a cube, with the flow of row 0 known exactly, in float32; `half` is half of every interval.
 std::vector<ViewFactorRow> cube_factors(float parallel, float half = 0) {
     std::vector<ViewFactorRow> rows;
     const float perpendicular = (1 - parallel) / 4;
@@ -27,8 +27,8 @@ std::vector<ViewFactorRow> cube_factors(float parallel, float half = 0) {
 }
 constexpr float known_parallel = 0.199824895698387383f;
 
-// Of the face that radiates 1, of the one opposite and of those beside it, with factors p and s = (1 - p) / 4, by
-// symmetry: the modes (1, 1, 1), (1, 1, -1/2) and (1, -1, 0) are eigenvectors of F with 1, p - 2 s and -p.
+// The light of the face that radiates 1, of the one opposite and of those beside it, with factors p and s = (1 - p) /
+// 4, by symmetry: the modes (1, 1, 1), (1, 1, -1/2) and (1, -1, 0) are eigenvectors of F with 1, p - 2 s and -p.
 struct CubeLight {
     double emitter, opposite, side;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Analyses by an accelerator, of scenes of which tests know what is seen.
+// Analyses by an accelerator, in scenes for which tests know what is seen.
 #pragma once
 
 #include <twinray/analysis.h>
@@ -11,17 +11,17 @@
 
 namespace twinray::test {
 
-// Rotates, stretches unevenly and moves.
+// Returns a transform that rotates, stretches unevenly and moves.
 inline Transform skewed() {
     return {{vec4(1.5f, -0.5f, 0.25f, 3), vec4(0.5f, 2, -0.75f, -1), vec4(0.25f, 0.5f, 0.625f, 5)}};
 }
 
-// The same, and turns inside out.
+// Returns the same transform, which also turns inside out.
 inline Transform mirrored() { return skewed() * Transform::scaling(vec3(-1, 1, 1)); }
 
 class AnalysisTest : public AccelTest {
   protected:
-    // Empties the accelerator before.
+    // Empties the accelerator, then pushes the scene.
     void fill(const Scene& scene) {
         for (const AccelHandle handle : accel().handles()) accel().erase(handle);
         push_scene(accel(), scene);

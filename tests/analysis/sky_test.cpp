@@ -57,7 +57,7 @@ TEST_P(SkyRulesTest, AStreetSeesWhatItsWallsLeave) {
                                   make_quad(vec3(0, -1000, 0), vec3(0, 2000, 0), vec3(0, 0, 1)),
                                   make_quad(vec3(1, -1000, 0), vec3(0, 0, 1), vec3(0, 2000, 0))});
     const SkyLight light = sky(scene, {.samples = 20000, .sides = Sides::front});
-    // Each of the floor's triangles has points of all distances from the walls alike in the mean of both.
+    // In the mean of both, the floor's triangles have points at all distances from the walls alike.
     const double floor = (light.faces[0].value + light.faces[1].value) / 2;
     EXPECT_NEAR(floor, std::sqrt(2.0) - 1, 0.01);
     EXPECT_LT(light.faces[0].interval.high - light.faces[0].interval.low, 0.04);
@@ -79,7 +79,7 @@ TEST_P(SkyTest, NothingGetsOutOfABoxAndNothingIsLostOutsideOfIt) {
 // A square, and another that hides half of it from the sun above.
 Scene half_hidden() { return scene_of({square(0), make_quad(vec3(0.5f, 0, 1), vec3(1, 0, 0), vec3(0, 1, 0))}); }
 
-// Half of the lower square lies in the shadow of the upper one, of the sun from above and from the side.
+// Half of the lower square lies in the shadow of the upper one, for the sun from above and from the side.
 TEST_P(SkyTest, HoursOfSunAreThoseOfTheShadows) {
     const Scene scene = half_hidden();
     const std::vector<SunPosition> positions = {{{0, 0, -1}, 2}, {{-7, 0, -7}, 3}, {{0, 0, 0.1}, 0.5}};

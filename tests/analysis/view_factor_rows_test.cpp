@@ -19,7 +19,7 @@ constexpr double parallel = 0.199824895698387383, perpendicular = 0.200043776075
 
 Estimate fraction(double value) { return {value, {value, value}}; }
 
-// Symmetric flows at random, and areas that they and what is open add up to; and what rays would count of them.
+// Random symmetric flows, the areas that the flows and the open part add up to, and what rays would count of them.
 struct Made {
     std::vector<ViewFactorRow> exact, counted;
     std::vector<double> areas;

@@ -17,25 +17,25 @@ struct KnownFactor {
     double value;  // from mesh 0 to mesh 1
 };
 
-// Squares with sides of 1 that face each other at this distance.
+// Makes squares with sides of 1 that face each other at this distance.
 inline Scene parallel_squares(float distance) {
     return scene_of({make_quad(vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)),
                      make_quad(vec3(0, 0, distance), vec3(0, 1, 0), vec3(1, 0, 0))});
 }
 
-// Rectangles with an edge of 1 in common: the first w wide in the plane z = 0, the second h high.
+// Makes rectangles with a common edge of 1: the first w wide in the plane z = 0, the second h high.
 inline Scene perpendicular_rectangles(float w, float h) {
     return scene_of(
         {make_quad(vec3(0), vec3(w, 0, 0), vec3(0, 1, 0)), make_quad(vec3(0), vec3(0, 1, 0), vec3(0, 0, h))});
 }
 
-// Seen from inside.
+// Turns a mesh so that it is seen from inside.
 inline Mesh turned(Mesh mesh) {
     for (uvec3& triangle : mesh.triangles) std::swap(triangle.y, triangle.z);
     return mesh;
 }
 
-// A regular polygon of n vertices on a circle about the z axis, which looks up.
+// Makes a regular polygon of n vertices on a circle about the z axis, which looks up.
 inline Mesh make_disc(int n, float radius) {
     Mesh mesh;
     mesh.positions.push_back(vec3(0));
@@ -48,7 +48,7 @@ inline Mesh make_disc(int n, float radius) {
     return mesh;
 }
 
-// 0 where there is none.
+// Returns 0 if there is no entry.
 inline const ViewFactor& entry_of(const ViewFactorRow& row, uint target) {
     static const ViewFactor none;
     for (const ViewFactor& entry : row.factors)
@@ -56,7 +56,7 @@ inline const ViewFactor& entry_of(const ViewFactorRow& row, uint target) {
     return none;
 }
 
-// A F from mesh 0 to mesh 1, between which nothing is, in float64.
+// Returns A F in float64 from mesh 0 to mesh 1, if nothing is between them.
 inline double contour_flow(const Scene& scene) {
     const FacePolygons polygons(scene);
     const auto first = static_cast<uint>(scene.meshes[0].triangles.size());

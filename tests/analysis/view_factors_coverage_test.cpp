@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Whether intervals of hits hold the truth as often as they should, from narrow gaps to round things.
+// Coverage of intervals of hits: they hold the truth as often as they should, from narrow gaps to round things.
 #include <twinray/analysis.h>
 
 #include <cmath>
@@ -70,7 +70,7 @@ TEST_P(ViewFactorCoverage, OfDiscsAndSpheres) {
     }
 }
 
-// The radiation that leaves a gap follows from what is not met: 1 - F, which is as small as the gap.
+// The radiation that leaves a gap follows from the rays that meet nothing: 1 - F, which is as small as the gap.
 TEST_P(ViewFactorCoverage, OfWhatLeavesNarrowGaps) {
     const std::vector<std::pair<float, double>> gaps = {
         {1e-1f, 1 - 0.826994522397256578},
@@ -94,12 +94,12 @@ TEST_P(ViewFactorCoverage, OfWhatLeavesNarrowGaps) {
         }
         EXPECT_GE(inside, 0.85 * test::seeds()) << gap;
         EXPECT_NEAR(mean / open, 1, 4 / std::sqrt(leaving)) << gap;
-        // For independent rays; Sobol's have a smaller error.
+        // This holds for independent rays; Sobol's have a smaller error.
         EXPECT_LT(std::sqrt(squares), 1.5 * std::sqrt((1 - open) / (open * static_cast<double>(rays)))) << gap;
     }
 }
 
-// The same square as 2 to 512 faces, in a long run to 131 072, with at least 64 rays each.
+// The same square is cut into 2 to 512 faces, in a long run up to 131 072, with at least 64 rays each.
 TEST_P(ViewFactorCoverage, RefinementLeavesTheFactorOfTheWhole) {
     const int finest = test::seeds() > 100 ? 8 : 4;
     for (int level = 0; level <= finest; level += 2) {

@@ -33,7 +33,7 @@ FIELDS = {"schema", "device", "started", "git", "width", "seed", "scene", "origi
           "build_ms", "build_ms_min", "build_ms_max", "build_wall_ms", "bytes_per_triangle", "scratch_bytes_per_triangle",
           "agreement", "faults", "judged", "hits_hash", *RATIOS}
 
-# Everybody, on everything.
+# All contestants, on all rays.
 said, records = bench("--validation", "--scene", "sphere:320", "--width", "32", "--rounds", "3")
 names = sorted({r["contestant"] for r in records})
 assert {"sw compressed4 watertight", "sw bvh2 watertight"} <= set(names)
@@ -54,7 +54,7 @@ for kind in KINDS:  # layouts give the same bits; a baseline compares with itsel
         assert values == [None] * len(values) or 1 in values, (ratio, values)
 assert all(r["vs_sw"] is not None for r in records)
 
-# Some, on some.
+# Some contestants, on some rays.
 _, records = bench("--scene", "instances:4x80", "--width", "16", "--rounds", "1", "--ray-kinds", "occlusion", "--layouts", "bvh2",
                    "--levels", "fast,watertight", "--backends", "sw", "--no-build")
 assert [(r["rays"], r["contestant"]) for r in records] == [("occlusion", "sw bvh2 fast"), ("occlusion", "sw bvh2 watertight")]
@@ -63,7 +63,7 @@ _, records = bench("--scene", "soup:100", "--width", "16", "--rounds", "1", "--r
                    "--backends", "compressed4,embree")
 assert not any(r["backend"] == "embree" for r in records)
 
-# Rays in random order, and who sorts them.
+# Rays in random order, and the contestants that sort them.
 said, records = bench("--scene", "sphere:320", "--width", "32", "--rounds", "1", "--ray-kinds", "incoherent,shuffled", "--layouts",
                       "bvh2", "--backends", "sw,embree8 low", "--ray-orders", "given,sorted", "--no-build")
 ours = [r for r in records if r["backend"] == "sw"]
@@ -74,12 +74,12 @@ assert len({(r["rays"], r["hits_hash"]) for r in ours}) == 2, "hits depend on th
 assert len({r["hits_hash"] for r in ours}) == 2, "shuffled rays are not"
 assert all(r["ray_order"] == "" for r in records if r["backend"] == "embree")
 
-# Whoever is too slow traces whole tiles, evenly chosen, and has no hash.
+# A contestant that is too slow traces whole tiles, evenly chosen, and has no hash.
 _, records = bench("--scene", "sphere:80", "--width", "64", "--rounds", "1", "--backends", "compressed4", "--max-seconds",
                    "1e-9")
 assert all(r["n"] == 4 * 64 and r["hits_hash"] is None and r["mrays_per_s"] > 0 for r in records)
 
-# How times grow.
+# The growth of times.
 said, records = bench("--growth", "80,320,1280", "--width", "16", "--rounds", "1", "--backends", "compressed4")
 assert [r["scene"] for r in records[:-1:2]] == ["sphere:80", "sphere:320", "sphere:1280"]
 growth = records[-1]
@@ -102,7 +102,8 @@ for kind in KINDS[1:]:
     assert all(a["features"] & b["features"] == a["features"] for a, b in zip(steps, steps[1:]))
     assert len({r["hits_hash"] for r in steps}) == 1 and steps[0]["hits_hash"] in said
     assert all(r["ns_per_ray"] > 0 and r["rounds"] == 5 for r in steps) and steps[0]["of_needed"] == 1
-# And what is kept: the least first, vertices alone where they move or levels are refined, no layout in less.
+# Steps also tell the memory that is kept: the least first, vertices only where they move or levels are refined, no
+# layout in less.
 kept = {r["configuration"]: r for r in records if "configuration" in r}
 assert list(kept)[0] == "needed" and "bytes/triangle" in said and all(r["build_ms"] > 0 for r in kept.values())
 assert kept["needed"]["total_bytes_per_triangle"] <= 1.01 * min(r["total_bytes_per_triangle"] for r in kept.values())

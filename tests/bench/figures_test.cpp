@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Figures of a bench and the table that they stand in, and the hash of the hits that they are of.
+// Figures of a bench, the table that shows them, and the hash of the hits that they belong to.
 #include "bench/figures.h"
 #include "bench/measure.h"
 #include "engine/core/fnv1a.h"
@@ -23,7 +23,7 @@ TEST(BenchFigures, RatesAreMillionsASecond) {
     EXPECT_DOUBLE_EQ(rate.max, 10);
 }
 
-// The machine was half as fast in the second round and in another in which only the baseline suffered.
+// The machine was half as fast in the second round, and in another round only the baseline suffered.
 TEST(BenchFigures, SpeedUpsCompareWithinARound) {
     EXPECT_DOUBLE_EQ(speed_up(rounds_of({100, 200, 100}), rounds_of({800, 800, 400})), 4);
     EXPECT_DOUBLE_EQ(speed_up(rounds_of({100, 200, 100}), rounds_of({100, 200, 100})), 1);

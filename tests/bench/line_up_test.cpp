@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rays that a device makes for a scene, and the backends that are to find the same hits with them.
+// Rays that a device makes for a scene, and the backends that must find the same hits for them.
 #include "bench/line_up.h"
 
 #include <cmath>
@@ -105,7 +105,7 @@ TEST_F(LineUpTest, EveryBaselineIsItself) {
     EXPECT_EQ(find(Baseline::embree8, line_up).has_value(), why_no_embree().empty());
 }
 
-// The sets of rays, and primary rays whose intervals end before their hits or begin behind them.
+// Returns the sets of rays, and primary rays whose intervals end before their hits or begin behind them.
 std::vector<RayBatch> batches_of(Context& context, const BenchScene& scene, Backend& first) {
     auto sets = make_rays(context, scene, 48, 1);
     std::vector<Ray> cut = sets[0];
@@ -133,7 +133,7 @@ bool are_alike(const Hit& a, const Hit& b, Query query) {
            std::abs(a.v - b.v) < 1e-2f;
 }
 
-// But for the rounding at edges and of t.
+// Hits agree except for rounding, at edges and of t.
 TEST_F(LineUpTest, AllGiveTheSameHits) {
     LineUp line_up = make_line_up(context(), nullptr, {});
     for (const char* name : {"sphere:2000", "instances:20x320"}) {
@@ -163,7 +163,7 @@ TEST_F(LineUpTest, AllGiveTheSameHits) {
     }
 }
 
-// Or they are not what was asked for: in a soup the first hit that is found is seldom the closest.
+// Otherwise they are not what was asked for: in a soup the first hit that is found is seldom the closest.
 TEST_F(LineUpTest, AnyHitsAreNotTheClosest) {
     const LineUp line_up = make_line_up(context(), nullptr, {.only = {"sw"}});
     const BenchScene scene = make_scene("soup:2000");

@@ -14,7 +14,7 @@ std::vector<Ray> numbered(std::size_t count) {
     return rays;
 }
 
-// The numbers of the tiles; a failure unless each is whole.
+// Returns the numbers of the tiles, and fails unless each is whole.
 std::vector<std::size_t> tiles_of(const std::vector<Ray>& rays) {
     std::vector<std::size_t> tiles;
     EXPECT_EQ(rays.size() % rays_a_tile, 0u);
@@ -54,7 +54,7 @@ TEST(Tiles, AllAreTakenWhereNoMoreAreThere) {
     EXPECT_TRUE(even_tiles({}, 3).empty());
 }
 
-// Takes `ns_per_ray` by its own word, the first time 1000 times as long; writes down whose turn it was.
+// Reports that it takes `ns_per_ray`, the first time 1000 times as long, and records whose turn it was.
 class FakeBackend : public Backend {
   public:
     FakeBackend(std::string name, double ns_per_ray, std::vector<std::string>& log)

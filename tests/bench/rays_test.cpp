@@ -56,7 +56,7 @@ void expect_traceable(const Ray& ray) {
     ASSERT_NEAR(length(ray.direction), 1, 1e-6);
 }
 
-// Whether they come from the points in order, each as often as any other within one.
+// Expects rays from the points in order, each point as often as any other within one.
 void expect_order(const std::vector<Ray>& rays, const std::vector<Surface>& points) {
     std::vector<std::size_t> uses(points.size());
     std::size_t at = 0;
@@ -83,7 +83,7 @@ TEST(BenchRays, PointsLieWhereRaysMetTheScene) {
     }
 }
 
-// From the outside of a convex shape no ray into the outer hemisphere meets it again, unless it starts wrong.
+// Outside a convex shape, no ray into the outer hemisphere meets it again, unless it starts wrong.
 TEST(BenchRays, IncoherentRaysLeaveTheSurface) {
     const Convex shape = convex();
     const std::vector<Ray> rays = incoherent_rays(shape.points, 5000, 3);

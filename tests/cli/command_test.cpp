@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Command lines: what is taken and refused, and what help, man pages and shells' completion tell of them.
+// Command lines: what is taken and refused, and what help, man pages and shell completion say about them.
 // cli_command_test.py tests what shells do with the scripts.
 #include <gtest/gtest.h>
 
@@ -41,7 +41,7 @@ TEST(Parse, ValuesGoWhereTheyAreBound) {
     EXPECT_TRUE(values.quiet);
 }
 
-// On Windows, too, where the parser of others takes them for options.
+// This also holds on Windows, where the parser of others takes them for options.
 TEST(Parse, NamesOfFilesMayBeginWithASlash) {
     const SampleValues values = parsed({"/a.ply", "-o", "/here"});
     EXPECT_EQ(values.scene, "/a.ply");

@@ -12,7 +12,7 @@ namespace {
 using test::error_if_any;
 
 const Mesh unit_cube = make_box(vec3(0), vec3(1));
-// Its box is [p, p + size], exactly where both are representable.
+// Places the cube so that its box is [p, p + size], exactly if both are representable.
 Transform placed(vec3 p, float size = 1) { return Transform::translation(p) * Transform::scaling(vec3(size)); }
 
 struct Cube {
@@ -21,7 +21,7 @@ struct Cube {
     Transform transform() const { return placed(lo, size); }
 };
 
-// Multiples of 1/64, so that many touch and nothing rounds.
+// Returns cubes at multiples of 1/64, so that many touch and nothing rounds.
 std::vector<Cube> random_cubes(std::size_t count, unsigned seed, int extent) {
     std::mt19937 random(seed);
     const auto coordinate = [&] {
@@ -47,7 +47,7 @@ std::vector<Transform> transforms_of(std::span<const Cube> cubes) {
     return transforms;
 }
 
-// Pairs (first_a + i, first_b + j); within one set, i < j.
+// Returns the pairs (first_a + i, first_b + j); within one set, i < j.
 std::vector<InstancePair> brute_force(std::span<const Cube> a, std::span<const Cube> b, uint first_a, uint first_b) {
     std::vector<InstancePair> pairs;
     const bool is_within = a.data() == b.data();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Contacts of triangles by the GPU, against the exact class of every pair, and against counts that are known.
+// Contacts of triangles by the GPU, compared with the exact class of every pair and with known counts.
 #include <twinray/queries.h>
 
 #include <algorithm>
@@ -40,7 +40,7 @@ class NarrowPhaseTest : public test::VulkanTest {
     std::unique_ptr<NarrowPhase> narrow_phase_;
 };
 
-// Contacts of different instances.
+// Returns the contacts of different instances.
 std::vector<TriangleContact> brute_force(const std::vector<MeshView>& meshes,
                                          const std::vector<MeshInstance>& instances) {
     std::vector<std::vector<test::PlacedTriangle>> placed;
@@ -115,7 +115,7 @@ TEST_F(NarrowPhaseTest, CubesThatTouch) {
     EXPECT_GT(through.count(PairClass::crossing), 8u);
 }
 
-// Spheres whose extreme vertices meet in one point; of the triangles there, each lies opposite to one in its own plane.
+// The extreme vertices of two spheres meet in one point; each triangle there lies opposite to one in its own plane.
 TEST_F(NarrowPhaseTest, TangentSpheres) {
     const Soup ball = test::sphere(3);
     const Contacts found = find({ball.view()}, {{0, {}}, {0, Transform::translation(vec3(2, 0, 0))}});

@@ -13,13 +13,14 @@ namespace twinray::test {
 
 inline WorldTriangle triangle_of(dvec3 a, dvec3 b, dvec3 c) { return {a, b, c}; }
 
-// TWINRAY_LATTICE_PAIRS, or as many as are decided within seconds.
+// Returns TWINRAY_LATTICE_PAIRS, or as many as are decided within seconds.
 inline std::size_t lattice_count() {
     const char* asked = std::getenv("TWINRAY_LATTICE_PAIRS");
     return asked ? std::stoul(asked) : 100'000;
 }
 
-// Corners among {-2..2}^3, of every fourth pair in one plane: half of them touch or overlap, in every way there is.
+// Returns pairs with corners among {-2..2}^3, every fourth pair in one plane: half of them touch or overlap, in every
+// possible way.
 inline std::vector<TrianglePair> lattice_pairs(std::size_t count, unsigned seed) {
     std::mt19937 random(seed);
     const auto one = [&] { return static_cast<double>(random() % 5) - 2; };
@@ -41,7 +42,7 @@ inline std::vector<TrianglePair> lattice_pairs(std::size_t count, unsigned seed)
     return pairs;
 }
 
-// The six orders of its vertices.
+// Returns the triangle with its vertices in all six orders.
 inline std::vector<WorldTriangle> permutations(const WorldTriangle& t) {
     return {{t.a, t.b, t.c}, {t.a, t.c, t.b}, {t.b, t.a, t.c}, {t.b, t.c, t.a}, {t.c, t.a, t.b}, {t.c, t.b, t.a}};
 }

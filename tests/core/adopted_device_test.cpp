@@ -24,7 +24,7 @@ namespace {
 
 class AdoptedDeviceTest : public test::HostTest {
   protected:
-    // An Error that says this, where the device is adopted.
+    // Expects an Error that says this when the device is adopted.
     void expect_refusal(const std::string& part) {
         test::expect_error(part, [&] { const Context context(host_.device); });
     }
@@ -69,7 +69,7 @@ TEST_F(AdoptedDeviceTest, TheHostSubmitsFromAnotherThreadUnderTheSameLock) {
                 const std::lock_guard lock(mutex);
                 vkQueueSubmit(host_.device.queue, 0, nullptr, VK_NULL_HANDLE);
             }
-            // Else the validation layer falls behind, and reports that it has waited for 10 s.
+            // Otherwise the validation layer falls behind, and reports that it has waited for 10 s.
             std::this_thread::sleep_for(std::chrono::microseconds(50));
         }
     });
@@ -81,7 +81,7 @@ TEST_F(AdoptedDeviceTest, TheHostSubmitsFromAnotherThreadUnderTheSameLock) {
     other.join();
 }
 
-// Features and extensions of the host's own, some of them the same: the layer would complain of what is there twice.
+// The host has features and extensions of its own, some of them the same: the layer would complain of duplicates.
 TEST_F(AdoptedDeviceTest, BothAcceleratorsTraceOnADeviceThatEnablesMore) {
     VkPhysicalDeviceVulkan12Features own{};
     own.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
@@ -108,7 +108,7 @@ TEST_F(AdoptedDeviceTest, SoftwareAloneTracesWithoutTheExtensions) {
     expect_both_trace(host_.device);
 }
 
-// Before it makes a kernel: SwiftShader ends the process where one computes in float64.
+// The error comes before a kernel is made: SwiftShader ends the process if one computes in float64.
 TEST_F(AdoptedDeviceTest, DistancesAndContactsNeedFloat64) {
     host_.wants_float64 = false;
     ASSERT_TRUE(host_.create());

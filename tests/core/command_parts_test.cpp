@@ -23,7 +23,7 @@ class CommandPartsTest : public test::VulkanTest {
         return {.most_submission_seconds = 1e-9, .get_instance_proc_addr = faults_.entry()};
     }
     std::uint64_t submissions() { return context().last_submission().value; }
-    // Three passes of a group and one that copies.
+    // Records three passes of a group and one that copies.
     void record(Commands& commands, const Buffer& from, const Buffer& to) {
         const Kernel<PartArgs> nothing(context(), {.name = "nothing", .spirv = test_nothing_spirv});
         for (int i = 0; i < 3; ++i) nothing.dispatch(commands, {0}, 1);

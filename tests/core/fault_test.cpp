@@ -33,7 +33,7 @@ class FaultsOfCore : public ::testing::Test {
     }
     FaultInjector& faults() { return faults_; }
     Context& context() { return *context_; }
-    // Whether wait_for_gpu() has anything to wait for.
+    // Returns whether wait_for_gpu() has anything to wait for.
     bool must_wait() {
         faults_.inject({.function = "vkWaitSemaphores", .count = every_call});
         const Outcome outcome = outcome_of([&] { context_->wait_for_gpu(); });
@@ -48,7 +48,7 @@ class FaultsOfCore : public ::testing::Test {
 
 TEST_F(FaultsOfCore, MemoryThatCannotBeMappedIsRefused) {
     faults().inject({.function = "vkMapMemory", .count = every_call});
-    // Too large for the block that is mapped already.
+    // The buffer is too large for the block that is mapped already.
     const BufferDesc staged{.name = "staged", .bytes = 1 << 28, .memory = Memory::upload};
     std::string what;
     EXPECT_EQ(outcome_of([&] { Buffer(context(), staged); }, &what), Outcome::error);
@@ -112,7 +112,7 @@ TEST_F(FaultsOfCore, RecordingForTheHost) {
     }
 }
 
-// Another instance beside the context's.
+// Lists the devices by another instance, beside the context's.
 TEST_F(FaultsOfCore, ListingTheDevices) {
     const Counts before = faults().live();
     for (std::uint64_t n = 1; !HasFailure(); ++n) {
@@ -142,7 +142,7 @@ TEST(HungDevice, IsLostAndNotWaitedForAgain) {
         EXPECT_THROW(context->wait_for_gpu(), DeviceLost);
         EXPECT_EQ(driver.calls(), calls);
         driver.heal();
-        // Else what it runs would be left to it.
+        // Otherwise the device would still be at work when it goes.
         const auto reached = [&] {
             std::uint64_t value = 0;
             context->state().vk().vkGetSemaphoreCounterValue(context->device(), point.semaphore, &value);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Buffers in memory of the host's: tests/install/host uses an allocator of its own; this one fails and breaks promises.
+// Buffers in the host's memory: tests/install/host uses an allocator of its own; this one fails and breaks promises.
 #include <cmath>
 #include <set>
 
@@ -11,7 +11,7 @@
 namespace twinray {
 namespace {
 
-// A VkDeviceMemory for each buffer.
+// Gives each buffer a VkDeviceMemory.
 class HostMemory {
   public:
     explicit HostMemory(const AdoptedDevice& device) : device_(device) {}
@@ -100,7 +100,7 @@ class HostAllocator : public test::HostTest {
         host_.device.allocator = memory_.hooks();
     }
     void TearDown() override { EXPECT_EQ(memory_.live(), 0u) << "buffers that twinray did not give back"; }
-    // `breaks`: what the memory does from then on that it must not.
+    // Returns the failure when the memory breaks its promise `breaks` from then on.
     std::string failure_of(const BufferDesc& desc, bool HostMemory::*breaks) {
         Context context(host_.device);
         memory_.*breaks = true;
@@ -143,7 +143,7 @@ TEST_F(HostAllocator, ServesBothAccelerators) {
     EXPECT_EQ(context.allocated_bytes(), 0u);
 }
 
-// The n-th allocation fails, for every n that there is.
+// The n-th allocation fails, for every possible n.
 TEST_F(HostAllocator, AFailureAnywhereIsAnErrorAndLeaksNothing) {
     Context context(host_.device);
     const std::size_t own = memory_.live();

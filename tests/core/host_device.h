@@ -25,7 +25,7 @@ struct Host {
     DeviceProperties supported;
     bool wants_hardware = true;  // false: without the ray tracing extensions
     bool wants_float64 = true;
-    std::function<void(VkDeviceCreateInfo&)> extend = {};  // with what the host wants for itself
+    std::function<void(VkDeviceCreateInfo&)> extend = {};  // adds what the host wants for itself
 
     Host() = default;
     Host(const Host&) = delete;
@@ -126,7 +126,7 @@ inline bool Host::create_device(VkPhysicalDevice physical, DeviceRequirements& r
     return true;
 }
 
-// For label `vulkan`.
+// The fixture for label `vulkan`.
 class HostTest : public ::testing::Test {
   protected:
     void SetUp() override {

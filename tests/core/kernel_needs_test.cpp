@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Every SPIR-V module of the build declares no more than the table of requirements says of the parts of twinray that it
-// belongs to, so that no device is asked for what a scene does not need.
+// Needs of kernels: every SPIR-V module of the build declares no more than the table of requirements says of its parts
+// of twinray, so that no device is asked for what a scene does not need.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,8 @@ namespace {
 using Of = Requirement::Of;
 using Parts = std::set<Of>;
 
-// By how a module's name begins, with the folder of its shader or the name of its kernel; the first that fits counts.
+// The parts of modules whose names begin so, with the folder of the shader or the name of the kernel; the first that
+// fits counts.
 struct Family {
     const char* begin;
     Parts parts = {};
@@ -87,14 +88,14 @@ Parts parts_of(const std::string& module) {
     return parts;
 }
 
-// Tutorials name their kernels as a reader would, so that their folder is their family.
+// Tutorials name their kernels as a reader would, so their folder is their family.
 Parts parts_of_file(const std::filesystem::path& file) {
     const std::string name = file.stem().string();
     return file.string().find("/samples/tutorials/") == std::string::npos ? parts_of(name) : parts_of_words(name);
 }
 
-// The values that the host gives them for a GPU; for a CPU's driver it asks the device (KernelTuning). Groups that have
-// as many invocations as a vector has lanes are at their largest.
+// Returns the values that the host gives constants for a GPU; for a CPU's driver it asks the device (KernelTuning).
+// Groups that have as many invocations as a vector has lanes are at their largest.
 std::map<std::uint32_t, std::uint32_t> constants_of(const std::string& module) {
     if (module.starts_with("engine_sort_scan")) return {{GROUP_SIZE_CONSTANT, SCAN_GPU_GROUP}};
     if (module.starts_with("engine_sort"))
@@ -102,7 +103,7 @@ std::map<std::uint32_t, std::uint32_t> constants_of(const std::string& module) {
     return {{GROUP_SIZE_CONSTANT, KernelLimits::group_invocations}};
 }
 
-// One sentence for each thing that the module needs and its parts may not.
+// Returns one sentence for each thing that the module needs and its parts may not.
 std::vector<std::string> excess_of(const SpirvNeeds& needs, const Parts& parts) {
     std::set<std::uint32_t> capabilities;
     std::set<std::string> extensions;
@@ -171,7 +172,7 @@ TEST(KernelNeeds, AModuleOfNoKnownPartFails) {
     EXPECT_THROW(parts_of_file("build/samples/volume/spirv/march.spv"), Error);
 }
 
-// As the rows of the table stand: what no kernel uses is in none, float64 and rays only in theirs.
+// The rows of the table agree: no row has what no kernel uses, and only the rows of float64 and rays have these.
 TEST(KernelNeeds, OfThePartsDiffer) {
     constexpr std::uint32_t float64 = 10, int64 = 11, subgroups = 61, ray_query = 4472;
     const auto excess = [](std::uint32_t capability, const Parts& parts) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Kernels: equal ones share a pipeline, and none gets an address that cannot be read. Every test of a VulkanTest checks
-// that for each dispatch that it makes, by a validation message; here it is seen that the message comes.
+// Kernels: equal ones share a pipeline, and none gets an address that cannot be read. Every VulkanTest checks that for
+// each dispatch, by a validation message; here the message is seen to come.
 #include "engine/core/kernel_addresses.h"
 #include "engine/core/pipeline_table.h"
 

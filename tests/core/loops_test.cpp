@@ -30,7 +30,7 @@ struct PowerOf {
 
 constexpr std::tuple lights{Lamp{60}, Sun{1000}, Lamp{40}};
 
-// Each of them in a constant expression: neither heap nor run time.
+// Runs each of them in a constant expression: no heap and no run time.
 static_assert([] {
     double total = 0;
     for_unrolled([](const auto& light, double& sum) { sum = 10 * sum + PowerOf{}(light, 0.001); }, lights, total);

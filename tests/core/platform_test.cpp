@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What every system does in a way of its own: programs that are started, folders, memory.
+// Features that every system has in a way of its own: programs that are started, folders, memory.
 #include "engine/core/platform.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 const std::vector<std::string> hard_words = {"a b", "", "\"", "a\\", "a\\\\\"b c\\\\", "*", "100%", "$HOME", "\t"};
 
-// In the process that the tests below start: does what its environment says.
+// Runs in the process that the tests below start, and does what its environment says.
 TEST(PlatformChild, DoesWhatItIsTold) {
     const char* const told = std::getenv("TWINRAY_TEST_CHILD");
     const std::string what = told ? told : "";

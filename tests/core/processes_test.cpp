@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Contexts in processes that a fork made, and calls whose caller wants them to end.
+// Contexts in forked processes, and calls whose caller wants them to end.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -16,7 +16,7 @@ class ProcessesTest : public test::AccelTest {
     AccelOptions accel_options() const override { return {.compiles_in_background = true}; }
     bool shares_context() const override { return false; }
 
-    // Status with which a child process ended that did this; it has 60 s.
+    // Returns the status with which a child process ended that did this; it has 60 s.
     template <class Action>
     static int status_of_child(const Action& action) {
         const pid_t child = fork();
@@ -52,7 +52,7 @@ TEST_P(ProcessesTest, AChildOpensADeviceOfItsOwnAndLeavesTheParentsAlone) {
     EXPECT_EQ(closest(test::down(0.5f, 0.5f)).t, 10) << "in the parent";
 }
 
-// Whether the action ends so.
+// Returns whether the action is interrupted.
 template <class Action>
 bool is_interrupted(const Action& action) {
     try {

@@ -15,7 +15,7 @@ class RadixSortTest : public test::VulkanTest {
   protected:
     enum class Groups { from_host, from_device, none_from_device };
     enum class Values { given, places, places_by_own_keys };
-    // Values are 0, 1, 2, ... so that they show stability, or, where these are meant, others that must not be read.
+    // Values are 0, 1, 2, ... to show stability; if places are meant, the values are others, which must not be read.
     std::vector<uint> sorted_values(const RadixSort& sort, uint threads, const std::vector<uint>& keys, uint bits,
                                     Groups from = Groups::from_host, Values kind = Values::given) {
         const std::uint64_t bytes = keys.size() * sizeof(uint);

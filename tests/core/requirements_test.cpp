@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Requirements as they are told before a device is created, the choice of one, and what a device's info says.
+// Requirements as listed before a device is created, the choice of a device, and what its info says.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -25,7 +25,7 @@ DeviceProperties capable() {
 struct Info : VkDeviceCreateInfo {
     Info() : VkDeviceCreateInfo{} { sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO; }
 
-    // How often each type of struct stands in the chain.
+    // Returns how often each type of struct is in the chain.
     std::map<VkStructureType, int> types() const {
         std::map<VkStructureType, int> counts;
         for (auto* node = static_cast<const VkBaseInStructure*>(pNext); node; node = node->pNext) ++counts[node->sType];

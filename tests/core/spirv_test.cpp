@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
+// SPIR-V with known constants, word by word, and branches that they decide, as text.
 // One file of more than 400 lines, since all tests share the builders of modules below.
-// SPIR-V in which constants are known, word by word, and branches that they decide, as text.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -101,7 +101,7 @@ class PrunedSpirv : public ::testing::Test {
     void write(const std::string& file, const Words& words) const {
         folder_.write(file, {reinterpret_cast<const char*>(words.data()), 4 * words.size()});
     }
-    // The rest of a kernel as text, which spirv-val finds valid. `functions` stand beside main; each text has an
+    // Returns the rest of a kernel as text, which spirv-val finds valid. `functions` come beside main; each text has an
     // instruction %gone and one %kept, both with a name and a decoration.
     std::string pruned(const std::string& main, const std::string& functions = "") const {
         std::ofstream(folder_ / "before.txt") << R"(
@@ -194,7 +194,7 @@ TEST_F(PrunedSpirv, ABranchOnWhatIsNotKnownStays) {
     EXPECT_EQ(count(left, "OpSelectionMerge"), 1u) << left;
 }
 
-// `false && unknown` by a branch, as GLSL's && is compiled, and by operators.
+// Decides `false && unknown` by a branch, as GLSL's && is compiled, and by operators.
 TEST_F(PrunedSpirv, ConditionsThatFollowAreKnown) {
     const std::string left = pruned(R"(
         OpSelectionMerge %joined None
@@ -263,7 +263,7 @@ TEST_F(PrunedSpirv, NumbersThatFollowAreKnown) {
     EXPECT_EQ(count(pruned(loop_with("%next")), "%gone = OpFMul"), 1u) << "it changes from turn to turn";
 }
 
-// The loop ends at its first turn; a loop has a way back nevertheless, with a value that is never used.
+// The loop ends in its first iteration; it still has a back edge, with a value that is never used.
 TEST_F(PrunedSpirv, ALoopThatDoesNotGoRoundStaysALoop) {
     const std::string left = pruned(R"(
         OpBranch %head
@@ -373,7 +373,7 @@ TEST(SpirvWords, FillAModuleInstructionByInstruction) {
     EXPECT_FALSE(spirv::is_module(Words{1, 2, 3, 4, 5})) << "another magic number";
 }
 
-// With their own constants, with all but sizes of groups 0, and with random ones.
+// Prunes modules with their own constants, with all but group sizes 0, and with random ones.
 TEST_F(PrunedSpirv, EveryModuleOfTheBuildIsValidAfterwards) {
     std::mt19937 random(1);
     std::ifstream list(TWINRAY_MODULE_LIST);

@@ -74,7 +74,7 @@ TEST(MeanRate, IsTheRateOfOneStratumAndTheMeanOfMany) {
     EXPECT_TRUE(std::isnan(mean_rate({})));
 }
 
-// Strata of unlike rates, weights and sizes, of which the largest rate has the fewest trials.
+// Strata have unlike rates, weights and sizes, and the largest rate has the fewest trials.
 TEST(MeanRate, ItsIntervalHoldsTheTruthAsOftenAsItSays) {
     std::mt19937_64 random(1);
     for (const double scale : {0.0, 1e-4, 1e-3, 1e-2, 0.3}) {
@@ -177,7 +177,7 @@ TEST(UpperBound95, GrowsWithTheCount) {
     }
 }
 
-// Events of chances that differ: what is seen of a face through cells that it covers wholly, in part and not at all.
+// Chances of events differ, as for the part of a face seen through cells that it covers wholly, in part and not at all.
 TEST(PairedCount, IntervalCoversTheMeanCountOfUnlikeTrials) {
     std::mt19937 random(11);
     const auto unit = [&] { return static_cast<double>(random()) / 4294967296.0; };
@@ -218,7 +218,7 @@ TEST(PairedCount, IntervalIsWithinWhatCanBe) {
     EXPECT_LT(rate_interval(3, 70, 0.01).low, rate_interval_95(3, 70).low);
 }
 
-// Sums of weights that occur or not, such as hours of sun.
+// Weights that are summed occur or not, such as hours of sun.
 TEST(PairedMargin, CoversWeightedSums) {
     std::mt19937 random(13);
     const auto unit = [&] { return static_cast<double>(random()) / 4294967296.0; };
@@ -236,7 +236,7 @@ TEST(PairedMargin, CoversWeightedSums) {
         missed += std::abs(sum - mean) > paired_margin(squares, 5, 0.05);
     }
     EXPECT_LE(missed, trials * 0.05);
-    EXPECT_NEAR(paired_margin(0, 1, 0.05), 9.89, 0.01);  // of a variance of up to 9.2
+    EXPECT_NEAR(paired_margin(0, 1, 0.05), 9.89, 0.01);  // for a variance of up to 9.2
     EXPECT_NEAR(paired_margin(100, 1, 0.05), 33.86, 0.01);
     EXPECT_NEAR(paired_margin(2500, 5, 0.05), 5 * 33.86, 0.05);
     EXPECT_GT(paired_margin(200, 5, 0.01), paired_margin(200, 5, 0.05));

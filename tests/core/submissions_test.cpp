@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Submissions: the order in which they pass, how many items each gets, and what the error of a lost device says.
+// Submissions: their order, how many items each gets, and what the error of a lost device says.
 #include "engine/core/device_fault.h"
 #include "engine/core/pace.h"
 #include "engine/core/promised_points.h"
@@ -110,7 +110,7 @@ TEST(SubmissionLog, LargePassesComeFirstAndTheRestIsCounted) {
         "pass: 'copy'), 'b' (1 pass: 'copy'), and 2 more");
 }
 
-// No driver here has VK_EXT_device_fault: structs stand in for what one tells.
+// No driver here has VK_EXT_device_fault: these structs stand in for its data.
 VkDeviceFaultAddressInfoEXT address(VkDeviceFaultAddressTypeEXT type, VkDeviceAddress at, VkDeviceSize precision) {
     return {type, at, precision};
 }
@@ -141,7 +141,7 @@ TEST(DeviceFault, ListsAreCutShort) {
     EXPECT_TRUE(said.ends_with("invalid write at 0x10 to 0x1f, 3 more")) << said;
 }
 
-// A driver that tells one address of two that it promised.
+// Acts as a driver that tells one address of two that it promised.
 VkResult VKAPI_PTR fault_info(VkDevice, VkDeviceFaultCountsEXT* counts, VkDeviceFaultInfoEXT* info) {
     if (!info) {
         counts->addressInfoCount = 2;

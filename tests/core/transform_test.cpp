@@ -62,8 +62,8 @@ TEST(Transform, TheShadersInverseIsAccurateToARoundingForWellConditionedMaps) {
     }
 }
 
-// Scales along axes, beside a rotation: condition numbers up to 10^72, which say nothing of the maps. Where the scales
-// come after it, an entry of the rotation that is 0 leaves them apart, and low parts of products vanish.
+// Scales along axes, beside a rotation, have condition numbers up to 10^72, which say nothing of the maps. If the
+// scales come after the rotation, an entry of it that is 0 leaves them apart, and low parts of products vanish.
 TEST(Transform, TheShadersInverseHoldsForScalesFarApart) {
     std::mt19937 random(5);
     int refused = 0;

@@ -24,7 +24,7 @@ NO_CODE = {"text", "csv", "json"}
 RUN = {"sh", "console", "python", "pycon", "cpp", "glsl", "text"}
 OPTIONS = {"not-run": RUN - {"text"} | {"cmake"}, "exit": {"sh"}, "wrap": {"cpp", "glsl"}}
 OPTIONS |= {"printed-by": {"text"}, "needs": RUN}
-# The needs of blocks, by the command that succeeds if they are met.
+# The needs of blocks, with the command that succeeds if they are met.
 NEEDS = {
     "dask": "python3 -c 'import dask.distributed, matplotlib, rioxarray'",
     "llvmpipe": "twinray devices | grep -q '^[*].*llvmpipe'",

@@ -20,7 +20,7 @@ except ModuleNotFoundError as error:
 import given
 import run_block
 
-ELSEWHERE = ["README.md", "CONTRIBUTING.md", "samples/README.md"]  # on the site, too
+ELSEWHERE = ["README.md", "CONTRIBUTING.md", "samples/README.md"]  # also on the site
 
 
 def pages_of(root):

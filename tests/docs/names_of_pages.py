@@ -32,7 +32,7 @@ MEMBER = re.compile(r"(?<![\w:])([A-Z]\w*)::(\w+)")
 NAME = re.compile(r"\b(\w+)(?=\()|\b([A-Z]\w*[a-z]\w*)\b|^(\w+)$")
 
 
-# At least so many are looked at in all pages: else something of theirs is no longer recognised.
+# The least that all pages must have: with fewer, something of theirs is no longer recognised.
 LEAST = {"commands": 125, "options": 170, "members": 95, "cells": 70}
 looked_at = collections.Counter()
 

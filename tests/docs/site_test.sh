@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# The documentation site builds without a warning. Where what builds it is not installed it is skipped (status 77),
-# unless TWINRAY_REQUIRE names docs.
+# Builds the documentation site, without a warning. If the tools for it are not installed, the test is skipped (status
+# 77), unless TWINRAY_REQUIRE names docs.
 # Usage: site_test.sh TWINRAY
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Runs a program by the Python of the documentation, where tools/lib.sh has installed it; else it is skipped (status 77)
+# Runs a program with the documentation's Python if tools/lib.sh has installed it; otherwise skips it (status 77),
 # unless TWINRAY_REQUIRE names docs.
 # Usage: with_docs_python.sh FILE [ARGUMENT]...
 set -euo pipefail

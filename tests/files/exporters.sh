@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Files made by the tools that people have, as twinray reads them: triangles, areas, hits (exporters.py). The tools come
-# from npm and PyPI into FOLDER, several GB, and from apt (assimp-utils); what is not there is said. CI does not run it.
+# Makes files with the tools that people have and shows how twinray reads them: triangles, areas, hits (exporters.py).
+# Tools come from npm and PyPI into FOLDER, several GB, and from apt (assimp-utils); it names missing ones. Not in CI.
 #   tests/files/exporters.sh FOLDER [BIN]    BIN: the folder of path_tracer, build/release/bin if not given
 set -euo pipefail
 if (($# < 1)); then

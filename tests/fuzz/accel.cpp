@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Histories of calls of AbstractAccel on ReferenceAccel, which shares all of them but the trees with the others.
+// Histories of calls of AbstractAccel on ReferenceAccel, which shares everything but the trees with the others.
 #include <algorithm>
 #include <cmath>
 
@@ -29,7 +29,7 @@ Context& shared_context() {
     return context;
 }
 
-// The accelerator and its model, which each call changes alike.
+// The accelerator and its model; each call changes both alike.
 class History {
   public:
     explicit History(Arguments source) : source_(source) { begin(); }
@@ -52,7 +52,7 @@ class History {
         model_.revision = 0;
     }
 
-    // `change` is for the model, of calls that are to be taken.
+    // Runs `change` on the model if the call must be taken.
     template <class Call, class Change>
     void expect(bool is_right, const std::string& name, const Call& call, const Change& change) {
         require(is_taken(call) == is_right, name + (is_right ? " takes right use" : " refuses wrong use"));
@@ -249,7 +249,7 @@ class History {
         model_.sync();
     }
 
-    // Edits that wait for a sync, and settings.
+    // Calls that fail while edits wait for a sync, and settings.
     void look() {
         expect(
             model_.pending == Pending::nothing, "view",
@@ -269,7 +269,7 @@ class History {
             model_.revision > 0, "world_bound", [&] { accel_->world_bound(); }, [] {});
     }
 
-    // Through a view that may be stale, or of an accelerator before.
+    // Traces through a view that may be stale, or of an earlier accelerator.
     void trace_view() {
         if (!seen_) return;
         Commands commands(shared_context(), "fuzz");
@@ -326,7 +326,7 @@ class History {
     Arguments source_;
     std::unique_ptr<AbstractAccel> accel_;
     AccelModel model_;
-    int accel_count_ = 0;  // and those before
+    int accel_count_ = 0;  // includes earlier ones
     struct SeenView {
         AccelView view;
         int accel;

@@ -22,7 +22,8 @@ class Arguments {
         return first;
     }
     std::size_t below(std::size_t n) { return byte() % n; }
-    // Most often a multiple of 1/16 between -8 and 8; now and then a number that is none, or whose square is not.
+    // Returns most often a multiple of 1/16 between -8 and 8; now and then NaN, infinity or a number whose square is no
+    // float.
     float number() {
         constexpr float odd[] = {NAN, INFINITY, -INFINITY, 1e30f, 1e-30f, 1e-42f, -0.0f, 3.4e38f};
         const std::uint8_t first = byte();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What docs/contract.md says an accelerator is after any history of calls, in a few plain arrays: which calls are
+// An accelerator after any history of calls, as docs/contract.md describes it, in a few plain arrays: which calls are
 // refused, what is where, and what rays meet.
 #pragma once
 
@@ -13,10 +13,10 @@
 
 namespace twinray::fuzz {
 
-// How much of the accelerator the last sync has not seen.
+// The changes of the accelerator that the last sync has not seen.
 enum class Pending : std::uint8_t { nothing, moves, structure };
 
-// A mesh, or boxes: which no ray can meet without a program.
+// A mesh, or boxes, which no ray can meet without a program.
 struct ModelGeometry {
     Mesh mesh;
     std::vector<Bounds> boxes;
@@ -34,26 +34,26 @@ struct ModelPlacing {
 class AccelModel {
   public:
     std::vector<ModelPlacing> placings;  // of live handles, in push order
-    std::vector<AccelHandle> dead;       // erased, of an accelerator before, or never given
+    std::vector<AccelHandle> dead;       // erased, of an earlier accelerator, or never given
     Pending pending = Pending::structure;
     std::uint64_t revision = 0;
 
-    // Null for a dead handle.
+    // Returns null for a dead handle.
     ModelPlacing* find(AccelHandle handle);
     void mark(Pending what) { pending = std::max(pending, what); }
     void sync();
     std::size_t instance_count() const;
     std::size_t geometry_count() const;
-    // Whether a trace needs a program, for boxes or for instances that are not opaque.
+    // Returns whether a trace needs a program, for boxes or for instances that are not opaque.
     bool needs_program() const;
     // Tests each triangle of each instance.
     std::vector<Hit> closest_hits(std::span<const Ray> rays, std::uint8_t mask, Cull cull) const;
-    // Ends the process where the accelerator tells anything else. Of what it holds as bytes, each must be the same.
+    // Ends the process if the accelerator differs. Everything that it holds as bytes must be the same.
     void check(const AbstractAccel& accel) const;
 };
 
-// Whether push() takes them for a geometry in this unit: each transform has an inverse, times the unit, too, and each
-// custom index has 24 bits.
+// Returns whether push() takes them for a geometry in this unit: each transform, also times the unit, has an inverse,
+// and each custom index has 24 bits.
 bool is_placeable(float unit, std::span<const Transform> transforms, std::span<const InstanceOptions> options);
 
 }  // namespace twinray::fuzz

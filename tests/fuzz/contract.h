@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What all targets hold their readers to, and how bytes become files.
+// The contract of all targets' readers, and files made of bytes.
 #pragma once
 
 #include <filesystem>
@@ -10,11 +10,11 @@
 
 namespace twinray::fuzz {
 
-// Ends the process, as a sanitizer does, where `holds` is false.
+// Ends the process, as a sanitizer does, if `holds` is false.
 void require(bool holds, const std::string& promise);
 
-// Whether `read` took what it was given; false: it refused by an Error, which says something. Every other exception
-// goes through and is a finding.
+// Returns whether `read` took its input; false means that it refused by an Error, which says something. Every other
+// exception goes through and is a finding.
 template <class Read>
 bool is_taken(const Read& read) {
     try {
@@ -26,8 +26,8 @@ bool is_taken(const Read& read) {
     }
 }
 
-// The bytes as a file of this name in a folder of this process, in memory where the system has such files. There until
-// the process ends.
+// Writes the bytes to a file of this name in a folder of this process, in memory if the system has such files. The file
+// exists until the process ends.
 std::filesystem::path file_of(Input bytes, const std::string& name);
 
 }  // namespace twinray::fuzz

@@ -24,7 +24,7 @@ std::string_view text_of(Input input) { return {reinterpret_cast<const char*>(in
 
 }  // namespace
 
-// A word a line.
+// Reads one word per line.
 void command(Input input) {
     std::istringstream lines(std::string(input.begin(), input.end()));
     std::vector<std::string> words;

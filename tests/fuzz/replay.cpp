@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Runs inputs through a target without a fuzzer, so that any compiler's tests hold what fuzzing has found.
 //   fuzz_replay TARGET MUTATIONS FILE|FOLDER...    each file, and so many copies of it with a few bytes changed
-// Ends by a signal where a target's contract is broken, with exit status 1 where an input took too long or too much
+// Ends by a signal if a target's contract is broken, and with exit status 1 if an input took too long or too much
 // memory.
 #include <sys/resource.h>
 
@@ -33,7 +33,7 @@ std::vector<std::filesystem::path> files_in(const std::filesystem::path& path) {
     return files;
 }
 
-// Bytes that change, go, or are there twice; the same for the same generator.
+// Returns the bytes with some changed, removed or repeated; the same for the same generator.
 Bytes changed(Bytes bytes, std::mt19937& random) {
     const auto below = [&](std::size_t n) {
         return static_cast<std::ptrdiff_t>(random() % std::max<std::size_t>(n, 1));

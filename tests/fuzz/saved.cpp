@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Files of twinray's own with checksums: as they are, and with the checksums as they should be, for a fuzzer does not
-// guess them.
+// Files of twinray's own with checksums: as they are, and with corrected checksums, since a fuzzer does not guess them.
 #include <cstring>
 
 #include "engine/scene/bytes.h"
@@ -25,7 +24,7 @@ void load_film(Input bytes) {
 
 constexpr std::string_view first_lines = "twinray view-factor rows 2\nof a fuzzer\n";
 
-// A row as files have it: 72 bytes, of which the second four say how many factors of 20 bytes follow, and a checksum.
+// A row in a file has 72 bytes, of which the second four say how many factors of 20 bytes follow, and a checksum.
 constexpr std::size_t head_bytes = 72;
 
 void put_row_checksums(std::span<std::uint8_t> rows) {
@@ -55,7 +54,7 @@ std::uint64_t array_bytes(const SavedEntry& entry) {
            entry.records * sizeof(CompressedRecord) + entry.instances * sizeof(InstanceRecord);
 }
 
-// Sets the file's length, too, as someone would who made the file on purpose.
+// Also sets the file's length, as if someone had made the file on purpose.
 void put_accel_checksums(std::span<std::byte> file) {
     if (file.size() < sizeof(SavedHeader)) return;
     SavedHeader header;
@@ -80,7 +79,7 @@ void put_accel_checksums(std::span<std::byte> file) {
 
 }  // namespace
 
-// Its checksum stands at the end.
+// The checksum is at the end of the file.
 void film(Input input) {
     load_film(input);
     Bytes file(input.begin(), input.end());

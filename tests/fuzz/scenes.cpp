@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Files of scenes, and what whoever takes a loaded scene relies on.
+// Files of scenes, and what users of a loaded scene rely on.
 #include <algorithm>
 #include <string_view>
 
@@ -45,7 +45,7 @@ void check(const Scene& scene) {
                 "a variant has a material for each triangle of a mesh");
 }
 
-// All that plays, at its first and last moment and between.
+// Plays all animations, at their first and last moment and between.
 void play(Scene& scene) {
     const Rig& rig = *scene.rig;
     pose_scene(scene, rest_pose(rig));
@@ -60,8 +60,8 @@ void play(Scene& scene) {
     for (const uint mesh : deformed_meshes(rig)) require(mesh < scene.meshes.size(), "a mesh that deforms exists");
 }
 
-// Ends the process unless what load_scene() took is whole: every index has what it names, every array its length, and
-// what moves can be posed.
+// Ends the process unless the scene that load_scene() took is whole: each index names something, each array has its
+// length, and all that moves can be posed.
 void load_whole_scene(const std::filesystem::path& file) {
     is_taken([&] {
         Scene scene = load_scene(file);
@@ -74,7 +74,7 @@ void load_whole_scene(const std::filesystem::path& file) {
 
 }  // namespace
 
-// Both .gltf and .glb: they are told apart by their content, whatever the name.
+// Reads both .gltf and .glb, which are told apart by their content, whatever the name.
 void gltf(Input input) { load_whole_scene(file_of(input, "input.gltf")); }
 void ply(Input input) { load_whole_scene(file_of(input, "input.ply")); }
 void stl(Input input) { load_whole_scene(file_of(input, "input.stl")); }

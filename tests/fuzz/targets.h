@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What is fuzzed. Each function gets any bytes at all and must return: what it calls either takes them or throws one
-// Error. Another exception, a message of a sanitizer, a hang or gigabytes of memory is a finding; see docs/fuzzing.md.
+// The targets that are fuzzed. Each function gets any bytes at all and must return: the code it calls either takes them
+// or throws one Error. Another exception, a message of a sanitizer, a hang or gigabytes of memory is a finding; see
+// docs/fuzzing.md.
 #pragma once
 
 #include <cstdint>

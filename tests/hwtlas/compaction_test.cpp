@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bottom levels move into less memory. Not every driver asks for more than it needs (lavapipe does not): here it seems
+// Bottom levels move into less memory. Not every driver asks for more than it needs (lavapipe does not); here it seems
 // to.
 #include "engine/core/error.h"
 #include "engine/core/vma.h"
@@ -30,7 +30,7 @@ class Compaction : public test::VulkanTest {
         VulkanTest::TearDown();
     }
     HwTlas& accel() { return *accel_; }
-    // So that nothing is found any more in memory that was freed.
+    // Wipes freed memory, so that nothing is found there any more.
     void wipe_freed_memory() {
         context().wait_for_gpu();
         std::vector<Buffer> wiped;
@@ -124,7 +124,7 @@ TEST_F(Compaction, LeavesMeshesAloneWhoseVerticesMove) {
     sync_and_wait();
     EXPECT_FALSE(accel().compact());
     EXPECT_EQ(t_at(0), 8.0f);
-    // A compacted one may be moved, too.
+    // A compacted one may also be moved.
     const AccelHandle late = push_box(2);
     sync_and_wait();
     EXPECT_TRUE(accel().compact());

@@ -14,7 +14,7 @@
 namespace twinray::test {
 namespace {
 
-// Rays between random points of a box of this half extent around the origin.
+// Returns rays between random points of a box of this half extent around the origin.
 std::vector<Ray> rays_within(std::size_t count, unsigned seed, float extent) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> within(-extent, extent);
@@ -27,7 +27,8 @@ std::vector<Ray> rays_within(std::size_t count, unsigned seed, float extent) {
     return rays;
 }
 
-// Filled with the scene, it answers as the reference; at least `least_hits` of the rays hit something.
+// Expects the reference's answers from the accelerator with this scene; at least `least_hits` of the rays hit
+// something.
 void expect_agreement(HwTlas& accel, const Scene& scene, const std::vector<Ray>& rays, std::size_t least_hits) {
     push_scene(accel, scene);
     const std::vector<Hit> hits = accel.closest_hits(rays), any = accel.any_hits(rays);
@@ -70,7 +71,7 @@ Transform rotation(float angle) {
     return {{vec4(c, -s, 0, 0), vec4(s, c, 0, 0), vec4(0, 0, 1, 0)}};
 }
 
-// Around the unit cube that make_soup fills.
+// Centres the unit cube that make_soup fills.
 const Transform centered = Transform::translation(vec3(-0.5f));
 
 // Makes every `step`-th triangle of make_soup non-finite, each in another way.

@@ -110,7 +110,7 @@ TEST_P(InstanceCountTest, EachChangeOfItRebuilds) {
 using PipelineLaunch = AccelTest;
 INSTANTIATE_TEST_SUITE_P(Every, PipelineLaunch, ::testing::Values(Kind::pipeline), name_of_kind);
 
-// As on a device whose limit is far below the number of rays, traces are split.
+// Traces are split as on a device whose limit is far below the number of rays.
 TEST_P(PipelineLaunch, SeveralLaunchesGiveWhatOneGives) {
     accel().push(make_icosphere(3));
     const std::vector<Ray> rays = twinray::random_rays({vec3(-2), vec3(2)}, 100'001, 3);

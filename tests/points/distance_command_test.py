@@ -40,7 +40,7 @@ run("solid.ply", "--grid", "3", "--signed", "--quiet", "-o", "out.npz")
 with zipfile.ZipFile(here / "out.npz") as archive:
     distances = archive.read("distance.npy")
     assert b"'descr': '<f8'" in distances[:128] and b"'shape': (3, 3, 3, )" in distances[:128], distances[:128]
-    # At 0.4, 2 and 3.6 along each axis, the centres of cells in the box with a tenth around it.
+    # The centres of cells are at 0.4, 2 and 3.6 along each axis, in the box with a tenth around it.
     assert [round(d, 6) for d in struct.unpack_from("<27d", distances, len(distances) - 27 * 8)[:2]] == [-0.4, -0.4]
 run("open.ply", "--random", "5", "--quiet", "-o", "out.csv")
 assert len(lines("out.csv")) == 6
@@ -73,7 +73,7 @@ run("solid.ply", status=2)
 run("solid.ply", "--random", "5", "--grid", "2", status=2)
 run("solid.ply", "--random", "5", "--within", "-1", status=2)
 
-# Far away, all is in the file's coordinates.
+# Far away, all numbers are in the file's coordinates.
 east, north = 500000.13, 5400000.27
 (here / "far.ply").write_text((here / "solid.ply").read_text().replace("float", "double").replace(
     "0 0 0\n4 0 0\n0 4 0\n0 0 4\n", "".join(f"{east + x:.2f} {north + y:.2f} {z}\n" for x, y, z in [(0, 0, 0), (4, 0, 0), (0, 4, 0), (0, 0, 4)])))
@@ -95,7 +95,7 @@ with zipfile.ZipFile(here / "out.npz") as archive:
     for name, values in [("point", [east + 1, north + 1, -2]), ("nearest", [east + 1, north + 1, 0])]:
         array = archive.read(f"{name}.npy")
         assert near(struct.unpack("<3d", array[len(array) - 72:][:24]), *values), name
-# The plane through the middle, asked for or not, and another one.
+# The plane through the middle, by default and on request, and another one.
 far_slice = ["far.ply", "--slice-axis", "x", "--slice-size", "64", "--signed", "--quiet", "--slice"]
 run(*far_slice, "middle.png")
 run(*far_slice, "asked.png", "--slice-at", f"{east + 2:.2f}")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is near to points, by the GPU, against all triangles one by one.
+// The nearest triangles of points, by the GPU, compared with all triangles one by one.
 #include <twinray/queries.h>
 
 #include <algorithm>
@@ -41,8 +41,8 @@ class PointQueryTest : public test::VulkanTest {
     void set(const MeshView& mesh) { set({mesh}, {{0, {}}}); }
     const std::vector<PlacedTriangle>& placed() const { return placed_; }
 
-    // The largest error of closest() in units of the last place of a double and of a float, where distances are told
-    // to a double of the size of what they are computed from. Fails where another triangle is nearer.
+    // The largest error of closest() in units of the last place of a double and of a float, for distances that are
+    // exact to a double of the size of their operands. The test fails if another triangle is nearer.
     struct Errors {
         double of_double = 0, of_float = 0;
     };
@@ -106,7 +106,7 @@ class PointQueryTest : public test::VulkanTest {
     std::vector<double> sides_;  // the longest of each
 };
 
-// TWINRAY_POINTS, or as many as take a second.
+// Returns TWINRAY_POINTS, or as many as take a second.
 std::size_t point_count() {
     const char* asked = std::getenv("TWINRAY_POINTS");
     return asked ? std::stoul(asked) : 2'000;
@@ -139,7 +139,7 @@ TEST_F(PointQueryTest, TheNearestTriangleIsFoundWhateverItsShape) {
     EXPECT_LE(errors.of_float, 1);
 }
 
-// Where barycentric coordinates lose most: on needles, and beside them by less than they are high.
+// Barycentric coordinates lose most on needles, and beside them at less than their height.
 TEST_F(PointQueryTest, OnNeedlesAndBesideThem) {
     std::mt19937 random(12);
     for (int exponent = 3; exponent <= 60; exponent += 3) {
@@ -159,7 +159,7 @@ TEST_F(PointQueryTest, OnNeedlesAndBesideThem) {
     }
 }
 
-// Differences of coordinates that float32 cannot hold.
+// Float32 cannot hold these differences of coordinates.
 TEST_F(PointQueryTest, AtTheEndsOfFloat32) {
     Soup huge;
     huge.add(vec3(-3e38f, 0, 0), vec3(-3e38f, 1e37f, 0), vec3(-3e38f, 0, 1e37f));
@@ -211,7 +211,7 @@ TEST_F(PointQueryTest, OfSeveralAtOneDistanceTheFirst) {
     for (const ClosestPoint& found : query().closest(random_points(100, 2, 6))) EXPECT_EQ(found.instance, 0u);
 }
 
-// From outside, all triangles around a vertex are as near, and the same bits say so.
+// From outside, all triangles around a vertex are equally near, with the same bits.
 TEST_F(PointQueryTest, OfTheTrianglesAroundACornerTheFirst) {
     const Mesh ball = make_icosphere(1);
     const Transform turn = test::rotation(0.3f, 1.1f);

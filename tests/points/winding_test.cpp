@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Inside and outside, against sums of solid angles and what is known.
+// Inside and outside, compared with sums of solid angles and known answers.
 #include <twinray/queries.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ class WindingTest : public test::VulkanTest {
     std::uint64_t host_decided = 0;
 };
 
-// A torus of 2 n m triangles with shared vertices, its fronts outward.
+// Makes a torus of 2 n m triangles with shared vertices, its fronts outward.
 Mesh torus(uint n, uint m, float radius, float tube) {
     Mesh mesh;
     mesh.name = "torus";
@@ -65,7 +65,7 @@ TEST_F(WindingTest, EqualsTheSolidAngleOverTheSphere) {
     for (const int count : seen) EXPECT_GT(count, 20);
 }
 
-// Without the triangles that `is_cut` names.
+// Returns the mesh without the triangles that `is_cut` names.
 template <class IsCut>
 Mesh with_holes(Mesh mesh, const IsCut& is_cut) {
     std::vector<uvec3> kept;
@@ -115,7 +115,7 @@ TEST_F(WindingTest, OfOpenLatticeBoxes) {
     }
 }
 
-// A sheet seen twice, turned round on itself, and an edge that three triangles have.
+// One triangle is there twice, one also turned round, and one edge has a third triangle.
 TEST_F(WindingTest, OfSurfacesThatAreNoManifolds) {
     Mesh mesh = make_box(vec3(-1), vec3(1));
     const uvec3 first = mesh.triangles[0], second = mesh.triangles[1];
@@ -143,7 +143,7 @@ TEST_F(WindingTest, OfLatticePointsInLatticeBoxes) {
         if (largest == 2) continue;  // on it
         EXPECT_EQ(in_box[i], largest < 2 ? 1 : 0) << points[i].x << ' ' << points[i].y << ' ' << points[i].z;
     }
-    // Behind its own vertices, and near them by as much as float64 can tell.
+    // The points are behind the ball's vertices and before them, as near as float64 can tell.
     std::vector<dvec3> behind, before;
     for (const vec3 p : ball.positions) {
         behind.push_back(dvec3(p) * (1 + 0x1p-50));
@@ -152,7 +152,7 @@ TEST_F(WindingTest, OfLatticePointsInLatticeBoxes) {
     const std::vector<MeshView> meshes = {ball};
     for (const int winding : windings(meshes, {{0, {}}}, behind)) EXPECT_EQ(winding, 0);
     for (const int winding : windings(meshes, {{0, {}}}, before)) EXPECT_EQ(winding, 1);
-    // Seen along the line, on edges: float64 cannot tell on which side.
+    // Along the line, these points are seen on edges: float64 cannot tell on which side.
     std::vector<dvec3> far;
     for (const uvec3& t : ball.triangles) {
         far.push_back((dvec3(ball.positions[t.x]) + dvec3(ball.positions[t.y])) * 0.5);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Figures of compiled kernels: by drivers' words, against limits, in tables; and how variants are called.
+// Figures of compiled kernels: as drivers report them, against limits, in tables; and the names of variants.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -32,7 +32,7 @@ TEST(KernelStatistics, RadvsWordsAreMapped) {
     EXPECT_EQ(figures_of(told), expected);
 }
 
-// Mesa 26.1 and 26.2 tell them so.
+// Mesa 26.1 and 26.2 report these names.
 TEST(KernelStatistics, NvksWordsAreMapped) {
     const std::vector<Statistic> told = {{"Instruction count", u(1657)}, {"Static cycle count", u(158327)},
                                          {"Max warps/SM", u(16)},        {"Spills to memory", u(2)},

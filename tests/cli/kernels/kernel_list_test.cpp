@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// That no module of the library or the path tracer is forgotten, and that nothing runs.
+// The list of kernels: it forgets no module of the library or the path tracer, and nothing runs.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ bool is_compute(spirv::Words module) {
     return false;
 }
 
-// Rows may be of modules that another translation unit has a copy of.
+// Compares words, since rows may be of modules that another translation unit has a copy of.
 bool lists(const KernelList& list, std::span<const std::uint32_t> spirv) {
     return std::ranges::any_of(
         list.kernels, [&](const ListedKernel& kernel) { return std::ranges::equal(kernel.desc.spirv, spirv); });

@@ -8,7 +8,7 @@
 
 #include <twinray/tlas.h>
 
-// After twinray's headers, which must not decide for these whether vk* are functions.
+// These come after twinray's headers, which must not decide for them whether vk* are functions.
 #ifdef VK_NO_PROTOTYPES
 #include <volk.h>
 #else
