@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The part of CUDA's driver interface that twinray calls, for one device whose memory is the host's: what is exported
-// there is mapped. Structs as in NVIDIA's documentation of the driver interface. Mesa's CPU driver begins exported
-// memory with a header: its size, and where what is exported begins.
+// The part of CUDA's driver interface that twinray calls, for one device whose memory is the host's: exported memory is
+// mapped there. Structs are as in NVIDIA's documentation of the driver interface. Mesa's CPU driver begins exported
+// memory with a header: its size, and where the exported part begins.
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>

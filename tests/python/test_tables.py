@@ -9,7 +9,7 @@ import twinray.trimesh
 from conftest import cube, needed
 
 SQUARE = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], np.float32), np.array([[0, 1, 2], [0, 2, 3]], np.uint32)
-# On the middles of the sides below, left, right and above, then on the corners.
+# Points on the middles of the sides below, left, right and above, then on the corners.
 BORDER = np.array([[0.5, 0], [0, 0.5], [1, 0.5], [0.5, 1], [0, 0], [1, 0], [0, 1], [1, 1]])
 FROM_A_PLANE = np.array([[0.3, 0.4, 0, 0, 0, 1], [0.3, 0.4, 0, 0.3, 0.1, 1]])
 TO_A_PLANE = np.array([[0.3, 0.4, 1, 0, 0, -1]])

@@ -59,7 +59,7 @@ inline vec3 direction(float cosine, float turns = 0) {
     return {circle.x, circle.y, cosine};
 }
 
-// Mean of `value(sample)` over the BSDF's own sampling.
+// Returns the mean of `value(sample)` over the BSDF's own sampling.
 template <class Value>
 double mean_of_samples(const Bsdf& bsdf, vec3 wo, const Value& value, uint count = samples) {
     double sum = 0;
@@ -71,13 +71,13 @@ double mean_of_samples(const Bsdf& bsdf, vec3 wo, const Value& value, uint count
     return sum / count;
 }
 
-// The part of uniform light that it returns, from wo's side and in total.
+// Returns the part of uniform light that the BSDF returns, to wo's side and in total.
 inline double albedo_of(const Bsdf& bsdf, vec3 wo) {
     return mean_of_samples(
         bsdf, wo, [](const BsdfSample& s) { return s.weight.x; }, samples / 4);
 }
 
-// Integral of `value(wi)` over the whole sphere of directions.
+// Returns the integral of `value(wi)` over the whole sphere of directions.
 template <class Value>
 double integral(const Value& value, uint count = samples * 16) {
     double sum = 0;

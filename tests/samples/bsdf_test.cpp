@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// BSDFs: what sampling and evaluation agree on; and of light of the same radiance from everywhere, surfaces never
-// return more than they get.
+// BSDFs: sampling and evaluation agree; and under light of the same radiance from everywhere, surfaces never return
+// more than they get.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -10,7 +10,7 @@
 namespace twinray::path_tracer {
 namespace {
 
-// Single-scattering albedo of GGX with Smith's height-correlated shadowing, F = 1, by quadrature.
+// Returns, by quadrature, the single-scattering albedo of GGX with Smith's height-correlated shadowing, F = 1.
 TEST(Bsdf, TheAlbedoOfAWhiteMirrorIsThatOfSingleScatteringGgx) {
     const struct {
         float alpha, cosine;
@@ -142,7 +142,7 @@ TEST(Furnace, NoLayersReturnMoreThanTheyGet) {
     }
 }
 
-// Along, aside and across.
+// Directions run along, beside and across the grain.
 TEST(Furnace, NoGrainReturnsMoreThanItGets) {
     for (const float roughness : {0.04f, 0.1f, 0.3f, 0.6f})
         for (const float strength : {0.3f, 1.0f})
@@ -155,7 +155,7 @@ TEST(Furnace, NoGrainReturnsMoreThanItGets) {
                 }
 }
 
-// Least and most of what a white surface returns, as docs/path-tracer.md has it in a table, by roughness.
+// The least and the most that a white surface returns, by roughness, as the table of docs/path-tracer.md says.
 TEST(Furnace, IsAsDocumented) {
     struct Range {
         double least = 2, most = 0;
@@ -209,8 +209,8 @@ TEST(Furnace, AColoredInterfaceReturnsNoMoreThanAWhiteOne) {
         }
 }
 
-// Albedo of a white mirror and Schlick's part of it, in double, over the microfacets that wo sees (Dupuy and Benyoub
-// 2023).
+// Returns the albedo of a white mirror and Schlick's part of it, in double, over the microfacets that wo sees (Dupuy
+// and Benyoub 2023).
 dvec2 mirror_albedo_by_quadrature(double cosine, double alpha) {
     constexpr int steps = 200;
     const double sine = std::sqrt(1 - cosine * cosine);
@@ -246,8 +246,7 @@ TEST(Furnace, TheFitsBoundTheAlbedoOfAMirror) {
         }
 }
 
-// Diffuse light is divided by the rest that the means leave: they must not be greater than the means of the layers that
-// dim it.
+// Diffuse light is divided by what the means leave, so they must not exceed the means of the layers that dim it.
 TEST(Furnace, MeansAreThoseOfTheFits) {
     for (const float alpha : {0.0f, 0.0015f, 0.02f, 0.1f, 0.37f, 0.9f, 1.0f}) {
         dvec2 sum(0);

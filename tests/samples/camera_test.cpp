@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Cameras: what their rays see, how lenses and filters spread them, how scenes are framed, exposed and lit.
+// Cameras: what their rays see, how lenses and filters spread them, and how scenes are framed, exposed and lit.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -70,7 +70,7 @@ TEST(CameraRays, OrthographicRaysAreParallel) {
     EXPECT_EQ(rays.forward, vec3(0, 0, -1));
 }
 
-// All of a frame is seen at the scale of its tighter side, and more beside it.
+// All of a frame is seen at the scale of its tighter side, with more beside it.
 TEST(CameraRays, PicturesOfAnotherAspectShowAllOfTheFrame) {
     for (const bool is_orthographic : {false, true})
         for (const float frame : {0.5f, 1.0f, 2.0f})
@@ -175,7 +175,8 @@ std::vector<vec2> points_of(F warp, uint side = 512) {
     return points;
 }
 
-// Largest difference between the share of values below x and the distribution that is wanted (Kolmogorov and Smirnov).
+// Returns the largest difference between the share of values below x and the wanted distribution (Kolmogorov and
+// Smirnov).
 double distance_of(std::vector<float> values, const std::function<double(double)>& distribution) {
     std::sort(values.begin(), values.end());
     double largest = 0;

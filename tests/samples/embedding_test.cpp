@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The renderer of tutorial 6, whose frames twinray shades: the pictures that a user of it would look at.
+// The renderer of tutorial 6, for which twinray traces shadows: the pictures that its users look at.
 #include <gtest/gtest.h>
 
 #include "samples/tutorials/06_embedding/renderer.h"
@@ -37,7 +37,7 @@ class Embedding : public ::testing::Test {
         has_hardware_ = twinray::missing_for_hardware(context->properties()).empty();
         has_pipeline_ = context->properties().ray_tracing_pipeline;
     }
-    // A frame for each turn of the ring, without shadows and with those of `accel`.
+    // Renders a frame for each turn of the ring, without shadows and with those of `accel`.
     static std::vector<Frames> render(const std::string& accel, const std::vector<float>& turns,
                                       RayTracing ray_tracing = RayTracing::if_there) {
         const Device device(ray_tracing);
@@ -56,7 +56,7 @@ class Embedding : public ::testing::Test {
     bool has_hardware_ = false, has_pipeline_ = false;
 };
 
-// Rays on which the accelerators may disagree graze an edge: each changes one pixel.
+// The accelerators may only disagree on rays that graze an edge: each changes one pixel.
 TEST_F(Embedding, BothAcceleratorsShowTheSameWhileThingsMove) {
     if (!has_hardware_) TWINRAY_LACKS("ray_tracing", "no ray tracing extensions");
     const std::vector<Frames> software = render("sw", {0, 0.1f, 0.2f}), hardware = render("hw", {0, 0.1f, 0.2f});
@@ -96,7 +96,7 @@ TEST_P(EmbeddingBy, ShadowsDarkenAndNothingGetsBrighter) {
 // A surface that shadows itself is speckled: the sun is hard, and lone pixels without it are rare.
 TEST_P(EmbeddingBy, SurfacesDoNotShadowThemselves) {
     const Frames frames = render(GetParam(), {0}).front();
-    // The sky's rays take less.
+    // Shadow rays to the sky take less light.
     const auto is_dark = [&](std::size_t i) { return light(frames.plain[i]) - light(frames.shadowed[i]) > 200; };
     EXPECT_GT(count_pixels(is_dark), 1000u);
     const std::size_t lone = count_pixels([&](std::size_t i) {
@@ -107,7 +107,7 @@ TEST_P(EmbeddingBy, SurfacesDoNotShadowThemselves) {
     EXPECT_LE(lone, 3u);
 }
 
-// A pixel whose surface stays the same changes only if the accelerator has moved what shadows it.
+// A pixel with an unchanged surface changes only if the accelerator has moved its occluder.
 TEST_P(EmbeddingBy, ShadowsMoveWithThings) {
     const std::vector<Frames> frames = render(GetParam(), {0, 0.05f, 0.1f, 0.05f});
     EXPECT_EQ(differing(frames[1].shadowed, frames[3].shadowed), 0u) << "the same place, the same picture";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Pictures whose value is known.
+// Pictures with a known value.
 #include "tests/samples/render.h"
 
 namespace twinray::path_tracer {
@@ -45,7 +45,8 @@ TEST_F(Energy, InsideAClosedFurnaceRadianceIsTheSumOfAllBounces) {
     }
 }
 
-// 100 bounces on average, of which roulette must spare enough: survivors that weigh ever more would leave 20 % out.
+// Paths have 100 bounces on average, and roulette must spare enough of them: survivors that weigh ever more would leave
+// 20 % out.
 TEST_F(Energy, DeepPathsArriveWithTheirShare) {
     Scene scene;
     Material wall = lambert(0.99f);
@@ -63,7 +64,7 @@ TEST_F(Energy, DeepPathsArriveWithTheirShare) {
         << "lengths vary as a geometric distribution";
 }
 
-// A shadow ray is rounded by more than the light's own points are known.
+// Rounding moves a shadow ray by more than the precision of the light's points.
 TEST_F(Energy, ALightSmallForItsDistanceDoesNotHideItself) {
     for (const bool hardware : {false, true}) {
         if (hardware && !missing_for_hardware(context().properties()).empty()) continue;
@@ -78,7 +79,7 @@ TEST_F(Energy, ALightSmallForItsDistanceDoesNotHideItself) {
     }
 }
 
-// A 2 x 2 light one above the middle of a floor: view factor 0.554126.
+// A 2 x 2 light is 1 above the middle of a floor: view factor 0.554126.
 TEST_F(Energy, ARectangularLightGivesItsAnalyticIrradianceByEveryStrategy) {
     Scene scene;
     add(scene, wide_floor(), lambert(1));
@@ -90,7 +91,7 @@ TEST_F(Energy, ARectangularLightGivesItsAnalyticIrradianceByEveryStrategy) {
     }
 }
 
-// The same lamp before a sky, and a point light: each is chosen with its share.
+// The same lamp has a sky and a point light beside it: each is chosen with its share.
 TEST_F(Energy, AnEnvironmentALampAndAPointLightAddUpByEveryStrategy) {
     const double view_factor = factor_of_square_above;
     for (const uint strategy : strategies) {
@@ -107,7 +108,7 @@ TEST_F(Energy, AnEnvironmentALampAndAPointLightAddUpByEveryStrategy) {
     }
 }
 
-// Points above a floor and, a thousand times as strong, below it; spots, of which some look away; a sun.
+// There are points above a floor and, a thousand times as strong, below it; spots, some of which look away; a sun.
 TEST_F(Energy, ManyLampsAddUp) {
     Scene scene;
     add(scene, wide_floor(), lambert(1));

@@ -14,7 +14,7 @@
 namespace twinray::path_tracer {
 namespace {
 
-// Radiance of very unlike sizes, zeros and negative numbers among it.
+// Returns samples of radiance of very unlike sizes, with zeros and negative numbers.
 std::vector<vec3> some_samples(std::size_t count, uint seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> mantissa(-0.1f, 1), exponent(-140, 120);
@@ -91,7 +91,7 @@ TEST(Film, HoldsWhateverFloatsHold) {
     }
 }
 
-// A photon of 1 among a million of 2^-41 of it.
+// One photon of 1 falls among a million of 2^-41 of it.
 TEST(Film, LeavesOutLessThanTheLargestNumberTimesTheirCountTimesTwoToTheMinus40) {
     Film film = Film::empty(1, 1, 1, {});
     film.add(0, vec3(0x1p31f));  // one bit above a place: the worst case

@@ -10,12 +10,12 @@ class LayersRender : public test::VulkanTest {};
 
 const vec3 to_camera = normalize(vec3(0, 0.8f, 0.6f)), to_light = normalize(vec3(-0.3f, 0.9f, -0.4f));
 
-// On a floor with its tangent along x.
+// Maps to a floor with its tangent along x.
 vec3 local(vec3 w) { return {w.x, -w.z, w.y}; }
 
 vec3 value_of(const Bsdf& bsdf) { return evaluate(bsdf, local(to_camera), local(to_light)).f; }
 
-// Floors side by side, each of a material and what it should be, in one picture: a kernel takes seconds to compile.
+// Floors side by side in one picture, each with a material and its expected value: a kernel takes seconds to compile.
 struct Floors {
     Scene scene = {};
     std::vector<const char*> names = {};
@@ -36,7 +36,7 @@ struct Floors {
     }
 };
 
-// The radiance of each under a directional light.
+// Expects the radiance of each floor under a directional light.
 void expect_values(Context& context, Floors& floors) {
     floors.scene.lights = {
         {.name = "light", .kind = Light::Kind::directional, .color = vec3(1), .direction = -to_light}};
@@ -94,8 +94,7 @@ TEST_F(LayersRender, FactorsReachTheBsdf) {
     expect_values(context(), floors);
 }
 
-// Only the channel that its extension names gives the right result; the other channels of each texture would give
-// another.
+// Only the channel that its extension names gives the right result; the other channels of each texture would not.
 TEST_F(LayersRender, TexturesScaleTheirFactor) {
     Floors floors;
     const float half = 128 / 255.0f;
@@ -112,7 +111,7 @@ TEST_F(LayersRender, TexturesScaleTheirFactor) {
     material.clearcoat_roughness_texture.image = green;
     floors.add("coat", material, with_coat(plastic_bsdf(), half, half * half));
 
-    // The normal at about (0.6, 0, 0.8) by tangent, bitangent and normal.
+    // The normal is about (0.6, 0, 0.8) by tangent, bitangent and normal.
     material.clearcoat_normal_texture.image = floors.texel(204, 128, 230, 9);
     const vec3 normal = normalize(vec3(204 / 127.5f - 1, 128 / 127.5f - 1, 230 / 127.5f - 1));
     floors.add("normal of a coat", material, with_coat(plastic_bsdf(), half, half * half, normal));
@@ -133,7 +132,7 @@ TEST_F(LayersRender, TexturesScaleTheirFactor) {
     expect_values(context(), floors);
 }
 
-// A box of a volume without an interface between the camera and what shines.
+// Makes a box of a volume without an interface, between the camera and what shines.
 Scene box_of(const Material& amber) {
     Scene scene;
     Mesh box = make_box({-1, -1, -1}, {1, 1, 1});
@@ -175,7 +174,7 @@ TEST_F(LayersRender, WhatLiesInsideAVolumeIsDimmedByTheWayToIt) {
     Scene scene = box_of(amber(vec3(0.5f), 1));
     add(scene, make_quad({-0.9f, -0.9f, 0.5f}, {1.8f, 0, 0}, {0, 1.8f, 0}), lamp(8));
     EXPECT_NEAR(render(context(), scene, through(0)).rgb[0].x, 8 * std::sqrt(0.5f), 1e-3f);
-    // Something blended on the way is passed without the way being counted twice.
+    // A blended surface on the way is passed without counting the way twice.
     Material veil = lambert(0);
     veil.base_color.w = 0;
     veil.alpha_mode = AlphaMode::blend;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Layers of a BSDF: coat, sheen, a grain, a colored interface, thin walls; and what becomes of a material's factors.
+// Layers of a BSDF: coat, sheen, grain, a colored interface and thin walls; and how they use a material's factors.
 #include <gtest/gtest.h>
 
 #include "renderer/surface_records.h"
@@ -45,7 +45,7 @@ std::vector<Named> all_cases() {
 
 vec3 weight_without_mirrors(const BsdfSample& s) { return s.pdf > 0 ? s.weight : vec3(0); }
 
-// Bins of equal solid angle.
+// Bins have equal solid angles.
 constexpr uint columns = 24, rows = 20;
 uint bin_of(vec3 w) {
     const float turns = std::atan2(w.y, w.x) / (2 * PI) + 0.5f;
@@ -53,7 +53,7 @@ uint bin_of(vec3 w) {
     return std::min(static_cast<uint>((w.z + 1) / 2 * rows), rows - 1) * columns + column;
 }
 
-// Of the density over a bin, by the midpoint rule.
+// Integrates the density over a bin, by the midpoint rule.
 double chance_of_bin(const Bsdf& bsdf, vec3 wo, uint bin) {
     constexpr uint steps = 16;
     double sum = 0;
@@ -66,7 +66,7 @@ double chance_of_bin(const Bsdf& bsdf, vec3 wo, uint bin) {
     return sum / (steps * steps) * 4 * static_cast<double>(PI) / (rows * columns);
 }
 
-// Pearson's sum over bins where 10 or more are expected, as a normal deviate (Wilson and Hilferty, 1931).
+// Returns Pearson's sum over bins where 10 or more are expected, as a normal deviate (Wilson and Hilferty, 1931).
 double deviate_of(const std::vector<double>& expected, const std::vector<uint>& found) {
     double sum = 0, bins = 0;
     for (std::size_t i = 0; i < expected.size(); ++i)
@@ -126,7 +126,7 @@ TEST(Layers, SamplingAndEvaluationAgree) {
     }
 }
 
-// But for a coat of another normal, which receives light by that.
+// A coat with another normal is the exception, since it receives light by that normal.
 TEST(Layers, OpaqueSurfacesAreReciprocal) {
     for (const auto& [name, bsdf] : opaque_cases())
         for (uint i = 0; i < 500 && bsdf.coat_normal.z == 1; ++i) {
@@ -151,7 +151,7 @@ TEST(Layers, ASmoothCoatReflectsItsFresnelShare) {
     }
 }
 
-// Shadow rays carry the mean of the paths.
+// Shadow rays carry the mean over paths.
 TEST(Layers, PanesPassOnAverageWhatTheySay) {
     Bsdf pane = thin_glass(0, 1.5f);
     pane.diffuse = vec3(0.75f, 0.5f, 0.25f);

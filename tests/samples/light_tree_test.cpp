@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Choosing a light by the place that is lit.
+// Light trees: a light is chosen by the place that it lights.
 #include "renderer/lights.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ struct Draws {
     }
 };
 
-// A triangle, a point or a spot, of powers from 10^-3 to 10^3.
+// Makes a triangle, a point or a spot, with a power from 10^-3 to 10^3.
 PlacedLight any_light(Draws& draws, uint light) {
     const vec3 at = draws.point(10);
     const float power = std::pow(10.0f, draws.between(-3, 3));
@@ -58,7 +58,7 @@ LightReceiver any_receiver(Draws& draws) {
 
 Ref<LightNode> on_host(const LightTree& tree) { return {reinterpret_cast<std::uint64_t>(tree.nodes.data())}; }
 
-// Whether any light of it arrives from one of its corners: what must not be left out.
+// Returns whether any of its light arrives from one of its corners: such a light must not be left out.
 bool may_light(const PlacedLight& light, const LightReceiver& at) {
     for (uint corner = 0; corner < 8; ++corner) {
         const vec3 from(corner & 1 ? light.lo.x : light.hi.x, corner & 2 ? light.lo.y : light.hi.y,
@@ -82,7 +82,7 @@ TEST(LightTree, FewChoicesEndWithoutALight) {
             const LightReceiver at = any_receiver(draws);
             double sum = 0;
             for (const uint way : tree.ways) sum += double{chance_of_way(on_host(tree), at, way)};
-            // The rest are choices that end at a node of which neither child can light the receiver.
+            // The rest are choices that end at a node with no child that can light the receiver.
             EXPECT_LE(sum, 1 + 1e-5);
             if (count < 50) continue;
             ++all;
@@ -128,7 +128,7 @@ TEST(LightTree, LightsAreChosenWithTheirChance) {
     }
 }
 
-// Lights beside a receiver are asked more often than a light that is a thousand times as strong and far or hidden.
+// Lights beside a receiver are asked more often than a light that is a thousand times as strong but far or hidden.
 TEST(LightTree, PlaceCountsMoreThanPower) {
     const auto point = [](vec3 at, float power, uint light) {
         return PlacedLight{.lo = at,
@@ -148,7 +148,7 @@ TEST(LightTree, PlaceCountsMoreThanPower) {
     EXPECT_NEAR(chance_of_way(on_host(hidden), pane, hidden.ways[0]), 0.001f, 1e-4f);
 }
 
-// Each light half as far from the next as that from the one before: the best splits part them one by one.
+// Each light is half as far from the next as from the one before: the best splits part them one by one.
 TEST(LightTree, AWayHasAtMost32Levels) {
     std::vector<PlacedLight> lights;
     for (uint i = 0; i < 120; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Kinds of materials, by what kernels need for them, and the lights without size that materials stop.
+// Kinds of materials, by their needs of kernels, and the lights without size that materials stop.
 #include "renderer/material_kinds.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ Material material_with(uint needs) {
     return material;
 }
 
-// A quad of each.
+// Makes a quad of each material.
 Scene scene_of(const std::vector<Material>& materials) {
     Scene scene;
     scene.materials = materials;
@@ -46,7 +46,7 @@ TEST(MaterialKinds, MaterialsThatNeedTheSameAreOfOneKind) {
     EXPECT_EQ(kinds.all_needs(), textures | glass);
 }
 
-// Kernels of all kinds sample them.
+// Kernels of all kinds sample textures of lights.
 TEST(MaterialKinds, AllReadTheTexturesOfLights) {
     Scene scene = scene_with({0, glass, 0});
     scene.materials[2].emission_texture.image = 0;
@@ -97,8 +97,8 @@ TEST(MaterialKinds, LayersAreNeeds) {
     EXPECT_EQ(needs_of(mapped), textures | 1u << PT_HAS_COAT);
 }
 
-// Colours of meshes are needs of the materials that show them; all kernels need those of lights, where alpha tells what
-// arrives.
+// Colours of meshes are needs of the materials that show them; all kernels need those of lights, where alpha scales the
+// light that arrives.
 TEST(MaterialKinds, ColorsAreNeedsOfWhatIsSeenOnColoredMeshes) {
     constexpr uint colors = 1u << PT_HAS_COLORS;
     Scene scene = scene_with({0, 0, glass});
@@ -118,7 +118,7 @@ TEST(MaterialKinds, SecondTextureCoordinatesAreNeedsOfTextures) {
     scene.meshes[0].second_uvs.assign(4, vec2(0));
     scene.meshes[1].second_uvs.assign(4, vec2(0));
     EXPECT_EQ(kinds_of(scene).needs, (std::vector<uint>{0, textures}));
-    scene.materials[0].normal_texture.uv_set = 1;  // of no image
+    scene.materials[0].normal_texture.uv_set = 1;  // without an image
     EXPECT_EQ(kinds_of(scene).needs, (std::vector<uint>{0, textures}));
     scene.materials[1].normal_texture.uv_set = 1;
     EXPECT_EQ(kinds_of(scene).needs, (std::vector<uint>{0, textures | second}));
@@ -167,7 +167,7 @@ TEST(MaterialKinds, TellPanesFromOtherGlass) {
 TEST(StoppedLights, AreNamedWithWhatStopsThem) {
     const Glasses all;
     Scene scene = scene_of({all.pane, all.rough, all.thick});
-    scene.materials.push_back(all.rough);  // of nothing
+    scene.materials.push_back(all.rough);  // used by nothing
     EXPECT_TRUE(stopped_lights(scene).empty()) << "no light without size";
     scene.lights = {{.name = "sun"}};
     const std::vector<std::string> said = stopped_lights(scene);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A scene that has moved is the scene as if it had been made so.
+// A moved scene equals a scene that was made in that place.
 #include "renderer/moving_scene.h"
 
 #include <limits>
@@ -15,8 +15,8 @@ Keyframes keyframes(uint width, std::vector<float> values) {
     return {Interpolation::linear, false, width, {0, 1}, std::move(values)};
 }
 
-// A floor, a lamp that an animation widens by a morph target, a box and a light that it carries. All numbers are short,
-// so that float32 and float64 agree on where things are.
+// Makes a floor, a lamp that an animation widens by a morph target, and a box that carries a light. All numbers are
+// short, so that float32 and float64 agree on where things are.
 Scene moving_scene() {
     Scene scene;
     add(scene, make_quad({-4, 0, -4}, {0, 0, 8}, {8, 0, 0}), lambert(0.5f));
@@ -44,7 +44,7 @@ Scene moving_scene() {
 
 class MovingSceneTest : public test::VulkanTest {
   protected:
-    // Before and after the move; then of a scene that was made as it is after it.
+    // The pictures before and after the move, and that of a scene made as it is after the move.
     struct Pictures {
         HdrImage before, after, expected;
     };
@@ -99,7 +99,7 @@ TEST_F(MovingSceneTest, ALampThatVanishesShinesNoMore) {
     EXPECT_EQ(statistics(dark.after).mean, 0);
 }
 
-// The box, which stands nowhere at rest, grows.
+// The box, which has no size at rest, grows.
 TEST_F(MovingSceneTest, WhatIsHiddenAtRestAppears) {
     Scene scene = moving_scene();
     auto rig = std::make_shared<Rig>(*scene.rig);
@@ -120,7 +120,7 @@ TEST_F(MovingSceneTest, WhatIsHiddenAtRestAppears) {
     EXPECT_FALSE(same_bits(none.after, grown.after));
 }
 
-// Normals that targets and skins leave without a direction.
+// Targets and skins leave normals without a direction.
 TEST_F(MovingSceneTest, NormalsThatVanishAreThoseOfTheTriangle) {
     for (const float left : {0.0f, std::numeric_limits<float>::quiet_NaN()}) {
         Scene scene = moving_scene();
@@ -153,7 +153,7 @@ TEST_F(MovingSceneTest, LightInASceneThatWasDarkIsRefused) {
     EXPECT_THROW(moving.move_to(rest_pose(*scene.rig)), Error);
 }
 
-// One mesh, two instances, of which the second has a material of its own.
+// One mesh has two instances, the second with a material of its own.
 TEST_F(MovingSceneTest, InstancesMayHaveMaterialsOfTheirOwn) {
     Scene own = moving_scene(), shared = own;
     own.rig = shared.rig = nullptr;
@@ -167,7 +167,7 @@ TEST_F(MovingSceneTest, InstancesMayHaveMaterialsOfTheirOwn) {
     setup.settings.camera = camera_rays(look({0, 6, 9}, {0, 1, 0}, 0.4f), 1);
     const Statistics expected = statistics(render(context(), own, setup));
     expect_mean(render(context(), shared, setup), expected.mean, "a lamp that is none");
-    // And the other way: a dark mesh that shines.
+    // The other way round, a dark mesh shines.
     own.instances[0].material = 1;
     own.meshes[1].materials.assign(2, 0);
     shared.meshes[0].materials.assign(2, 1);

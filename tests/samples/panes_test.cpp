@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Light through smooth walls without thickness, which shadow rays pass, too.
+// Light through smooth walls without thickness, which shadow rays pass as well.
 #include "tests/samples/bsdf_samples.h"
 #include "tests/samples/render.h"
 
@@ -14,7 +14,7 @@ Material pane(vec3 color = vec3(1)) {
 
 Mesh level(float height) { return make_quad({-50, height, -50}, {0, 0, 100}, {100, 0, 0}); }
 
-// A white floor.
+// Returns a white floor below panes.
 Scene floor_below(const std::vector<Material>& panes) {
     Scene scene;
     add(scene, level(0), lambert(1));
@@ -39,7 +39,7 @@ std::vector<Light> lights_at(double cosine) {
     return {sun, bulb, spot};
 }
 
-// The radiance of a floor under a light that gives it 1 without panes.
+// Returns the radiance of a floor under a light that gives it 1 without panes.
 vec3 lit_through(Context& context, const std::vector<Material>& panes, const Light& light) {
     Scene scene = floor_below(panes);
     scene.lights = {light};
@@ -86,7 +86,7 @@ TEST_F(Panes, RoughWallsAndVolumesStopLightsWithoutSize) {
         EXPECT_EQ(lit_through(context(), {pane(), material}, lights_at(1)[0]), vec3(0)) << material.thickness;
 }
 
-// The same light found by light sampling, by surfaces, and by both: nothing is counted twice or lost.
+// Light sampling, surfaces, and both find the same light: nothing is counted twice or lost.
 TEST_F(Panes, LightsWithSizeAreFoundOnceByEveryStrategy) {
     for (const bool has_sky : {false, true}) {
         Scene scene = floor_below({pane(vec3(0.5f)), pane()});
@@ -107,7 +107,7 @@ TEST_F(Panes, LightsWithSizeAreFoundOnceByEveryStrategy) {
     }
 }
 
-// A white ball within spheres that take nothing away, under a white sky: all is as bright as the sky.
+// A white ball is within spheres that take nothing away, under a white sky: all is as bright as the sky.
 TEST_F(Panes, AWhiteFurnaceWithPanesStaysWhite) {
     Scene scene;
     add(scene, make_icosphere(2), lambert(1), Transform::scaling(vec3(0.5f)));
@@ -124,7 +124,7 @@ TEST_F(Panes, AWhiteFurnaceWithPanesStaysWhite) {
     }
 }
 
-// As shadow rays do, paths pass panes without their counting as scatterings.
+// Like shadow rays, paths pass panes without counting them as scatterings.
 TEST_F(Panes, PathsSeeThroughPanesAtAnyDepth) {
     Scene scene = floor_below(std::vector<Material>(40, pane()));
     scene.materials[0] = lamp(1);

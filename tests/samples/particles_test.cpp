@@ -46,7 +46,7 @@ TEST(ParticleMotion, WallsThrowBack) {
     EXPECT_EQ(moved({-0.5f, -1000}, 0.125f, 0, 1, 1).position, 0.875f) << "thrown beyond the other wall";
 }
 
-// The result of the kernel in one frame.
+// Computes what the kernel does in one frame.
 void step_reference(Motions& particles, std::vector<HeatMaterial>& materials) {
     for (std::size_t i = 0; i < particles.radii.size(); ++i) {
         for (int axis = 0; axis < 3; ++axis) {
@@ -67,7 +67,7 @@ class ParticlesBy : public test::VulkanTest, public ::testing::WithParamInterfac
         return std::make_unique<SwTlas>(context());
     }
     bool has_hardware() { return missing_for_hardware(context().properties()).empty(); }
-    // After some frames.
+    // Returns the picture after this many frames.
     HdrImage picture_of(const std::string& kind, const Motions& start, uint frames) {
         const std::unique_ptr<AbstractAccel> accel = make_accel(kind);
         Simulation simulation(*accel, start);

@@ -30,7 +30,7 @@ def stop_when(checkpoint, signal_number, *arguments):
     return process.returncode, shown
 
 
-# One run, and the same in three shards, merged in another order; the film is the same, too.
+# One run gives the same as three shards, merged in another order; so does the film.
 shown = run(*box, "--spp", "8", "-o", "whole.png", "--keep-film", "--json", "all.jsonl", "--stats")
 assert "24 x 24, 8 spp, error" in shown and "swtlas_trace closest" in shown and "device memory" in shown, shown
 for shard in range(3):
@@ -44,7 +44,7 @@ run("merge", "2.film", "0.film", "-o", "part.png.film")
 assert "(5 resumed)" in run(*box, "--spp", "8", "-o", "part.png", "--resume")
 assert same("whole.png", "part.png") and not (here / "part.png.film").exists()
 
-# Killed in the middle and resumed: the same picture, bit for bit; for adaptive sampling, too.
+# A run that is killed and resumed gives the same picture, bit for bit, also with adaptive sampling.
 for name, rule in [("plain", ["--spp", "120"]), ("adaptive", ["--target-error", "0.2"])]:
     job = [*box, *rule, "--checkpoint", "0", "-o"]
     status, shown = stop_when(f"{name}.exr.film", signal.SIGKILL, *job, f"{name}.exr")
@@ -55,7 +55,7 @@ for name, rule in [("plain", ["--spp", "120"]), ("adaptive", ["--target-error", 
     assert same(f"{name}.exr", f"{name}2.exr"), name
     assert not list(here.glob("*exr.film")), "nothing is left behind"
 
-# Ctrl-C: a picture and a checkpoint.
+# Ctrl-C leaves a picture and a checkpoint.
 status, shown = stop_when("stopped.png", signal.SIGINT, *box, "--time", "600", "-o", "stopped.png", "--write-partial-images", "0")
 assert "stopped.png: written after" in shown, shown
 assert status == 130 and "interrupted after" in shown and (here / "stopped.png.film").exists(), (status, shown)
@@ -65,7 +65,7 @@ begun = time.monotonic()
 run(*box, "--time", "1", "--resume", "-o", "stopped.png", "--json", "all.jsonl")
 assert 1 <= time.monotonic() - begun < 20
 
-# The part of a picture is as it is in the whole.
+# A part of a picture equals that part of the whole.
 run(*box, "--spp", "2", "-o", "all.film", "--quiet")
 run(*box, "--spp", "2", "--cropwindow", "0.25", "0.5", "0.5", "1", "-o", "part.film", "--quiet")
 # The part is the data window of the whole; its pixels are those of the film.
@@ -97,7 +97,7 @@ layers = (here / "layers.exr").read_bytes()
 for layer in ["albedo.R", "normal.Z", "depth.Z", "instance.ID", "primitive.ID", "samples.N", "variance.Y"]:
     assert layer.encode() + b"\0" in layers[:1000], layer
 
-# A viewer gets the whole picture, channel by channel, and one that leaves is no reason to stop.
+# A viewer gets the whole picture, channel by channel, and a run does not stop when one leaves.
 with socket.create_server(("localhost", 0)) as server:
     port = server.getsockname()[1]
     process = subprocess.Popen([path_tracer, *box, "--spp", "4", "-o", "seen.png", "--display-server", f"localhost:{port}"], cwd=here,

@@ -55,7 +55,7 @@ scene["buffers"] = [{"byteLength": len(buffer), "uri": "data:application/octet-s
 small = ["flags.gltf", "--height", "24", "--spp", "2"]
 
 
-# Two frames, by each accelerator that there is.
+# Renders two frames, by each accelerator of the device.
 accels = ["sw", "hw"] if "HwTlas" in run(*small, "-o", "any.png") else ["sw"]
 for accel in accels:
     shown = run(*small, "-o", f"{accel}.exr", "--frames", "2", "--accel", accel, "--json", "all.jsonl", "--validation")

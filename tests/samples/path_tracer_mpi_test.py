@@ -31,7 +31,7 @@ def run(ranks, *arguments, status=0):
     return shown
 
 
-# Two processes give what one does, each sample once.
+# Two processes give the result of one, with each sample once.
 assert "9 spp" in run(1, "one.png", "--spp", "9", "--keep-film")
 assert "9 spp" in run(2, "two.png", "--spp", "9", "--keep-film")
 for suffix in ["png", "png.film"]:
@@ -39,7 +39,7 @@ for suffix in ["png", "png.film"]:
 assert "under mpirun" in run(2, "no.png", "--target-error", "0.1", status=1)
 assert len(list(here.iterdir())) == 4, list(here.iterdir())
 
-# A rank is lost: what was there is kept, and resumed.
+# When a rank is lost, the samples so far are kept, and resumed.
 process = start(2, "lost.png", "--spp", "4000", "--checkpoint", "0")
 films = [here / f"lost.png.rank{rank}of2.film" for rank in range(2)]
 while process.poll() is None and not all(film.exists() for film in films):

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What pictures must and must not depend on.
+// Pictures: what they must and must not depend on.
 #include "tests/samples/render.h"
 
 namespace twinray::path_tracer {
@@ -48,7 +48,7 @@ TEST_F(PathTracer, EveryDifferenceBetweenTheAcceleratorsComesFromARayOnWhichThey
     EXPECT_EQ(checker.recorded().size(), checker.found());
 }
 
-// Materials that transmit next to nothing are of the kind of glass, and look as they did.
+// Materials that transmit next to nothing are of the kind of glass, but look as they did.
 TEST_F(PathTracer, ShadingByKindOfMaterialChangesNoBit) {
     Scene scene = cornell_box_scene();
     RenderSetup setup = cornell_shot(scene);
@@ -63,7 +63,7 @@ TEST_F(PathTracer, ShadingByKindOfMaterialChangesNoBit) {
     EXPECT_TRUE(same_bits(queued, render(context(), scene, setup)));
 }
 
-// The check must be able to fail: against a scene with a wall less it finds the wall.
+// The check must be able to fail: it finds the wall that another scene lacks.
 TEST_F(PathTracer, TheCrossCheckFindsAMissingWall) {
     Scene scene = cornell_box_scene();
     SwTlas whole(context()), broken(context());
@@ -116,7 +116,7 @@ TEST_F(PathTracer, ABlendedSurfaceDimsLightByItsAlpha) {
     expect_mean(render(context(), scene, setup), std::pow(0.75, 6), "and before the camera");
 }
 
-// Leaves, hair and fences: 100 sheets of one material before the light, and the camera.
+// Like leaves, hair and fences: 100 sheets of one material are before the light, and the camera.
 TEST_F(PathTracer, AnyNumberOfTransparentSurfacesIsPassed) {
     for (const float alpha : {0.0f, 0.02f})
         for (const AlphaMode mode : {AlphaMode::blend, AlphaMode::mask}) {
@@ -147,7 +147,7 @@ TEST_F(PathTracer, TiltedShadingNormalsLetNoLightThrough) {
     Mesh floor = wide_floor();
     floor.normals.assign(4, normalize(vec3(1, 0.05f, 0)));
     add(scene, floor, {.name = "plastic", .metallic = 0, .roughness = 0.5f});
-    // From below the floor, but above the tilted shading horizon.
+    // The light comes from below the floor, but above the tilted shading horizon.
     scene.lights = {{.name = "light", .kind = Light::Kind::directional, .direction = normalize(vec3(-1, 0.02f, 0))}};
     RenderSetup setup;
     setup.settings.camera = camera_rays(look({1, 0.5f, 0}, vec3(0), 0.1f), 1);

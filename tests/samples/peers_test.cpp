@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The path tracer against pictures by Mitsuba 3 of the same triangles and materials (bench/peers/renderers.py).
+// The path tracer, compared with Mitsuba 3 on the same triangles and materials (bench/peers/renderers.py).
 #include <fstream>
 
 #include <nlohmann/json.hpp>
@@ -12,7 +12,7 @@ namespace {
 
 class PeersTest : public test::VulkanTest {};
 
-// Means over blocks of pixels, by channel, and their standard errors.
+// The means over blocks of pixels, by channel, and their standard errors.
 struct Blocks {
     std::vector<double> mean, error;
 };

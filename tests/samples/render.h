@@ -66,7 +66,7 @@ inline void add(Scene& scene, Mesh mesh, const Material& material, const Transfo
     scene.meshes.push_back(std::move(mesh));
 }
 
-// Nothing but Lambert: an index of refraction of 1 reflects nothing.
+// Makes a material that only has Lambert's term: an index of refraction of 1 reflects nothing.
 inline Material lambert(float albedo) {
     return {.name = "lambert", .base_color = vec4(vec3(albedo), 1), .metallic = 0, .roughness = 1, .ior = 1};
 }
@@ -80,7 +80,7 @@ inline Mesh wide_floor(float height = 0) { return make_quad({-5, height, -5}, {0
 inline Mesh square_above() { return make_quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}); }
 inline constexpr double factor_of_square_above = 0.554126423979571987;
 
-// The middle of the floor from close by, under what is above it.
+// Returns a setup that looks at the middle of the floor from close by, under what is above it.
 inline RenderSetup of_the_floor() {
     RenderSetup setup;
     setup.settings.max_depth = 1;
@@ -88,7 +88,7 @@ inline RenderSetup of_the_floor() {
     return setup;
 }
 
-// Over the pixels, whose values are independent of each other and have the same expectation.
+// The mean over pixels, which are independent of each other and have the same expectation.
 struct Statistics {
     double mean = 0;
     double error = 0;  // standard deviation of the mean
@@ -101,7 +101,7 @@ inline Statistics statistics(const HdrImage& picture) {
     return {sum / n, std::sqrt(squares / (n - 1) / n)};
 }
 
-// Within four standard deviations, plus float rounding.
+// Expects this mean within four standard deviations, plus float rounding.
 inline void expect_mean(const HdrImage& picture, double expected, const char* what) {
     const Statistics found = statistics(picture);
     EXPECT_NEAR(found.mean, expected, 4 * found.error + 2e-6 * expected) << what << ", error " << found.error;

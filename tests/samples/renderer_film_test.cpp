@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the renderer puts into films.
+// The contents of the renderer's films.
 #include <cstring>
 
 #include "tests/samples/render.h"
@@ -9,7 +9,7 @@ namespace {
 
 class RendererFilm : public test::VulkanTest {
   protected:
-    // The blocks of these numbers, of all pixels.
+    // Renders these blocks of all pixels.
     static Film film_of(Renderer& renderer, AbstractAccel& accel, std::span<const uint> blocks) {
         Film film = renderer.make_film();
         renderer.start(film);
@@ -94,7 +94,7 @@ TEST_F(RendererFilm, FirstSurfacesAreWhatTheCameraSees) {
     const DeviceScene device_scene(context(), scene, collect_lights(scene), nullptr);
     SwTlas accel(context());
     push_scene(accel, scene);
-    // From above, at +x to the left: the left half shows the lamp, the right half the grey quad.
+    // Seen from above, with +x to the left, the left half shows the lamp and the right half the grey quad.
     Renderer renderer(context(), device_scene,
                       {.width = 40, .height = 10, .camera = camera_rays(look({0, 9, 0}, vec3(0), 0.02f), 4)});
     const std::vector<FirstSurface> found = renderer.first_surfaces(accel);
@@ -108,7 +108,7 @@ TEST_F(RendererFilm, FirstSurfacesAreWhatTheCameraSees) {
     EXPECT_EQ(light.instance, 3u);
     EXPECT_LT(light.primitive, 2u);
     EXPECT_EQ(light.count, samples_of_first_surfaces);
-    // And nothing of it is added to the film.
+    // The film gets nothing of it.
     const Film all = film_of(renderer, accel, std::vector<uint>{0, 1});
     Film film = renderer.make_film();
     renderer.start(film);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which samples come next, on which devices, and what adaptive sampling does to the picture.
+// The order of samples, their devices, and the effect of adaptive sampling on the picture.
 #include "renderer/rounds.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr uint side = 16;
 
-// Takes a block of independent samples of the pixel.
+// Returns one of a pixel's independent samples.
 using Source = std::function<float(uint pixel, std::mt19937& random)>;
 
 void add_round(Film& film, const Round& round, const Source& source, std::mt19937& random) {
@@ -37,7 +37,7 @@ Film adaptive_film(const StoppingRules& rules, const Source& source, uint seed) 
     return film;
 }
 
-// 1 on average; the lower half of the film has bright paths, one in twenty.
+// Returns 1 on average; the lower half of the film has bright paths, one in twenty.
 float uneven(uint pixel, std::mt19937& random) {
     std::uniform_real_distribution<float> number;
     if (pixel < side * side / 2) return 0.9f + 0.2f * number(random);
@@ -75,14 +75,14 @@ TEST(Rounds, PixelsGetAsManySamplesAsTheyNeed) {
     const Film film = adaptive_film({.samples = 1 << 16, .error = 0.1}, uneven, 1);
     EXPECT_LE(film.error(), 0.1);
     EXPECT_GT(film.error(), 0.09);
-    // Half of the pixels have a variance of 19 a sample, the others next to none: as many samples for each would be
-    // 950.
+    // Half of the pixels have a variance of 19 per sample, the others next to none: the same number for each would take
+    // 950 samples.
     EXPECT_LT(film.mean_samples(), 750);
     EXPECT_GT(film.pixels.back().count, 5 * film.pixels.front().count);
     EXPECT_GT(film.pixels.front().count, 2 * pilot_blocks) << "none is left alone";
 }
 
-// A corner is seen by few neighbours, so that none lacks blocks before the error is what it should be.
+// A corner has few neighbours that see it, so none lacks blocks before the error is what it should be.
 TEST(Rounds, ANoisyCornerIsNoDeadEnd) {
     const Source corner = [](uint pixel, std::mt19937& random) {
         return pixel == 0 ? uneven(side * side - 1, random) : 1.0f;
@@ -105,7 +105,7 @@ TEST(Rounds, TheLimitOfSamplesHolds) {
     for (const FilmPixel& pixel : film.pixels) EXPECT_LE(pixel.count, 100 / adaptive_block_size);
 }
 
-// Deciding by the samples that one keeps favours pixels that missed the bright paths.
+// Deciding by the samples that are kept favours pixels that missed the bright paths.
 TEST(Rounds, AdaptivePicturesAreNeitherTooDarkNorTooBright) {
     constexpr uint seeds = 200;
     double sum = 0, squares = 0;

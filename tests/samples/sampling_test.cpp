@@ -75,7 +75,7 @@ TEST(MisWeight, SumsToOneAndDoesNotOverflow) {
     EXPECT_EQ(mis_weight(1e-30f, 1e30f), 0);
 }
 
-// The probability of each entry, exactly, from the columns.
+// Returns the exact probability of each entry, from the columns.
 std::vector<double> probabilities(const std::vector<AliasEntry>& table) {
     std::vector<double> result(table.size());
     for (std::size_t i = 0; i < table.size(); ++i) {

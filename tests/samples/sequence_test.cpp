@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which moment, view and file the pictures of a sequence have.
+// The moment, view and file of each picture of a sequence.
 #include "renderer/sequence.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 namespace twinray::path_tracer {
 namespace {
 
-// A box that is carried from x = 0 at 1 s to x = 8 at 3 s, and a second animation with a fault.
+// Makes a box that is carried from x = 0 at 1 s to x = 8 at 3 s, and a second animation with a fault.
 Scene carried_box() {
     Scene scene;
     scene.meshes = {make_box({0, 0, 0}, {1, 1, 1})};
@@ -96,7 +96,7 @@ TEST(Sequence, WhatIsSweptHoldsAllMoments) {
     EXPECT_EQ(bounds_of(all).hi, vec3(7, 1, 1));
 }
 
-// A box that is hidden at rest and grows at x = 100: where it stands until it is played does not count.
+// A box is hidden at rest and grows at x = 100: its place before it is played does not count.
 TEST(Sequence, WhatIsSweptHoldsWhatGrowsFromNothing) {
     Scene scene = carried_box();
     scene.instances.push_back({"seed", 0, Transform::translation({0, -50, 0})});

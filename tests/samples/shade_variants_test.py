@@ -13,7 +13,7 @@ import frozen_spirv
 
 header, shade, shadow = pathlib.Path(sys.argv[1]), sys.argv[2], sys.argv[3]
 ids = {name: int(value) for name, value in re.findall(r"^const uint PT_HAS_(\w+) = (\d+)u;", header.read_text(), re.M)}
-# Light from somewhere there has to be, and where first surfaces go is no matter of the scene.
+# Some light must come from somewhere, and where first surfaces go does not depend on the scene.
 least, other = {"LOCAL_LIGHTS"}, {"AOVS", "QUEUES"}
 most_of_the_plainest = 3200
 

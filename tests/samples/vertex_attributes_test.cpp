@@ -18,7 +18,7 @@ Scene scene_of(const Mesh& mesh, const Material& material) {
     return scene;
 }
 
-// From above, seeing the square from -half to half around `at`; -x is right.
+// Looks from above at the square from -half to half around `at`; -x is right.
 RenderSetup from_above(vec2 at, float half, uint width = 1, uint samples = 1) {
     Camera camera = look({at.x, 2, at.y}, {at.x, 0, at.y}, 1);
     camera.orthographic_half_height = half;
@@ -33,10 +33,10 @@ RenderSetup from_above(vec2 at, float half, uint width = 1, uint samples = 1) {
 
 class VertexAttributes : public test::VulkanTest {
   protected:
-    // The colour of an unlit surface at a point.
+    // Returns the colour of an unlit surface at a point.
     vec3 seen(const Scene& scene, vec2 at) { return render(context(), scene, from_above(at, 1e-5f)).rgb[0]; }
 
-    // The shading normal at a point.
+    // Returns the shading normal at a point.
     vec3 normal_at(const Scene& scene, vec2 at) {
         const RenderSetup setup = from_above(at, 1e-5f);
         const DeviceScene device_scene(context(), scene, collect_lights(scene), nullptr);
@@ -66,7 +66,7 @@ TEST_F(VertexAttributes, ColoursMultiplyTheBaseColourAndAreLinearBetweenCorners)
     }
 }
 
-// Base colour in 16 bits: what 8 bits cannot tell apart, and the same picture where they can.
+// Base colour has 16 bits: it shows what 8 bits cannot tell apart, and the same picture where they can.
 TEST_F(VertexAttributes, TexturesKeepSixteenBits) {
     Mesh mesh = floor_quad();
     mesh.uvs.assign(4, vec2(0.5f));
@@ -87,7 +87,7 @@ TEST_F(VertexAttributes, TexturesKeepSixteenBits) {
     expect_near(seen(scene, {0, 0}), flat, 1.0f / 65535, "of 8 bits");
 }
 
-// A mesh with colours beside one without, and one material for both: kernels have the code, the mesh has no buffer.
+// A mesh with colours is beside one without, and both have one material: kernels have the code, one mesh has no buffer.
 TEST_F(VertexAttributes, MeshesWithoutColoursAreAsTheirMaterial) {
     Mesh colored = floor_quad();
     colored.colors.assign(4, vec4(0, 1, 0, 1));
@@ -112,7 +112,7 @@ TEST_F(VertexAttributes, AlphaOfColoursMasks) {
     expect_near(seen(scene, {-0.05f, 0.2f}), vec3(1), 0);
 }
 
-// A lamp above a floor, both 2 x 2, one apart: what of its light arrives is its alpha, however it is found.
+// A lamp is 1 above a floor, both 2 x 2: its alpha scales the light that arrives, however the lamp is found.
 TEST_F(VertexAttributes, AlphaOfColoursDimsLampsAndShadows) {
     const double expected = factor_of_square_above;  // of an opaque lamp
     Mesh veil = square_above();
@@ -134,7 +134,7 @@ TEST_F(VertexAttributes, AlphaOfColoursDimsLampsAndShadows) {
     expect_mean(render(context(), scene, setup), 0.75 * expected, "a shadow");
 }
 
-// A red and a green texel.
+// Makes an image with a red and a green texel.
 Image red_and_green() { return {"red and green", 2, 1, {255, 0, 0, 255, 0, 255, 0, 255}}; }
 
 TEST_F(VertexAttributes, EachTextureTakesItsOwnCoordinates) {
@@ -158,7 +158,7 @@ TEST_F(VertexAttributes, EachTextureTakesItsOwnCoordinates) {
     expect_near(seen(scene, {0, 0.3f}), {0, 1, 0}, 0, "a mesh with the first alone");
 }
 
-// Light that is chosen by what its texture shows there: dark where the first coordinates are.
+// Light is chosen by what its texture shows there; it is dark at the first coordinates.
 TEST_F(VertexAttributes, LampsShineByTheSecondCoordinates) {
     Mesh mesh = square_above();
     mesh.uvs.assign(4, vec2(0.25f, 0.5f));
@@ -204,7 +204,7 @@ TEST_F(VertexAttributes, NormalsWithoutADirectionAreThoseOfTheTriangle) {
     }
 }
 
-// Of the triangle of vertices 0, 1 and 2, in its middle.
+// Looks at the middle of the triangle with vertices 0, 1 and 2.
 TEST_F(VertexAttributes, ACornerWithoutADirectionTakesTheTriangles) {
     const vec3 tilted(0.6f, 0.8f, 0);
     Scene scene = scene_of(floor_quad(), lambert(0.5f));
@@ -225,7 +225,7 @@ TEST_F(VertexAttributes, NormalsOfAnyLengthAreDirections) {
     }
 }
 
-// Against the winding, with a vertex that has none: never black.
+// Normals are against the winding, and one vertex has none: the surface is never black.
 TEST_F(VertexAttributes, NormalsAgainstTheWindingAreTurned) {
     Scene scene = scene_of(floor_quad(), lambert(0.5f));
     scene.meshes[0].normals = {vec3(nan), vec3(0, -1, 0), vec3(0, -1, 0), vec3(0, -1, 0)};
@@ -235,7 +235,7 @@ TEST_F(VertexAttributes, NormalsAgainstTheWindingAreTurned) {
     for (const vec3& pixel : render(context(), scene, setup).rgb) expect_near(pixel, vec3(0.5f), 1e-5f);
 }
 
-// A normal map of (0.6, 0, 0.8) along the texture's u.
+// Makes a floor with a normal map of (0.6, 0, 0.8) along the texture's u.
 Scene mapped_floor(uint uv_set) {
     Mesh mesh = floor_quad();
     mesh.uvs = {{0, 0}, {0, 1}, {1, 1}, {1, 0}};         // u along x, v along z
@@ -277,7 +277,7 @@ TEST_F(VertexAttributes, WhatASceneLacksTakesNoMemory) {
     const auto bytes = [&](const Scene& scene) {
         return DeviceScene(context(), scene, collect_lights(scene), nullptr).device_bytes();
     };
-    // Second coordinates that no texture takes are not there.
+    // Second coordinates that no texture uses are not stored.
     EXPECT_EQ(bytes(colored), bytes(plain) + 4 * sizeof(vec4) + sizeof(VertexExtras));
 }
 

@@ -116,7 +116,7 @@ VertexMotion two_joints(float first_weight) {
     return motion;
 }
 
-// Frames keep the axes of what has shrunk to nothing; where it stands is that of nodes.
+// Frames keep the axes of nodes that have shrunk to nothing; their place is that of the nodes.
 TEST(Pose, FramesOutliveScalesOfZero) {
     Rig rig;
     rig.nodes.resize(2);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Vertices moved on the device against those moved on the host, and accelerators that take them over.
+// Vertices moved on the device, compared with those moved on the host, and accelerators that take them over.
 #include "engine/scene/rig.h"
 
 #include <cmath>
@@ -20,7 +20,7 @@ struct Draws {
     vec3 point() { return {in(-1, 1), in(-1, 1), in(-1, 1)}; }
 };
 
-// A sphere with `influences` joints a vertex, everything about it at random; joints rotate, scale and mirror.
+// Makes a sphere with `influences` joints a vertex, everything about it at random; joints rotate, scale and mirror.
 std::shared_ptr<Rig> random_rig(const Mesh& mesh, uint influences, float size = 1) {
     Draws draws;
     auto rig = std::make_shared<Rig>();
@@ -56,7 +56,7 @@ std::shared_ptr<Rig> random_rig(const Mesh& mesh, uint influences, float size = 
     return rig;
 }
 
-// The sum of the sizes of all that is added up in each coordinate, which rounding errors are proportional to.
+// Returns the sum of the sizes of all terms in each coordinate, to which rounding errors are proportional.
 MeshVertices sizes_of(const Rig& rig, const Pose& pose) {
     const auto positive = [](auto value) { return abs(value); };
     DeformedMesh mesh = rig.meshes[0];
@@ -73,7 +73,7 @@ MeshVertices sizes_of(const Rig& rig, const Pose& pose) {
     return deformed(mesh.base, mesh.motion, weights, joints);
 }
 
-// After Deformer::record() has run.
+// Reads the vertices after Deformer::record() has run.
 MeshVertices downloaded(Context& context, const Deformer& deformer) {
     const Deformer::Output output = deformer.output(0);
     return {download<vec3>(context, output.positions, output.vertex_count),

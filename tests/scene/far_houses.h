@@ -36,7 +36,7 @@ inline dvec3 corner_of(const House& house, uint i) {
     return {(i & 1 ? house.hi : house.lo).x, (i & 2 ? house.hi : house.lo).y, (i & 4 ? house.hi : house.lo).z};
 }
 
-// Every corner of every house, in the file's coordinates.
+// Expects every corner of every house, in the file's coordinates.
 inline void expect_far_houses(const Scene& scene, double tolerance) {
     std::vector<dvec3> found;
     for (const Instance& instance : scene.instances)
@@ -51,10 +51,10 @@ inline void expect_far_houses(const Scene& scene, double tolerance) {
         }
 }
 
-// The rounding error of a model of this size at the origin.
+// Returns the rounding error of a model of this size at the origin.
 inline constexpr double rounding = 2e-6;
 
-// ASCII, to the millimetre. `type`: of coordinates, as the header names it.
+// Writes ASCII, to the millimetre. `type` is that of coordinates, as the header names it.
 inline std::string far_houses_ply(const std::string& type) {
     const std::vector<House> houses = far_houses();
     std::ostringstream out;
@@ -74,7 +74,7 @@ inline std::string far_houses_ply(const std::string& type) {
     return out.str();
 }
 
-// One mesh of which each node is a house, where its low corner is.
+// Makes one mesh; each node places it as a house, at its low corner.
 inline GltfBuilder far_houses_gltf() {
     GltfBuilder gltf = one_triangle();
     const House house{dvec3(0), dvec3(10, 8.64, 3.21)};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Placements that lose one direction: shown as what is left, by vertices that are flat themselves.
+// Placements that lose one direction: the rest is shown, by vertices that are flat themselves.
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -131,7 +131,7 @@ TEST(Flat, MorphTargetsMoveWithinThePlane) {
     expect_all_near(world_positions(gltf.load(), 0), {{0, 0, 0}, {1.5f, 1, 0}, {0, 1, 0}, {0, 0, 0}}, 1e-6f);
 }
 
-// While an animation scales a node through 0 it is a thousandth as thick as large, and never without an inverse.
+// While an animation scales a node through 0, it is a thousandth as thick as large, and always has an inverse.
 TEST(Flat, AnAnimationThroughZeroKeepsItShown) {
     GltfBuilder gltf = tetrahedron();
     gltf.root["nodes"][0]["scale"] = {1, 1, 0};

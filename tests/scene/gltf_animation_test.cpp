@@ -8,8 +8,8 @@ namespace {
 
 json& animation(GltfBuilder& gltf) { return gltf.root["animations"][0]; }
 
-// The triangle of one_triangle() on two joints, of which the second, at (0, 1, 0), carries the vertex (0, 1, 0) and is
-// turned by 90 degrees about x within a second. Nodes: 0 the mesh, moved aside in vain, 1 and 2 the joints.
+// Puts the triangle of one_triangle() on two joints. The second, at (0, 1, 0), carries the vertex (0, 1, 0) and turns
+// by 90 degrees about x within a second. Nodes: 0 the mesh, moved aside in vain, 1 and 2 the joints.
 GltfBuilder skinned_triangle() {
     GltfBuilder gltf = one_triangle();
     json& attributes = gltf.primitive()["attributes"];
@@ -149,7 +149,7 @@ TEST(GltfAnimation, InstancesCamerasAndLightsMoveWithTheirNodes) {
     expect_near(scene.lights[0].direction, {0, 1, 0});
 }
 
-// The triangle, and a box of it on a node without size at rest, of which an animation drives the scale or its parent's.
+// Makes the triangle, and a box of it on a node without size at rest; an animation drives its scale or its parent's.
 GltfBuilder growing_triangle(int driven) {
     GltfBuilder gltf = one_triangle();
     gltf.add_node({{"name", "pot"}, {"translation", {3, 0, 0}}, {"children", {2}}});
@@ -205,7 +205,7 @@ TEST(GltfAnimation, WhatNothingScalesIsSkipped) {
     EXPECT_TRUE(scene.rig->hidden.empty());
 }
 
-// As stop-motion has it, where each frame is a node that is shown for a moment.
+// Stop-motion has this: each frame is a node that is shown for a moment.
 TEST(GltfAnimation, AllMayBeHiddenAtRest) {
     GltfBuilder gltf = growing_triangle(1);
     gltf.root["nodes"][0].erase("mesh");
@@ -317,7 +317,7 @@ const Fault shape_faults[] = {
 };
 INSTANTIATE_TEST_SUITE_P(All, GltfShapeFault, testing::ValuesIn(shape_faults), fault_name);
 
-// An animation with a fault cannot be played, and that is all.
+// An animation with a fault cannot be played; nothing else changes.
 class GltfAnimationFault : public testing::TestWithParam<Fault> {};
 TEST_P(GltfAnimationFault, IsWarnedOf) {
     GltfBuilder gltf = skinned_triangle();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Small glTF files for tests: valid by default, to be bent through `root`.
+// Small glTF files for tests: they are valid by default, and `root` changes them.
 #pragma once
 
 #include <cstring>

@@ -135,7 +135,7 @@ TEST(GltfMeshopt, AStreamForANewerLibraryIsNamedWithTheRemedy) {
 
 #ifdef TWINRAY_HAS_DRACO
 
-// Of vertex i, each component is i steps.
+// Adds an attribute: each component of vertex i is i steps.
 template <class T>
 void add_draco_integers(draco::Mesh& mesh, draco::GeometryAttribute::Type type, draco::DataType number,
                         std::uint8_t components, int step) {
@@ -148,7 +148,7 @@ void add_draco_integers(draco::Mesh& mesh, draco::GeometryAttribute::Type type, 
     }
 }
 
-// With colours and texture coordinates, as integers.
+// Returns a stream with colours and texture coordinates, as integers.
 std::string draco_stream() {
     draco::Mesh mesh;
     mesh.set_num_points(static_cast<std::uint32_t>(CORNERS.size()));

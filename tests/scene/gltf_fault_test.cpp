@@ -200,7 +200,7 @@ const Fault file_faults[] = {
 };
 INSTANTIATE_TEST_SUITE_P(File, GltfFault, testing::ValuesIn(file_faults), fault_name);
 
-// Faults that bending the JSON cannot make: in the bytes around it.
+// These faults are in the bytes around the JSON, where bending it cannot make any.
 TEST(GltfFile, DamagedJsonIsNamed) {
     expect_load_error("{\"asset\": ", "a.gltf", "not valid JSON");
     expect_load_error("", "a.gltf", "not valid JSON");

@@ -293,7 +293,7 @@ TEST(GltfMaterial, TextureTransformsTurnAsTheKhronosSampleDoes) {
     EXPECT_NEAR(length(all.uv_row1 - vec3(-2, 0, -0.25f)), 0, 1e-6);
 }
 
-// Of each texture by itself, those of extensions, too; KHR_texture_transform has the last word.
+// Each texture names a set by itself, those of extensions as well; KHR_texture_transform has the last word.
 TEST(GltfMaterial, TexturesNameTheirSetOfTextureCoordinates) {
     const auto texture = [](int set) { return json{{"index", 0}, {"texCoord", set}}; };
     json moved = texture(0);
@@ -363,7 +363,7 @@ void expect_checkerboard(const json& image, const std::string& warning) {
     EXPECT_EQ(scene.images[0].rgba[1], 0);
 }
 
-// So is that of a coat.
+// A coat's normal map is left out in the same way.
 TEST(GltfMaterial, ANormalMapThatCannotBeReadIsLeftOutWithAWarning) {
     const json map = {{"index", 0}}, coat = {{"clearcoatFactor", 1}, {"clearcoatNormalTexture", map}};
     for (const json& material :

@@ -151,14 +151,14 @@ TEST(GltfNodes, TheLastRowOfAMatrixMayBeRounded) {
     }
 }
 
-// glTF keeps scales from cameras and lights, those of 0, too: what stands on a node that is shrunk to nothing has the
-// node's place and turn.
+// glTF keeps scales from cameras and lights, even 0: on a node that is shrunk to nothing, they have the node's place
+// and turn.
 TEST(GltfNodes, CamerasAndLightsOfNodesWithoutSizeStandAndTurnWithThem) {
     GltfBuilder gltf = one_triangle();
     gltf.root["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "spot"}, {"spot", json::object()}}};
     gltf.root["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}}}};
     gltf.add_node({{"translation", {1, 2, 3}}, {"scale", {0, 0, 0}}, {"children", {2}}});
-    gltf.append("nodes", {{"translation", {9, 9, 9}},  // of which nothing is left
+    gltf.append("nodes", {{"translation", {9, 9, 9}},  // nothing of it is left
                           {"rotation", {0, 1, 0, 0}},
                           {"camera", 0},
                           {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
@@ -227,7 +227,7 @@ TEST(GltfNodes, LightsShineAlongTheMinusZOfTheirNodes) {
          {"range", 7},
          {"spot", {{"innerConeAngle", 0.25}, {"outerConeAngle", 0.5}}}},
         {{"type", "point"}}};
-    // Half a turn about y, so that -z points along +z.
+    // This is half a turn about y, so that -z points along +z.
     gltf.add_node({{"translation", {1, 2, 3}},
                    {"rotation", {0, 1, 0, 0}},
                    {"scale", {3, 3, 3}},

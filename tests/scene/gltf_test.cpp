@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a glTF file's geometry becomes; gltf_material_test.cpp and gltf_fault_test.cpp see to the rest.
+// The geometry of glTF files; gltf_material_test.cpp and gltf_fault_test.cpp test the rest.
 #include "tests/scene/gltf_builder.h"
 
 namespace twinray::test {
@@ -128,7 +128,7 @@ TEST(Gltf, AccessorsHonourOffsetAndStride) {
     EXPECT_EQ(gltf.load().meshes[0].positions, (std::vector<vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
 }
 
-// The stride that the file does not give is told by the length of the view; a longer one says nothing.
+// If the file gives no stride, the length of the view tells it; a longer view says nothing.
 TEST(Gltf, PaddedVectorsWithoutAStrideAreReadAsTheyLie) {
     GltfBuilder gltf = one_triangle();
     const int accessor = gltf.add<std::uint16_t>("VEC4", 5123, {1, 2, 3, 0, 4, 5, 6, 0, 7, 8, 9, 0});
@@ -284,7 +284,7 @@ TEST(Gltf, PrimitivesOfOneMeshMayDifferInTheirAttributes) {
     }
 }
 
-// Colours and second texture coordinates are of the vertex, too: primitives that differ in them share none.
+// Colours and second texture coordinates also belong to the vertex: primitives that differ in them share none.
 TEST(Gltf, VerticesThatDifferInColourAreNotShared) {
     GltfBuilder gltf = one_triangle();
     json other = gltf.primitive();

@@ -65,7 +65,7 @@ TEST(ImageCodecs, ARequiredWebpTextureIsShown) {
 #endif
 
 #ifdef TWINRAY_HAS_AVIF
-// "" if this libavif encodes nothing.
+// Returns "" if this libavif encodes nothing.
 template <class T>
 std::string avif_file(std::uint32_t depth, std::vector<T> texels) {
     avifImage* image = avifImageCreate(2, 2, static_cast<int>(depth), AVIF_PIXEL_FORMAT_YUV444);

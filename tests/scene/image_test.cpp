@@ -57,7 +57,7 @@ TEST(Image, AFalseHugeSizeIsRefused) {
     expect_error("picture is a damaged PNG (too large: 100000 x 100000 pixels", [&] { decode(huge); });
 }
 
-// Each of these inputs is one that stb_image refuses by itself, too.
+// stb_image alone refuses each of these inputs as well.
 TEST(Image, AHuffmanTableOfMoreCodesThanItsClassHasIsRefused) {
     const auto jpeg = [](const std::string& start, char codes_a_length) {
         return start + std::string("\xff\xc4\x10\x03\0", 5) + std::string(16, codes_a_length) + std::string(4096, '\0');
@@ -109,8 +109,8 @@ TEST(HdrImage, ExposuresAndColourCorrectionsAreDividedOut) {
         EXPECT_EQ(pixel(nothing), vec3(one)) << nothing;
 }
 
-// A row of 8 pixels by runs: of each channel one that repeats a byte 8 times, or 8 bytes. A header may end with a NUL.
-// Only bytes of the last run are missing, which stb_image takes for zeros.
+// Stores a row of 8 pixels by runs: each channel is one that repeats a byte 8 times, or 8 bytes. A header may end with
+// a NUL. Only bytes of the last run are missing, which stb_image takes for zeros.
 TEST(HdrImage, RowsOfRunsAreReadWholeOrRefused) {
     const TempDir dir;
     using namespace std::string_literals;
@@ -142,7 +142,7 @@ TEST(ImageTest, FilesAreWrittenThroughLinksAndLeaveNothingBesideThem) {
         EXPECT_EQ(entry.path().string().find("partial"), std::string::npos) << entry.path();
 }
 
-// Writes interleaved floats, as many channels as names, with the data window starting at (3, 5).
+// Writes interleaved floats, as many channels as there are names, with the data window starting at (3, 5).
 std::filesystem::path write_exr(const TempDir& dir, const std::vector<std::string>& channels, int width, int height,
                                 const std::vector<float>& values, Imf::Compression compression) {
     const std::filesystem::path path = dir / "a.exr";
@@ -162,7 +162,7 @@ std::filesystem::path write_exr(const TempDir& dir, const std::vector<std::strin
     return path;
 }
 
-// Sizes that a reader without the check has room for.
+// A reader without the check has room for these sizes.
 TEST(HdrImage, MorePixelsThanTheFileCanHoldAreRefused) {
     const TempDir dir;
     const std::string radiance = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 4\n\x80\x40\x01\x81";

@@ -66,8 +66,8 @@ double area_of(const Outline& outline) {
     return area;
 }
 
-// Triangles that are not turned over, and whose areas add up to that of a simple outline, cover it once. Returns how
-// many have no area.
+// Expects triangles that cover a simple outline once: none is turned over, and their areas add up to its area. Returns
+// how many have no area.
 std::size_t expect_cover(const Outline& outline, double rounding = 0) {
     const Triangulation cut = triangulate_polygon(outline);
     EXPECT_FALSE(cut.overlaps);
@@ -84,7 +84,7 @@ std::size_t expect_cover(const Outline& outline, double rounding = 0) {
     return flat;
 }
 
-// A comb, with teeth 1 wide, 1 apart and 4 high on a back 1 high.
+// Makes a comb, with teeth 1 wide, 1 apart and 4 high on a back 1 high.
 Outline comb(int teeth) {
     Outline outline = {{0, 0, 0}, {2 * teeth - 1, 0, 0}};
     for (int i = teeth - 1; i >= 0; --i) {
@@ -108,7 +108,7 @@ TEST(Polygon, ConvexOnesAreFansAboutTheFirstCorner) {
               (std::vector<uvec3>{{0, 1, 2}, {0, 2, 3}, {0, 3, 4}}));
 }
 
-// Were one left out, or in a triangle without an area, the neighbour that shares it would be a rounding apart.
+// If one were left out, or in a triangle without an area, the neighbour that shares it would be a rounding apart.
 TEST(Polygon, CornersInTheMiddleOfSidesAreOnesOfTriangles) {
     for (Outline outline :
          {Outline{{0, 0, 0}, {2, 0, 0}, {4, 0, 0}, {4, 2, 0}, {3, 2, 0}, {2, 2, 0}, {2, 4, 0}, {0, 4, 0}, {0, 3, 0}},
@@ -134,7 +134,7 @@ TEST(Polygon, HolesReachedBySlitsStayOpen) {
     }
 }
 
-// Around cells of a grid that hang together as a tree: slits between cells that do not, corners that touch.
+// Outlines cells of a grid that hang together as a tree: there are slits between other cells, and corners that touch.
 Outline around_cells(std::mt19937& random, int side) {
     const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random() % n); };
     const int dx[] = {1, 0, -1, 0}, dy[] = {0, 1, 0, -1};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Files whose coordinates float32 cannot hold: origins that are chosen for them, .ply and glTF files.
+// Files with coordinates that float32 cannot hold: the origins that are chosen for .ply and glTF files.
 #include "engine/scene/local_origin.h"
 
 #include "engine/scene/glb.h"
@@ -34,7 +34,7 @@ TEST(LocalOrigin, FarPlacesGetARoundNumberNearTheirMiddle) {
               dvec3(500e3, 5'410'000, 0));
     EXPECT_EQ(choose_local_origin(box(dvec3(-2'000'000.37), dvec3(-2'000'000.31))), dvec3(-2'000'000.34375));
     EXPECT_EQ(choose_local_origin(box(dvec3(3e20), dvec3(3.001e20))), dvec3(3.001e20));
-    // A point, as float32 may leave of what is small and far.
+    // The box is a point, as float32 may make of a small and far one.
     EXPECT_EQ(choose_local_origin(box(dvec3(1e6, 0, 0), dvec3(1e6, 0, 0))), dvec3(1e6, 0, 0));
 }
 
@@ -95,7 +95,7 @@ TEST(FarGltf, NodesAreComposedInFloat64) {
     EXPECT_EQ(scene.origin, dvec3(500'010, 5'400'010, 0));
     EXPECT_EQ(scene.meshes.size(), 1u);
     expect_far_houses(scene, rounding);
-    // All below a node that has moved them there.
+    // All nodes are below one that has moved them there.
     json roots = gltf.root["scenes"][0]["nodes"];
     for (json& node : gltf.root["nodes"])
         for (int axis = 0; axis < 3; ++axis)
@@ -122,7 +122,7 @@ TEST(FarGltf, InstancingIsMovedAlong) {
     expect_far_houses(scene, rounding);
 }
 
-// A triangle whose vertices are themselves large, in halves of a metre, which is what float32 has there.
+// Makes a triangle whose vertices are themselves large, in halves of a metre, which is what float32 has there.
 GltfBuilder large_vertices() {
     GltfBuilder gltf = one_triangle();
     gltf.primitive()["attributes"]["POSITION"] =
@@ -135,7 +135,7 @@ TEST(FarGltf, LargeVerticesAreMovedSinceRaysAreRoundedInTheSpaceOfTheMesh) {
     EXPECT_EQ(scene.origin, dvec3(500'010, 5.4e6, 0));
     EXPECT_EQ(scene.instances[0].transform, Transform());
     EXPECT_EQ(scene.meshes[0].positions, (std::vector<vec3>{{-8.5f, 0.5f, 1}, {0.25f, 0, 2}, {-10, 9, 3}}));
-    // A node that brings them back, once with a turn.
+    // A node brings the vertices back, once with a turn.
     GltfBuilder back = large_vertices();
     back.root["nodes"][0]["translation"] = {-500'000, -5.4e6, 0};
     const Scene there_and_back = back.load();
@@ -170,7 +170,7 @@ TEST(FarGltf, CamerasAndLightsAreMovedAlong) {
     EXPECT_EQ(scene.lights[0].position, vec3(-6.75f, -8.5f, 9));
 }
 
-// Node 0 goes 1.5 m east within a second, told by key frames in the file's coordinates.
+// Node 0 goes 1.5 m east within a second; key frames are in the file's coordinates.
 TEST(FarGltf, PosesOfAnAnimationAreRelativeToTheOrigin) {
     GltfBuilder gltf = one_triangle();
     gltf.root["nodes"][0]["translation"] = {far_away.x + 0.5, far_away.y, far_away.z};
@@ -199,7 +199,7 @@ TEST(FarGltf, AnimatedLargeVerticesTurnAboutTheirNode) {
     EXPECT_NEAR(corner.y, -5'400'000, 0.5);
 }
 
-// A triangle that follows one joint, bound where it is; `bind` and `place`: of the joint.
+// Makes a triangle that follows one joint, bound where it is; `bind` and `place` are the joint's.
 GltfBuilder skinned_triangle(const GltfBuilder& base, const dvec3& bind, const dvec3& place) {
     GltfBuilder gltf = base;
     json& attributes = gltf.primitive()["attributes"];

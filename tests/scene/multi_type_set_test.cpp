@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A set of three types: what kernels read of it is what the host wrote, and both find the same elements by the same
-// keys.
+// A set of three types: kernels read what the host wrote, and both find the same elements by the same keys.
 #include <twinray/sets.h>
 
 #include <algorithm>
@@ -47,7 +46,7 @@ class MultiTypeSetTest : public VulkanTest {
         const std::span<const uint> modules[] = {test_set_spirv, test_set_debug_spirv};
         return {context(), {.name = "test_set", .spirv = modules[is_debug]}};
     }
-    // The results of the kernel: a value for each key, the weighted sum, the results of unrolled loops.
+    // Returns the kernel's results: a value for each key, the weighted sum, the results of unrolled loops.
     std::vector<float> run(const std::vector<SetKey>& keys, bool is_debug = false) {
         const std::size_t size = keys.size() + 1 + UNROLLED_RESULTS;
         const Buffer on_device = device_copy(keys);
@@ -110,7 +109,7 @@ TEST_F(MultiTypeSetTest, KeysThatNameNothingAreRefusedAndChangeNothing) {
     EXPECT_EQ(faults::what_is_thrown_by([&] { set().view(); }), "") << "an edit is pending";
 }
 
-// Values of all keys, of keys that name nothing, the sum over all elements and the unrolled loops.
+// Compares values of all keys, of keys that name nothing, the sum over all elements and the unrolled loops.
 TEST_F(MultiTypeSetTest, HostAndKernelsFindTheSame) {
     std::mt19937 random(5);
     std::vector<SetKey> keys;
@@ -152,7 +151,7 @@ TEST_F(MultiTypeSetTest, KernelsForDebuggingTellOfKeysThatNameNothing) {
     const SetKey key = set().push(glass(2));
     set().sync();
     run({key, {2, 1}});
-    set().check_faults();  // others do not tell
+    set().check_faults();  // other kernels do not tell
     EXPECT_EQ(run({key}, true).front(), -2.0f);
     set().check_faults();
     EXPECT_EQ(run({{2, 8}}, true).front(), FALLBACK);

@@ -196,7 +196,7 @@ TEST(Obj, NonFiniteVerticesStayAndAreCounted) {
 
 const std::string TRIANGLE_WITH_UVS = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n";
 
-// A triangle of material "a" of a file a.mtl.
+// Loads a triangle of material "a" of a file a.mtl.
 Scene load_with_mtl(const std::string& mtl, const std::string& used = "a") {
     const TempDir dir;
     dir.write("a.mtl", mtl);
@@ -295,7 +295,7 @@ TEST(Mtl, SeveralFilesAndBlanksInNames) {
     EXPECT_EQ(scene.meshes[0].materials, std::vector<uint>{2});
 }
 
-// Materials as in a glTF file: in the order of the file, used or not, and nothing before them.
+// Materials are as in a glTF file: in the order of the file, used or not, and with nothing before them.
 TEST(Mtl, MaterialsKeepTheirOrderAndCutNoMesh) {
     const TempDir dir;
     dir.write("a.mtl", "newmtl a\nnewmtl b\nnewmtl unused\nnewmtl c\n");

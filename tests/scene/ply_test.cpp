@@ -18,7 +18,7 @@ const std::string POSITIONS = "property float x\nproperty float y\nproperty floa
 const std::string FACE_LIST = "property list uchar int vertex_indices\n";
 const std::string TRIANGLE_ROWS = "0 0 0\n1 0 0\n0 1 0\n";
 
-// An ASCII file of those vertices and faces.
+// Returns an ASCII file of these vertices and faces.
 std::string ply(int vertex_count, const std::string& vertices, int face_count, const std::string& faces) {
     return text("ply\nformat ascii 1.0\ncomment made by a test\nelement vertex ", vertex_count, "\n", POSITIONS,
                 "element face ", face_count, "\n", FACE_LIST, "end_header\n", vertices, faces);
@@ -50,7 +50,7 @@ TEST(Ply, NumbersAreAsTheirDigitsSayAndBeyondFloatInfiniteOrZero) {
     EXPECT_EQ(mesh.positions[2].z, -INFINITY);
 }
 
-// A binary triangle with double positions, an unknown list before the indices and 32-bit list lengths.
+// Returns a binary triangle with double positions, an unknown list before the indices and 32-bit list lengths.
 std::string binary_ply(bool is_big_endian) {
     std::string file =
         text("ply\r\nformat binary_", is_big_endian ? "big" : "little",
@@ -161,7 +161,7 @@ TEST(Ply, AHeaderEndsItsLinesAsTheFirstOneDoes) {
     for (const char* end : {"\r", "\r\n", " \n"})
         EXPECT_EQ(count_triangles(load_ply(replaced(file, "\n", end))), 1u) << end;
     expect_ply_error(replaced(replaced(file, "property list", "propety list"), "\n", "\r"), "line 9 'propety list");
-    // A body whose first byte is 10 belongs to no line end.
+    // In a body whose first byte is 10, that byte is no line end.
     std::string binary = replaced(binary_ply(false), "\r\n", "\r");
     const double ten = 0x0.000000000000ap-1022;  // its lowest byte
     std::memcpy(binary.data() + binary.find("end_header\r") + 11, &ten, sizeof ten);
@@ -169,7 +169,7 @@ TEST(Ply, AHeaderEndsItsLinesAsTheFirstOneDoes) {
     EXPECT_EQ(load_ply(binary).meshes[0].positions[1], vec3(1, 0, -0.25f));
 }
 
-// The strips of `lists`, of which there are `count`, about two squares.
+// Returns a file with the `count` strips of `lists`, about two squares.
 std::string strips(int count, const std::string& lists) {
     return text("ply\nformat ascii 1.0\nelement vertex 8\n", POSITIONS, "element tristrips ", count,
                 "\nproperty list int int vertex_indices\nend_header\n",
@@ -231,7 +231,7 @@ TEST(Ply, BodyFaultsAreNamed) {
     expect_ply_error(binary.substr(0, binary.size() - 1), "truncated");
 }
 
-// A file of that kind is made by writers of NumPy arrays: see ply_type_of().
+// Writers of NumPy arrays make such files: see ply_type_of().
 TEST(Ply, NamesOfTypesHaveTheirSizes) {
     const std::map<std::string, std::size_t> sizes = {
         {"char", 1},   {"int8", 1},    {"uchar", 1}, {"uint8", 1},   {"short", 2},  {"int16", 2},  {"ushort", 2},
@@ -254,7 +254,7 @@ TEST(Ply, VerticesHaveColours) {
     EXPECT_EQ(scene.materials[0].metallic, 0);
 }
 
-// Two triangles that share an edge, on whose vertices they have other texture coordinates.
+// Two triangles share an edge; at its vertices they have different texture coordinates.
 const std::string WEDGES =
     "ply\nformat ascii 1.0\ncomment TextureFile my wall.png\nelement vertex 4\n" + POSITIONS + "element face 2\n" +
     FACE_LIST + "property list uchar float texcoord\nproperty uchar red\nproperty uchar green\nend_header\n" +

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Meshes and scenes in memory; and every scene file that this machine has loads or gives one Error that names it.
+// Meshes and scenes in memory; and all scene files on this machine, each of which loads or gives one Error that names
+// it.
 #include <twinray/scene.h>
 
 #include <cmath>
@@ -37,7 +38,7 @@ TEST(Mesh, BoundsOfNothingAreEmpty) {
     EXPECT_EQ(Bounds().size(), vec3(0));
 }
 
-// Of a cube whose vertices are shared the diagonals, whichever way its squares are cut.
+// Normals of a cube with shared vertices are its diagonals, however its squares are cut.
 TEST(Mesh, SmoothNormalsAreWeightedByAngles) {
     const auto cube = [](bool is_cut_otherwise) {
         std::vector<vec3> positions;
@@ -138,7 +139,7 @@ TEST(Scene, BoundsAndCountsFollowTheInstances) {
 TEST(Scene, BoundsAreThoseOfVerticesNotOfTurnedBoxes) {
     Scene scene;
     scene.meshes = {mesh_of({{0, 0, 0}, {1, 2, 4}, {1, 0, 4}}, {{0, 1, 2}})};
-    // x' = x - y + z: of the box -2 would be the least.
+    // x' = x - y + z would be -2 at least for the box.
     scene.instances = {{"sheared", 0, {{vec4(1, -1, 1, 0), vec4(0, 1, 0, 0), vec4(0, 0, 1, 0)}}}};
     EXPECT_EQ(bounds_of(scene).lo, vec3(0, 0, 0));
     EXPECT_EQ(bounds_of(scene).hi, vec3(5, 2, 4));
@@ -176,7 +177,7 @@ TEST(Scene, UnknownSuffixesAreRefusedWithTheKnownOnes) {
     expect_error("unknown suffix ''", [&] { load_scene(dir.write("a", "x")); });
 }
 
-// $TWINRAY_ASSETS, the assets beside the sources, or what Debian's assimp-testmodels installs.
+// Returns $TWINRAY_ASSETS, the assets beside the sources, or what Debian's assimp-testmodels installs.
 std::filesystem::path find_assets() {
     const char* given = std::getenv("TWINRAY_ASSETS");
     for (const std::filesystem::path& folder :

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Looks elements of a set up by key, and runs loops over the types of one that are unrolled.
+// Looks elements of sets up by key, and runs unrolled loops over the types of one.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/multi_type_set.glsl"

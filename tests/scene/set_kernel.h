@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Types of the test's sets, and what is asked of them, on host and GPU alike.
+// Types of the test's sets, and the functions called on them, alike on host and GPU.
 #ifndef TWINRAY_TESTS_SET_KERNEL_H
 #define TWINRAY_TESTS_SET_KERNEL_H
 #include "twinray/glsl/multi_type_set.h"
@@ -16,7 +16,7 @@ struct Glass {
 };
 BUFFER_OF(Glass, 4);
 
-// Longer than the others.
+// A type longer than the others.
 struct Layered {
     uvec2 id;
     vec4 lowest;
@@ -32,7 +32,7 @@ FUNC float value_of(Diffuse diffuse, float x) { return x * diffuse.gain + diffus
 FUNC float value_of(Glass glass, float x) { return x - glass.ior; }
 FUNC float value_of(Layered layered, float x) { return x + layered.highest.w + float(layered.id.y); }
 
-// The weight in which FOREACH_ELEMENT takes an element.
+// Returns the weight with which FOREACH_ELEMENT takes an element.
 FUNC float weight_of(uint i) { return float(1u + i % 7u); }
 
 #define TEST_QUEUE(X, P) X(P, 0, vec3, origin) X(P, 1, uint, pixel) X(P, 2, float, t) X(P, 3, Diffuse, material)
@@ -50,7 +50,7 @@ struct SoaTestArgs {
     TestQueue from;
     TestQueue to;
     uint invocations;
-    uint shift;  // to item i goes from item i + shift
+    uint shift;  // item i goes to item i + shift
 };
 
 const float FALLBACK = -1000.0f;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Shifts all items of a queue, and asks for some that are not there.
+// Shifts all items of a queue, and accesses some that do not exist.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/soa.glsl"

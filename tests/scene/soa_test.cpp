@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Structures of arrays: host and kernels read and write the same items, and what is out of range stays as it was.
+// Structures of arrays: host and kernels read and write the same items, and items out of range stay as they were.
 #include <twinray/sets.h>
 
 #include "engine/core/kernel.h"

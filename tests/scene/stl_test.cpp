@@ -15,7 +15,7 @@ const std::string STL_SQUARE =
     "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 1 0\nvertex 0 1 0\nendloop\nendfacet\n"
     "endsolid s\n";
 
-// The same square; the count may be a lie.
+// Returns the same square; the count may be a lie.
 std::string binary_square(const std::string& header = "made by a test", std::uint32_t count = 2, float normal = 1) {
     std::string file = header;
     file.resize(80, ' ');

@@ -37,7 +37,7 @@ class Textures : public VulkanTest, public ::testing::WithParamInterface<Texture
     }
     TextureStore& store() { return *store_; }
 
-    // The answers are there when the commands are done.
+    // Records the questions; the answers are there when the commands are done.
     Buffer record_questions(Commands& commands, const std::vector<TextureQuestion>& questions, bool is_debug = false) {
         const std::span<const uint> modules[] = {test_texture_buffers_spirv, test_texture_buffers_debug_spirv,
                                                  test_texture_images_spirv, test_texture_images_debug_spirv};

@@ -18,7 +18,7 @@ INSTANTIATE_TEST_SUITE_P(As, TextureFormats, ::testing::Values(TextureStorage::i
 constexpr std::array all_formats = {TexelFormat::unorm8, TexelFormat::unorm16, TexelFormat::float16,
                                     TexelFormat::float32};
 
-// Random numbers, and what kernels should read of them, four a texel.
+// Random numbers, and the colours that kernels should read of them, four numbers a texel.
 struct Sample {
     Texels texels;
     std::vector<vec4> colors;
@@ -103,8 +103,8 @@ TEST_P(TextureFormats, EachTexelIsItsNumbers) {
                 for (uint channel = 0; channel < 4; ++channel) {
                     const float expected = sample.colors[i][channel], near = 1e-6f * std::abs(expected);
                     EXPECT_NEAR(answers[i].texel[channel], expected, near) << sample.texels.name;
-                    // At a texel's middle nothing of its neighbours is mixed in but by a rounding of the place, or by
-                    // the samplers' few bits.
+                    // At a texel's middle, its neighbours contribute only by a rounding of the place, or by the
+                    // samplers' few bits.
                     if (store().has_images()) continue;
                     EXPECT_NEAR(answers[i].color[channel], expected, 1e-6f * sample.largest()) << sample.texels.name;
                 }

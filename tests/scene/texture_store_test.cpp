@@ -43,7 +43,7 @@ vec4 texel_of(const Image& image, int x, int y, bool is_srgb) {
     return is_srgb ? vec4(to_linear(color.x), to_linear(color.y), to_linear(color.z), color.w) : color;
 }
 
-// Which texel stands for one outside.
+// Returns the texel that stands for one outside.
 int inside(int i, int size, Wrap wrap) {
     if (wrap == Wrap::clamp_to_edge) return std::clamp(i, 0, size - 1);
     const int period = wrap == Wrap::repeat ? size : 2 * size;
@@ -63,7 +63,7 @@ vec4 filtered(const Image& image, const TextureOptions& options, vec2 uv) {
     return mix(mix(texel(0, 0), texel(1, 0), weight.x), mix(texel(0, 1), texel(1, 1), weight.x), weight.y);
 }
 
-// Nearer than the 8 bits in which samplers tell texels apart.
+// Returns whether the point is nearer than the 8 bits in which samplers tell texels apart.
 bool is_near_an_edge(const Image& image, vec2 uv) {
     const vec2 at = uv * vec2(image.width, image.height), off = abs(at - round(at));
     return std::min(off.x, off.y) < 0.01f;

@@ -16,7 +16,7 @@
 namespace twinray {
 namespace {
 
-// All 24 bits in use, or few of them, from 2^-40 to 2^126.
+// Returns numbers with all 24 bits in use, or few of them, from 2^-40 to 2^126.
 std::vector<float> numbers() {
     std::mt19937 random(5);
     std::vector<float> made = {0.0f, 1.0f, 0x1.fffffep0f, 0x1.ffep0f, 0x1.000002p0f, 0x1.001p63f, 0x1.fffffep126f};

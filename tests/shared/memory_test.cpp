@@ -39,7 +39,7 @@ TEST(BoxWords, AreTheFloatsOfTheBox) {
     }
 }
 
-// Numbers of 16 bits, all of them, against float64.
+// Returns the value of a number of 16 bits in float64.
 double half_value(uint bits) {
     const double sign = bits & 0x8000u ? -1 : 1;
     const int exponent = static_cast<int>(bits >> 10 & 31u);

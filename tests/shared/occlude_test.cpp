@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The test without a distance gives the answer of the test with one, however near to the ends of the ray.
+// The test without a distance answers as the test with one does, however near to the ends of the ray.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -18,7 +18,7 @@ struct Case {
 
 class Cases {
   public:
-    // A ray through a point of a triangle, or near it; flat ones and long ones too.
+    // Makes a ray through a point of a triangle, or near it; some triangles are flat or long.
     Case next(float scale) {
         const float thickness = std::ldexp(1.0f, -static_cast<int>(random_() % 30u));
         const vec3 middle = 4.0f * point();
@@ -45,7 +45,7 @@ struct Counts {
     std::size_t met = 0, decided = 0, faults = 0;
 };
 
-// Calls seen_occludes() and tells it the sign of t where it asks.
+// Calls seen_occludes() and tells it the sign of t if it asks.
 bool occludes(const std::array<vec3, 3>& corners, const RaySpace& space, vec2 ends, bool& along) {
     const vec3 a = corners[0], b = corners[1], c = corners[2];
     uint sign_of_t = SIGN_UNASKED;
@@ -74,7 +74,7 @@ void compare(const Case& made, float t_min, float t_max, Counts& counts) {
     counts.decided += is_met && (place.is_behind || (place.is_after && place.is_before));
 }
 
-// Intervals that end at t, or one or a few roundings from it; and those that do not.
+// Compares with intervals that end at t, or one or a few roundings from it, and with others.
 Counts compare_all(float scale, bool at_ends, int rays = 200'000) {
     Counts counts;
     Cases cases;
@@ -123,7 +123,7 @@ TEST(Occlude, AgreesAtTheEndsOfTheRange) {
 }
 
 // crossing() takes shares of the corners' z before it divides by the direction: they may be among the smallest floats
-// where t is not.
+// although t is not.
 TEST(Occlude, AgreesWhereOnlyTheDepthIsSmall) {
     std::mt19937 random(3);
     std::uniform_real_distribution<float> unit(-1, 1);
@@ -138,7 +138,7 @@ TEST(Occlude, AgreesWhereOnlyTheDepthIsSmall) {
     EXPECT_EQ(counts.faults, 0u);
 }
 
-// Of directions of length 1 and coordinates of 2^43 areas times t overflow, their bound does not.
+// With directions of length 1 and coordinates of 2^43, areas times t overflow, but their bound does not.
 TEST(Occlude, AgreesWhereAreasTimesDistancesOverflow) {
     std::mt19937 random(4);
     std::uniform_real_distribution<float> unit(-1, 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The side of a plane, and with it the sign of t, against rational arithmetic.
+// The side of a plane, and with it the sign of t, compared with rational arithmetic.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -16,7 +16,7 @@ using Corners = std::array<vec3, 3>;
 
 exact::Vector point(vec3 p) { return exact::vector_of(dvec3(p)); }
 
-// Six times the volume of the corners and a point.
+// Returns six times the volume of the corners and a point.
 exact::Rational volume(const Corners& corners, vec3 from) {
     const auto seen = [&](int i) { return point(corners[i]) - point(from); };
     return dot(seen(0), cross(seen(1), seen(2)));
@@ -30,8 +30,8 @@ class Planes {
         vec3 from;
     };
 
-    // A point with whole numbers within an oblique triangle of whole numbers, moved by such up to `offset`. Every other
-    // point is off by the least step of one coordinate.
+    // Makes a point with whole numbers within an oblique triangle of whole numbers, both moved by whole numbers up to
+    // `offset`. Every other point is off by the least step of one coordinate.
     Pair on_lattice(int offset) {
         const vec3 corner = lattice(offset), first = lattice(64), second = lattice(64);
         const auto i = 1 + static_cast<uint>(random_()) % 14, j = 1 + static_cast<uint>(random_()) % (15 - i);
@@ -40,7 +40,7 @@ class Planes {
         if (random_() % 2) step(made.from);
         return made;
     }
-    // Any floats, the point where rounding puts it.
+    // Makes a triangle of any floats, and a point of its plane as rounding puts it.
     Pair rounded(float size) {
         const auto any = [&] {
             const float x = unit_(random_), y = unit_(random_);
@@ -105,7 +105,7 @@ TEST(PlaneSide, IsExactForAnyFloats) {
     EXPECT_GT(counts.beside, 45'000u);
 }
 
-// Axes of different size, and a coordinate that all share.
+// Axes have different sizes, and all corners share a coordinate.
 TEST(PlaneSide, IsExactOnEachAxis) {
     Planes planes;
     SideCounts counts;
@@ -122,8 +122,8 @@ TEST(PlaneSide, IsExactOnEachAxis) {
     EXPECT_GT(counts.in_plane, 8'000u);
 }
 
-// The point where the ray's line meets is ahead of it if rational arithmetic says so, not in its origin, and not behind
-// it.
+// The point where the ray's line meets the triangle is ahead of its origin if rational arithmetic says so, neither at
+// it nor behind it.
 TEST(PlaneSide, GivesTItsSign) {
     Planes planes;
     std::mt19937 random(4);

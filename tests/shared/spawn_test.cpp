@@ -30,14 +30,15 @@ class Random {
         for (;;)
             if (const dvec3 v = in_box(); dot(v, v) < 1 && dot(v, v) > 0.01) return normalize(v);
     }
-    // Half of them by angles of 1 to 10^-6 only, where an inverse has small entries that are differences of large ones.
+    // Returns a rotation, half of the time by 1 to 10^-6 only, where an inverse has small entries that are differences
+    // of large ones.
     dmat3 rotation() {
         const dvec3 axis = direction();
         const double angle = below(2) ? 3.14 * signed_unit() : std::pow(10, -6 * unit());
         const dmat3 cross_axis(0, axis.z, -axis.y, -axis.z, 0, axis.x, axis.y, -axis.x, 0);
         return dmat3(1) + std::sin(angle) * cross_axis + (1 - std::cos(angle)) * cross_axis * cross_axis;
     }
-    // 2^-exponent to 2^exponent.
+    // Returns a number from 2^-exponent to 2^exponent.
     double scale(double exponent) { return std::exp2(exponent * signed_unit()); }
     vec2 barycentrics() {
         if (below(4) == 0) return vec2(0);  // a corner
@@ -55,7 +56,7 @@ Rows rows_of(const dmat3& linear, const dvec3& offset) {
 }
 dmat3 linear_of(const Rows& m) { return transpose(dmat3(dvec3(m.r0), dvec3(m.r1), dvec3(m.r2))); }
 
-// As a driver may do it: cofactors over the determinant, in float32.
+// Inverts as a driver may do it: cofactors over the determinant, in float32.
 Rows plain_inverse(const Rows& m) {
     const vec3 a(m.r0), b(m.r1), c(m.r2), offset(m.r0.w, m.r1.w, m.r2.w);
     const vec3 x = cross(b, c), y = cross(c, a), z = cross(a, b);
@@ -73,9 +74,9 @@ struct Setting {
     dvec3 normal;  // of the vertices, object space, unit, float64
 };
 
-// Meshes of 2^-60 to 2^60, up to 10^6 of their size away from their origin, slivers of 1 to 10^-4; rotated, scaled by
-// 2^-20 to 2^20 and up to 1 : 10^3, and moved by up to 10^6 of their size; every
-// fourth such that the two cancel.
+// Makes meshes of 2^-60 to 2^60, up to 10^6 of their size away from their origin, slivers of 1 to 10^-4; rotated,
+// scaled by 2^-20 to 2^20 and up to 1 : 10^3, and moved by up to 10^6 of their size. In every fourth setting the two
+// cancel.
 Setting random_setting(Random& random) {
     const double size = random.scale(60);
     // Where coordinates are 0, only the size of the triangle is left to round.
@@ -125,7 +126,7 @@ bool meets(Rows to_object, TriangleVertices vertices, const Ray& ray) {
 
 TEST(Spawn, TheBoundHoldsWithEitherInverseAndIsNotLoose) {
     Random random(1);
-    std::vector<double> used;  // what rounding took of the offset, as a part of it
+    std::vector<double> used;  // the part of the offset that rounding took
     double largest_by_plain_inverse = 0;
     for (int i = 0; i < 1'000'000; ++i) {
         const Setting setting = random_setting(random);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Steps of a traversal: which children of a node a ray enters, what waits on its stack, and leaves of two triangles.
+// Steps of a traversal: the children of a node that a ray enters, the entries on its stack, and leaves of two
+// triangles.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -40,7 +41,7 @@ TEST(Enter, ARayFromAfarEntersTheChildrenThatAreThereAndNoOther) {
     }
 }
 
-// Rays that end at a corner of a box meet nothing else of it, whether they begin in the grid, beside it or far away.
+// A ray that ends at a corner of a box meets nothing else of it, whether it begins in the grid, beside it or far away.
 TEST(Enter, ARayToACornerOfABoxEntersIt) {
     Draws draws(11, 0);
     for (int turn = 0; turn < 200'000; ++turn) {
@@ -99,7 +100,7 @@ TEST(Groups, AreNoneOfTheOtherEntriesOfAStack) {
         for (const uint other : {EMPTY_NODE_GROUP, LEAVE_INSTANCE}) EXPECT_NE(make_edge(0, side), other);
 }
 
-// The rest to visit of a traversal that went on to a child, whatever it has found since.
+// These are the groups left to visit after a traversal went on to a child, whatever it has found since.
 TEST(Groups, AreFoundAgainFromTheChild) {
     const ChildKeys keys{0x400, 0x101, NO_ENTRY | 2, 0x203};
     const auto again = [&](uint child) {
@@ -148,7 +149,7 @@ TEST_P(ShortStacks, KeepTheLastEntriesAndSayThatTheyHaveLostOthers) {
     EXPECT_GT(losses, 10u);
 }
 
-// Leaves of trees over some triangles, and their order.
+// The leaves of trees over some triangles, and their order.
 struct SoupLeaves {
     Geometry geometry{make_soup(500, 4)};
     std::vector<LeafBox> boxes = reference::leaves_triangles(geometry.positions, geometry.triangles);
@@ -222,8 +223,8 @@ struct Pair {
 
 class Pairs {
   public:
-    // Vertices of each triangle come in any order. They are small whole numbers, so that rays meet edges and vertices,
-    // too.
+    // Vertices of each triangle come in any order. They are small whole numbers, so that rays also meet edges and
+    // vertices.
     Pair next() {
         Pair made{};
         for (vec3& position : made.positions) position = point();

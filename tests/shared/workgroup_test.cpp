@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How work is shared among groups, and groups among the threads of a CPU.
+// Shares of work for groups, and of groups for the threads of a CPU.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -57,7 +57,7 @@ TEST(RunsOfBlocks, HoldAllItemsAndLeaveNoGroupWithoutNeed) {
     EXPECT_EQ(run_of_blocks(65, 64, 1), 2u);
 }
 
-// As Kernel::dispatch_groups launches them, and as trace.comp finds its rays.
+// Returns how many groups Kernel::dispatch_groups launches, with which trace.comp finds its rays.
 std::uint64_t launched(std::uint64_t groups) {
     return groups <= GROUPS_PER_ROW ? groups : (groups + GROUPS_PER_ROW - 1) / GROUPS_PER_ROW * GROUPS_PER_ROW;
 }

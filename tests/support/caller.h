@@ -32,7 +32,7 @@ class Caller {
     Caller(const Caller&) = delete;
     Caller& operator=(const Caller&) = delete;
 
-    // A begun command buffer, to be given to submit().
+    // Returns a begun command buffer, to be given to submit().
     CallerCommands begin() {
         VkCommandBufferAllocateInfo allocate{};
         allocate.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
@@ -63,7 +63,7 @@ class Caller {
         info.pSignalSemaphores = &timeline_;
         vk_check(vk_.vkQueueSubmit(queue_, 1, &info, VK_NULL_HANDLE), "submit");
     }
-    // From the host, instead of submitting what was begun last.
+    // Signals from the host, instead of submitting the last buffer that was begun.
     void signal() {
         VkSemaphoreSignalInfo info{};
         info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SIGNAL_INFO;

@@ -31,7 +31,7 @@ std::unique_ptr<Context> make_context(ContextDesc desc) {
 
 namespace {
 
-// One that is kept for the tests to come.
+// A context that is kept for the tests to come.
 struct SharedContext {
     std::shared_ptr<Context> context;
     std::shared_ptr<std::vector<std::string>> log;
@@ -44,7 +44,7 @@ struct SharedContext {
 };
 std::vector<SharedContext> shared_contexts;  // the parameters of a suite alternate
 
-// Fails on what is said meanwhile.
+// Lets the context go, and fails on messages meanwhile.
 void let_go(SharedContext shared) {
     shared.log->clear();
     shared.context.reset();
@@ -62,7 +62,7 @@ class LetsGoOfSharedContexts : public ::testing::Environment {
 
 void VulkanTest::SetUp() {
     ContextDesc desc = context_desc();
-    // A driver of the test's own, or submissions cut short, are for it alone.
+    // A test with a driver of its own, or with submissions cut short, shares no context.
     shares_ = shares_context() && !desc.get_instance_proc_addr && !desc.most_submission_seconds;
     for (const SharedContext& shared : shared_contexts)
         if (shares_ && shared.fits(desc)) {

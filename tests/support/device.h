@@ -12,10 +12,11 @@
 
 namespace twinray::test {
 
-// Whether tests must fail rather than skip without this: TWINRAY_REQUIRE is a list of `vulkan`, `ray_tracing`,
+// Returns whether tests must fail rather than skip without this: TWINRAY_REQUIRE is a list of `vulkan`, `ray_tracing`,
 // `embree`, `avif`, `links`, `spirv_tools`.
 bool is_required(const char* what);
-// Whether contexts have the validation layer, as they do unless TWINRAY_WITHOUT_VALIDATION is set: Wine has no layers.
+// Returns whether contexts have the validation layer, as they do unless TWINRAY_WITHOUT_VALIDATION is set: Wine has no
+// layers.
 bool has_validation();
 
 // Leaves a test that needs what this machine lacks; under TWINRAY_REQUIRE with that name it fails.
@@ -28,11 +29,11 @@ bool has_validation();
         }                                                                     \
     } while (false)
 
-// A validated context of its own, or null when this machine has no usable device: then the test has been skipped, or
-// failed when TWINRAY_REQUIRE names vulkan. Callers return at once on null.
+// Makes a validated context, or returns null if this machine has no usable device: then the test has been skipped, or
+// failed if TWINRAY_REQUIRE names vulkan. Callers return at once on null.
 std::unique_ptr<Context> make_context(ContextDesc desc = {});
 
-// What a span can hold, in a buffer of the device's.
+// Returns a buffer on the device with these values, as a span can hold them.
 template <class Values>
 Buffer device_copy(Context& context, const Values& values) {
     const std::span<const std::byte> bytes = std::as_bytes(std::span(values));
@@ -46,27 +47,27 @@ Buffer device_copy(Context& context, const Values& values) {
     return buffer;
 }
 
-// Fixture for label `vulkan`.
+// The fixture for label `vulkan`.
 class VulkanTest : public ::testing::Test {
   protected:
     void SetUp() override;
     void TearDown() override;  // fails on validation messages
     virtual ContextDesc context_desc() const { return {}; }
-    // Tests take the context of the one before, with all that it compiled, where that has the same features; not
-    // those of a context itself, or that count what it has.
+    // Tests share the context of the one before, with all that it compiled, if that has the same features; not if they
+    // test a context itself or count its contents.
     virtual bool shares_context() const { return true; }
     Context& context() const { return *context_; }
     template <class Values>
     Buffer device_copy(const Values& values) const {
         return test::device_copy(context(), values);
     }
-    // Whether a warning that contains this has come.
+    // Returns whether a warning that contains this has come.
     bool was_logged(const std::string& part) const;
 
   private:
     bool shares_ = false;
     std::shared_ptr<Context> context_;
-    std::shared_ptr<std::vector<std::string>> log_;  // outlives the context: what is said at its end counts, too
+    std::shared_ptr<std::vector<std::string>> log_;  // outlives the context, whose last messages count as well
 };
 
 }  // namespace twinray::test

@@ -11,7 +11,7 @@
 
 namespace twinray::test {
 
-// The text of the Error that it throws; "" if it throws none.
+// Returns the text of the Error that `action` throws, or "" if it throws none.
 inline std::string error_if_any(const std::function<void()>& action) {
     try {
         action();
@@ -21,7 +21,7 @@ inline std::string error_if_any(const std::function<void()>& action) {
     return "";
 }
 
-// The text of the Error that `action` throws; a test failure if it throws none.
+// Returns the text of the Error that `action` throws, and fails the test if it throws none.
 inline std::string error_of(const std::function<void()>& action) {
     const std::string error = error_if_any(action);
     EXPECT_NE(error, "") << "no Error was thrown";
@@ -32,7 +32,7 @@ inline void expect_contains(const std::string& all, const std::string& part) {
     EXPECT_NE(all.find(part), std::string::npos) << "'" << part << "' is not in: " << all;
 }
 
-// It throws an Error that says `part`.
+// Expects an Error that says `part`.
 inline void expect_error(const std::string& part, const std::function<void()>& action) {
     expect_contains(error_of(action), part);
 }

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Runs a command that compiles for a GPU that is not there. It is skipped (status 77) where this machine's Mesa cannot,
-# or is another release than the one that told the limits; but if TWINRAY_REQUIRE names vulkan, RADV has to be there.
+# Runs a command that compiles for an absent GPU. It is skipped (status 77) if this machine's Mesa cannot do so, or is
+# another release than the one with the recorded limits; but if TWINRAY_REQUIRE names vulkan, RADV has to be there.
 #   needs_family.sh FAMILY COMMAND [ARGUMENT...]
 set -euo pipefail
 family=$1

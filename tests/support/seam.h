@@ -6,8 +6,8 @@
 
 namespace twinray::test {
 
-// The same triangles without normals, but each vertex is there twice: the first half of them takes the copies. So files
-// have them at a seam of textures.
+// Returns the same triangles without normals, but with each vertex there twice: the first half of the triangles takes
+// the copies. Files have such vertices at a seam of textures.
 inline Mesh with_seam(Mesh mesh) {
     const auto copies = static_cast<uint>(mesh.positions.size());
     mesh.positions.reserve(2 * mesh.positions.size());

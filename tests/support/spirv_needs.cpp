@@ -80,7 +80,7 @@ class Reader {
 
     static std::uint64_t round_up(std::uint64_t bytes, std::uint64_t to) { return (bytes + to - 1) / to * to; }
 
-    // A struct with offsets is as large as they say; else vectors of three are as large as those of four.
+    // A struct with offsets is as large as they say; otherwise vectors of three are as large as those of four.
     std::uint64_t size_of(Id type) const {
         using enum Op;
         const Words words = definition(type);

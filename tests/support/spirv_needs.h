@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a SPIR-V module needs of a device, read from its words.
+// The needs of a SPIR-V module from a device, read from its words.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,8 @@ struct SpirvNeeds {
     std::uint64_t push_constant_bytes = 0;
 };
 
-// `constants`: values of specialisation constants by id, instead of those in the module. Throws Error where a size
-// depends on what this cannot compute.
+// `constants` are values of specialisation constants by id, instead of those in the module. Throws Error if a size
+// depends on something that this cannot compute.
 SpirvNeeds needs_of(std::span<const std::uint32_t> spirv, const std::map<std::uint32_t, std::uint32_t>& constants = {});
 
 }  // namespace twinray

@@ -9,7 +9,7 @@
 namespace twinray::test {
 namespace {
 
-// Boxes by the leaf index that node references use: sorted order.
+// Returns boxes by the leaf index that node references use: in sorted order.
 std::vector<LeafBox> boxes_of(const std::vector<BvhTriangle>& triangles, const Mesh& mesh, const Mesh* pushed) {
     std::vector<LeafBox> boxes;
     const std::vector<LeafBox> by_primitive = reference::leaves_triangles(built(mesh, pushed), mesh.triangles);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What tests of SwTlas' builds and refits share: each layout with a build quality, and what built trees must be.
+// Parts that tests of SwTlas' builds and refits share: each layout with a build quality, and the rules of built trees.
 #pragma once
 
 #include <cstring>
@@ -52,24 +52,25 @@ bool same_bytes(const Array& a, const Array& b) {
     return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0);
 }
 
-// As it is built: in units of a power of two, that of the mesh which was pushed.
+// Returns positions as they are built: in units of a power of two, that of the pushed mesh.
 std::vector<vec3> built(const Mesh& mesh, const Mesh* pushed = nullptr);
 
-// Indexed by the leaf index that references of the tree use.
+// Returns boxes by the leaf index that references of the tree use.
 std::vector<LeafBox> leaf_boxes(const BuiltTree& tree, const Mesh& mesh, const Mesh* pushed = nullptr);
-// The boxes of the scene tree's leaves over these placements of one mesh, by the CPU reference.
+// Returns the boxes of the scene tree's leaves over these placements of one mesh, by the CPU reference.
 std::vector<LeafBox> instance_boxes(const Mesh& mesh, const std::vector<Transform>& transforms,
                                     const AccelOptions& options);
-// Every other one is rotated.
+// Returns transforms, every other one with a rotation.
 std::vector<Transform> scattered(std::size_t count, uint seed);
 
 inline bool has_records(const BuiltTree& tree) { return !tree.records.empty(); }
-// For a tree with records: the largest number of children of a node. One leaf has room for a node in compressed8 alone.
+// Returns, for a tree with records, the largest number of children of a node. One leaf has room for a node in
+// compressed8 alone.
 inline uint width_of(const BuiltTree& tree) {
     return tree.records.size() == 2 || is_wide_node(tree.records.front()) ? 8 : 4;
 }
 
-// Of a tree whose references are the leaves' own indices, or with records.
+// Expects a sound tree, with references that are the leaves' own indices, or with records.
 void expect_sound(const BuiltTree& tree, const std::vector<LeafBox>& boxes, const std::string& name);
 void expect_sound(const BuiltTree& tree, const Mesh& mesh, const Mesh* pushed = nullptr);
 void expect_reference(const BuiltTree& tree, const Mesh& mesh, BuildQuality quality);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A tree as tall as they come.
+// A tree of the largest height.
 #pragma once
 
 #include <algorithm>
@@ -10,8 +10,8 @@
 
 namespace twinray::test {
 
-// A binary tree as tall as they come: its spine forks into a fat tree of four leaves and all that is farther in. Where
-// boxes shrink inwards, what is tall is always what is smaller. Leaf 0 is the innermost, then come four a fork.
+// A binary tree of the largest height: its spine forks into a fat tree of four leaves and all that is farther in. If
+// boxes shrink inwards, the taller part is always the smaller one. Leaf 0 is the innermost, followed by four per fork.
 struct TallTree {
     static constexpr uint forks = DEEPEST_TREE - 2;
     static constexpr uint leaves = 4 * forks + 1;
@@ -27,7 +27,7 @@ struct TallTree {
         tree.box = all.box;
     }
 
-    // Of a file or a check, in layouts of records.
+    // Returns the tree of a file or a check, in layouts of records.
     Bvh bvh_of_records() const { return {tree.box.lo, tree.box.hi, {}, 0, leaves}; }
 
   private:

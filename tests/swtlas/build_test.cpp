@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Trees that SwTlas builds are sound, equal to those of the CPU reference, and no higher than they may be.
+// Trees that SwTlas builds: they are sound, equal to those of the CPU reference, and within the height limit.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -25,14 +25,14 @@ class SwBuild : public SwBuildTest {
         expect_reference(tree, mesh, quality());
         return tree;
     }
-    // Inner nodes on the longest way down.
+    // Returns the inner nodes on the longest way down.
     uint checked_depth(const Mesh& mesh) {
         const BuiltTree tree = checked_tree(mesh);
         const std::vector<LeafBox> boxes = leaf_boxes(tree, mesh);
         return has_records(tree) ? check_tree(tree.bvh, tree.records, boxes).depth
                                  : check_tree(tree.bvh, tree.nodes, boxes).depth;
     }
-    // Trees of meshes that are built together.
+    // Expects the reference's trees from meshes that are built together.
     void expect_references(std::span<const Mesh> meshes) {
         SwTlas accel(context(), options());
         std::vector<AccelHandle> handles;
@@ -46,7 +46,7 @@ class SwBuild : public SwBuildTest {
 INSTANTIATE_TEST_SUITE_P(Every, SwBuild, builds_of_the_default_layout(), name_of_build);
 INSTANTIATE_TEST_SUITE_P(Full, SwBuild, builds_of_other_layouts(), name_of_build);
 
-// n copies of one triangle: all centroids equal.
+// Returns n copies of one triangle: all centroids are equal.
 Mesh equal_triangles(std::size_t n) {
     Mesh mesh;
     mesh.name = "equal";
@@ -71,8 +71,8 @@ TEST_P(SwBuild, EveryMeshOfABatchOfAllSmallSizesIsSoundAndEqualToItsReference) {
     }
 }
 
-// Each triangle of a soup, and behind it one that is a little lower: their codes are equal, the lower halves of
-// 60-bit codes in the other order. Those are few, so they do not count.
+// Makes each triangle of a soup, with one behind it that is a little lower: their codes are equal, and the lower halves
+// of 60-bit codes are in the other order. Only a few are, so they do not count.
 Mesh pairs_of_equal_codes(uint seed) {
     Mesh mesh = make_soup(100, seed);
     const auto corners = static_cast<uint>(mesh.positions.size());
@@ -123,7 +123,7 @@ TEST_P(SwBuild, TreesOfABatchWithLevelsAndSubtreesAreEqualToTheirReferences) {
     expect_references(meshes);
 }
 
-// A triangle beside each power of two, along the axes in turn, and behind these `count` that lie close together.
+// Makes a triangle beside each power of two, along the axes in turn, and behind these `count` that lie close together.
 Mesh chain_before_a_clump(uint depth, uint count) {
     Mesh mesh = make_soup(count, 9, 0.01f);
     for (vec3& position : mesh.positions) position *= std::ldexp(1.0f, -20);
@@ -143,7 +143,7 @@ TEST_P(SwBuild, ALargeSubtreeIsLeftBelowTheLastLevel) {
     const Mesh mesh = chain_before_a_clump(57, most + 300);
     const auto count = static_cast<uint>(mesh.triangles.size());
     const BuiltTree tree = checked_tree(mesh);
-    // Others make it less deep.
+    // Other layouts and qualities make it less deep.
     if (!has_records(tree) || width_of(tree) == 8 || quality() != BuildQuality::fast) return;
     const uint levels =
         plan_build(std::span(&count, 1), Layout::compressed4, context().state().tuning()).collapse_levels;
@@ -205,7 +205,7 @@ TEST_P(SwBuild, TheSceneTreeIsSoundOverInstancesAndEqualToItsReference) {
     }
 }
 
-// The area of all boxes, but for the root's: what a stray triangle must not change.
+// Returns the area of all boxes but the root's, which a stray triangle must not change.
 double area_below_root(const BuiltTree& tree, const Mesh& mesh) {
     const vec3 size = tree.bvh.hi - tree.bvh.lo;
     const double root =
@@ -229,10 +229,10 @@ TEST_P(SwBuild, AStrayTriangleDoesNotSpoilTheOrderOfTheOthers) {
     const BuiltTree tree = download_geometry(accel, handle);
     expect_sound(tree, mesh);
     expect_reference(tree, mesh, quality());
-    // In planes of grids its topmost boxes lie far apart.
+    // In planes of grids, the topmost boxes of the tree lie far apart.
     EXPECT_LT(area_below_root(tree, mesh), is_binary() ? 1.2 * area : INFINITY);
 
-    // Beside others in a batch, of which it is a small part, and which keep their order.
+    // The mesh is built beside others in a batch, of which it is a small part, and which keep their order.
     SwTlas of_many(context(), options());
     const Mesh pairs = pairs_of_equal_codes(1), soup = make_soup(50'000, 1);
     std::vector<AccelHandle> handles;
@@ -244,7 +244,7 @@ TEST_P(SwBuild, AStrayTriangleDoesNotSpoilTheOrderOfTheOthers) {
     EXPECT_TRUE(same_bytes(download_geometry(of_many, handles[1]).nodes, tree.nodes));
 }
 
-// Builds of quality ploc where nearest neighbours are of little use, or would make trees too high.
+// Builds of quality ploc for which nearest neighbours are of little use, or would make trees too high.
 using SwPloc = SwBuild;
 INSTANTIATE_TEST_SUITE_P(Every, SwPloc,
                          testing::Values(How{Layout::compressed4, BuildQuality::ploc, KernelShape::of_device},
@@ -253,7 +253,7 @@ INSTANTIATE_TEST_SUITE_P(Every, SwPloc,
                                          How{Layout::bvh2, BuildQuality::ploc, KernelShape::of_gpu}),
                          name_of_build);
 
-// With a box of 2 * size around `center`.
+// Adds a triangle with a box of 2 * size around `center`.
 void add_triangle(Mesh& mesh, vec3 center, float size) {
     const auto first = static_cast<uint>(mesh.positions.size());
     for (const vec3& corner : {vec3(1, -1, 1), vec3(-1, 1, 1), vec3(1, 1, -1)})
@@ -261,8 +261,8 @@ void add_triangle(Mesh& mesh, vec3 center, float size) {
     mesh.triangles.push_back({first, first + 1, first + 2});
 }
 
-// Each box is within the next one, so that the nearest neighbour is always the smallest: a chain. One lies apart, for
-// areas are measured in the extent of the centres.
+// Each box is within the next one, so that the nearest neighbour is always the smallest: a chain. One box lies apart,
+// since areas are measured in the extent of the centres.
 Mesh nested(uint count, float growth) {
     Mesh mesh;
     mesh.name = text("nested ", count);
@@ -276,13 +276,13 @@ TEST_P(SwPloc, ATreeOfNestedBoxesIsAsHighAsItMayBeAndNoHigher) {
     for (const uint count : {17u, 32u, 33u, 100u, 300u, 3000u}) {
         const uint depth = checked_depth(nested(count, count == 3000 ? 1.01f : 1.2f));
         if (!is_binary()) continue;
-        // Centres are split by 25 bits of places, then what was kept of them from the one that lies apart.
+        // Centres are split by 25 bits of places; then the kept ones are split from the one that lies apart.
         EXPECT_LE(depth, 25 + KEPT_CLUSTERS) << count;
         EXPECT_GE(depth, std::min(count - 1, 20u)) << count << ": the limit is not met";
     }
 }
 
-// On ever lower bits of the codes, then of their lower halves, then of positions.
+// Splits use ever lower bits of the codes, then of their lower halves, then of positions.
 TEST_P(SwPloc, NestedBoxesAtTheEndOfALongWayDownStayWithinTheDeepestTree) {
     for (const uint places : {20u, 200u}) {
         Mesh mesh = nested(places, 1.05f);
@@ -317,7 +317,7 @@ TEST_P(SwPloc, EqualBoxesMakeABalancedTree) {
     EXPECT_LE(checked_depth(mesh), 12u);
 }
 
-// Triangles of no area, so that all pairs are the same.
+// Triangles have no area, so that all pairs are the same.
 TEST_P(SwPloc, LeavesInALineAreSoundAndEqualToTheirReferences) {
     Mesh even, growing;
     even.name = "even";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Records of trees at the ends of what they can hold; saved_test.cpp holds what the checker refuses.
+// Records of trees at the ends of their range; saved_test.cpp tests what the checker refuses.
 #include <cmath>
 #include <random>
 
@@ -73,7 +73,7 @@ TEST(RecordCheck, RecordsBelowDifferentChildrenMayNotMix) {
     EXPECT_EQ(violations(3, 5, 7), std::vector<std::string>{"records below the children of record 0 mix"});
 }
 
-// Their sizes are infinite, and the middles of some are none.
+// Their sizes are infinite, and the middles of some are NaN.
 TEST(Compressed, BoxesWithoutAnEndAreLeavesAsAnyOther) {
     const vec3 most(3e38f), end(INFINITY);
     for (const uint width : {4u, 8u})

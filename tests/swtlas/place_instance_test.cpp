@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The world boxes of instances, by the CPU reference; tests of builds compare those of the device with it.
+// The world boxes of instances, by the CPU reference, with which tests of builds compare those of the device.
 #include <gtest/gtest.h>
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -24,7 +24,7 @@ LeafBox placed(Layout layout, const Mesh& mesh, const Transform& transform) {
     return scene.instance_boxes().front();
 }
 
-// Around all vertices, in float64.
+// The box around all vertices, in float64.
 struct Exact {
     dvec3 lo = dvec3(INFINITY), hi = dvec3(-INFINITY);
 };
@@ -97,7 +97,7 @@ TEST(PlaceInstance, ARotatedBallHasABoxNearlyAsSmallAsItsOwn) {
     }
 }
 
-// Where no box below the root's can be smaller, none is looked at.
+// If no box below the root's can be smaller, none is looked at.
 TEST(PlaceInstance, MapsKnowWhetherTheyKeepAxes) {
     const auto keeps = [](const Transform& t) { return keeps_axes({t.rows[0], t.rows[1], t.rows[2]}); };
     EXPECT_TRUE(keeps(Transform{}));
@@ -108,7 +108,7 @@ TEST(PlaceInstance, MapsKnowWhetherTheyKeepAxes) {
     EXPECT_FALSE(keeps({{vec4(1, 0, 0, 0), vec4(0, 1, 0, 0), vec4(-1, 0, 1, 0)}}));
 }
 
-// Products of the boxes at both ends, but not of the whole, are infinite with one sign and the other.
+// Products of the boxes at both ends are infinite with either sign, but those of the whole are not.
 TEST(PlaceInstance, MapsAtTheEndOfTheRangeLoseNothing) {
     Mesh mesh = make_soup(300, 3, 1e-6f);
     for (vec3& point : mesh.positions) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Plans of builds: where their memory lies, and that shares of a batch make room for it.
+// Plans of builds: where their memory lies, and how shares of a batch make room for it.
 #include <algorithm>
 #include <random>
 #include <vector>
@@ -18,7 +18,7 @@ struct Region {
     std::uint64_t begin, bytes;
 };
 
-// All that a build has at one time. Places of leaves' records lie where the codes were.
+// Returns all that a build has at one time. Places of leaves' records lie where the codes were.
 std::vector<Region> regions_of(const BuildPlan& plan, const KernelTuning& tuning) {
     const BuildScratch& at = plan.scratch;
     const std::uint64_t n = plan.leaf_count, trees = plan.first.size();

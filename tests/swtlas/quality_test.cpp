@@ -11,7 +11,7 @@
 namespace twinray {
 namespace {
 
-// Triangles of many sizes and shapes, as architecture has: long walls, panels, small parts.
+// Makes triangles of many sizes and shapes, as architecture has: long walls, panels, small parts.
 Mesh mixed_triangles(std::size_t count) {
     std::mt19937 random(8);
     std::uniform_real_distribution<float> unit(-1, 1);
@@ -80,7 +80,7 @@ double area_in(Corners corners, const LeafBox& box) {
     return area_of(corners);
 }
 
-// Every box below the root's, with the primitives below it.
+// A box below the root's, with the primitives below it.
 struct Box {
     LeafBox box;
     std::set<uint> below;

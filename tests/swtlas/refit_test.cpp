@@ -62,7 +62,7 @@ TEST_P(SwRefit, ARefittedSceneTreeIsSoundAndKeepsItsTopology) {
     }
 }
 
-// All of them under the map, in float64.
+// Expects the box of all points under the map, in float64.
 void expect_around(const BuiltTree& scene, const std::vector<vec3>& points, const Transform& map, double slack) {
     for (int axis = 0; axis < 3; ++axis) {
         double lo = INFINITY, hi = -INFINITY;
@@ -91,7 +91,7 @@ TEST_P(SwRefit, ARotatedInstanceHasABoxAroundWhatItsGeometryHasBecome) {
     expect_around(download_scene(accel), ball.positions, map, 0.9);
 }
 
-// Each triangle three times, so that equal t are decided by number, in whichever order the trees are.
+// Each triangle is there three times, so that its number decides equal t, in whichever order the trees are.
 TEST_P(SwRefit, ARefittedGeometryHasTheHitsOfAFreshOneToTheLastBit) {
     Mesh mesh = make_soup(400, 1, 0.3f);
     const std::vector<uvec3> once = mesh.triangles;

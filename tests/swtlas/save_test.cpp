@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A built SwTlas is saved and loaded again; and files hold trees as deep as there may be, which no builder makes.
+// A built SwTlas that is saved and loaded again; and files with trees of the largest depth, which no builder makes.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -32,7 +32,7 @@ class SwSave : public test::VulkanTest {
         accel.sync();
     }
 
-    // Geometries of every kind, one that was erased, options, and transforms that only the device knows.
+    // Pushes geometries of every kind, one of them erased, options, and transforms that only the device knows.
     std::vector<AccelHandle> fill(SwTlas& accel) {
         std::vector<AccelHandle> handles;
         handles.push_back(
@@ -203,8 +203,8 @@ TEST_F(SwSave, AFailedSaveLeavesNoFile) {
 // No builder is known to make such a tree of a mesh.
 class DeepTrees : public test::VulkanTest, public testing::WithParamInterface<Layout> {
   protected:
-    // All boxes are around the origin. A ray from there along (1, 1, 1) enters them all, and meets one triangle of the
-    // fork `open`, that farther in being visited first.
+    // Loads a tree with all boxes around the origin. A ray from there along (1, 1, 1) enters them all, and meets one
+    // triangle of the fork `open`, after visiting the one farther in.
     std::unique_ptr<SwTlas> load(uint open) {
         Mesh mesh;
         float size = 0x1p-60f;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The file format of a saved SwTlas, without a device: what is accepted, and what is refused and how.
+// The file format of a saved SwTlas, without a device: which files are accepted, which are refused, and how.
 #include "swtlas/saved.h"
 
 #include <algorithm>
@@ -173,7 +173,7 @@ TEST_P(SavedFile, OtherFormatsAreNamed) {
     expect_contains(edited([](SavedHeader& h) { h.reserved = 4; }), "its reserved word is 4, not 0");
 }
 
-// Nothing is allocated for them: 2^60 of anything would end the test.
+// Nothing is allocated for these counts: 2^60 of anything would end the test.
 TEST_P(SavedFile, CountsBeyondTheFileAreRefusedWhateverTheChecksumsSay) {
     const Bytes good = file_of(GetParam(), some_geometries(GetParam()));
     for (const std::uint64_t count : {std::uint64_t{1} << 60, ~std::uint64_t{0}, std::uint64_t{1'000'000}}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which triangles share a leaf, and what its record says of them.
+// Pairs of triangles: which ones share a leaf, and what its record says of them.
 #include "swtlas/triangle_pairs.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ bool shares_edge(uvec3 a, uvec3 b) {
 
 std::vector<Leaf> leaves_of(const Mesh& mesh) { return pair_triangles(mesh.positions, mesh.triangles); }
 
-// The first and the second triangle of each leaf.
+// Returns the first and the second triangle of each leaf.
 std::vector<uvec2> numbers(std::span<const Leaf> leaves) {
     std::vector<uvec2> numbers;
     for (const Leaf& leaf : leaves) numbers.emplace_back(leaf.first, leaf.second);
@@ -38,7 +38,7 @@ double leaves_a_triangle(const Mesh& mesh) {
     return static_cast<double>(leaves_of(mesh).size()) / static_cast<double>(mesh.triangles.size());
 }
 
-// Each triangle is in one leaf, and two of a leaf share an edge.
+// Expects each triangle in one leaf, and two triangles of a leaf to share an edge.
 void expect_partition(const Mesh& mesh, const std::vector<Leaf>& leaves) {
     std::set<uint> seen;
     for (const Leaf& leaf : leaves) {
@@ -79,8 +79,8 @@ TEST(TrianglePairs, TrianglesWithoutCommonEdgesHaveLeavesOfTheirOwn) {
     for (const Mesh& mesh : {make_soup(1, 1), make_soup(300, 2)}) EXPECT_TRUE(leaves_of(mesh).empty());
 }
 
-// Pairs of squares at a right angle, of two triangles each: a box around both squares' nearest triangles is larger than
-// their own.
+// Pairs of squares stand at a right angle, with two triangles each: a box around the nearest triangles of both squares
+// is larger than their own.
 TEST(TrianglePairs, ACommonBoxIsNoLargerThanBoth) {
     std::vector<vec3> positions;
     std::vector<uvec3> triangles, corners;
@@ -184,7 +184,7 @@ TEST(ChosenLeaves, KeepTheSignOfZeroAndPositionsThatAreNoNumbers) {
     EXPECT_TRUE(std::isnan(welded.positions[numbers.x].x));
 }
 
-// Few of many triangles share an edge: copies of all vertices would take more than their leaves save.
+// Few of many triangles share an edge: copies of all vertices would take more memory than their leaves save.
 TEST(ChosenLeaves, AreOnesWhereVerticesTakeMore) {
     Mesh mesh = make_soup(300, 3);
     for (std::size_t i = 1; i < 20; i += 2) {
@@ -207,7 +207,7 @@ TEST(ChosenLeaves, OfVerticesThatNoTriangleUsesTakeNothing) {
     EXPECT_EQ(chosen(mesh, false).welded.positions.size(), used);
 }
 
-// Records are of the mesh as it was given, then of the welded one, and back.
+// Records belong to the mesh as it was given, then to the welded one, and back.
 TEST(NamedVertices, AreThoseOfOtherTriangles) {
     const std::vector<uvec3> given = {{4, 7, 2}, {2, 7, 9}}, welded = {{0, 1, 2}, {2, 1, 3}};
     BuildTree tree{};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Cameras that turn, keys and events: what needs no device.
+// Parts of the viewer that need no device: cameras that turn, keys and events.
 #include "viewer/orbit.h"
 
 #include <cmath>

@@ -44,7 +44,7 @@ def scene(name):
 
 
 CAMERA = ["--camera", "2.5", "1.5", "4", "0", "-0.3", "0", "--size", "160", "90"]
-# Alike on both accelerators.
+# These views are alike on both accelerators.
 BOOKMARKS = {
     "eyelight": ["--layer", "eyelight"],
     "uv": ["--layer", "uv"],
@@ -58,7 +58,7 @@ BOOKMARKS = {
     "collisions": ["--layer", "collisions"],
     "path": ["--layer", "path", "--spp", "64"],
 }
-# Of both at once, and of the software tree alone.
+# These views show both at once, or the software tree alone.
 OTHERS = {
     "wipe": ["--layer", "normal", "--show", "wipe"],
     "difference": ["--show", "difference"],
@@ -92,7 +92,7 @@ for name, options in OTHERS.items():
     if has_hardware or name in ("steps", "factors"):
         compared(name, *options)
 
-# A broken picture is detected, and only then the picture is written.
+# A broken picture is detected, and the picture is written only then.
 assert "differs" in compared("steps", "--layer", "depth", status=1)
 assert (here / "steps-unlike.png").exists()
 compared("geometry", "--layer", "primitive", status=1)
@@ -100,7 +100,7 @@ if has_hardware:
     compared("wipe", "--layer", "normal", "--show", "wipe", "--wipe", "0.45", status=1)
     compared("difference", "--layer", "eyelight", status=1)
 
-# Frames, figures and what is said of a ray.
+# Frames, figures and the report on a ray.
 said = run("scene.obj", *CAMERA, "--layer", "path", "--headless", "3", "-o", "frames", "--json", "view.jsonl",
            "--pick", "80", "40")
 assert sorted(p.name for p in (here / "frames").iterdir()) == ["frame0.png", "frame1.png", "frame2.png"]

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The viewer without its window: what events do, and what is on its frames.
+// The viewer without its window: the effects of events, and the contents of its frames.
 #include "viewer/viewer.h"
 
 #include <cmath>
@@ -47,7 +47,7 @@ class ViewerTest : public test::VulkanTest {
     std::filesystem::path file() const { return folder_ / "boxes.obj"; }
     std::filesystem::path folder() const { return folder_; }
 
-    // From the front, the first box on the left.
+    // Looks from the front, with the first box on the left.
     ViewerDesc desc(Layer layer = Layer::eyelight) {
         State state;
         state.layer = layer;

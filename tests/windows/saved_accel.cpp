@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Saves an accelerator, or loads one and prints a hash of the hits that it gives: programs for two systems read each
-// other's files.
+// Saves an accelerator, or loads one and prints a hash of its hits, so that programs for two systems read each other's
+// files.
 //   saved_accel save|load FILE
 #include <cmath>
 #include <filesystem>

@@ -27,8 +27,8 @@ for record in failed:
     if record["example"]:
         assert record["example"] in said and len(record["example"].split()) == 9, record["example"]
 
-# Under --strict what Vulkan demands counts, what it advises does not. A driver that ends its process does not do so in
-# the same cases each time.
+# Under --strict, only Vulkan's demands count, not its advice. A driver that ends its process does not do so in the same
+# cases each time.
 demanded = any(record["results"]["demand"] == "must" for record in failed)
 strict = verify("--suite", "conformance", "--strict", status=int(demanded))
 assert strict.splitlines()[-1] == said.splitlines()[-1] or "the driver ended the process" in said + strict, strict

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Input for a driver, the rules by which that must be hit, and the hits that float64 expects.
+// Input for a driver, the rules that decide whether it must be hit, and the hits that float64 expects.
 #include "report/conformance/expectation.h"
 
 #include <gtest/gtest.h>
@@ -99,7 +99,7 @@ TEST(ConformanceRules, KindsAreSkippedWhateverTheInstanceSays) {
     EXPECT_FALSE(is_culled_triangle({opaque, 0, ray_skips_boxes}, true));
 }
 
-// Two triangles of a square at z = 2, counterclockwise seen from above.
+// Returns two triangles of a square at z = 2, counterclockwise seen from above.
 SceneInput square() {
     GeometryInput geometry{.positions = {vec3(-1, -1, 2), vec3(1, -1, 2), vec3(1, 1, 2), vec3(-1, 1, 2)},
                            .triangles = {uvec3(0, 1, 2), uvec3(0, 2, 3)}};
@@ -185,7 +185,7 @@ TEST(ConformanceExpectation, BoxesAreSureWhereTheRayPassesThem) {
     EXPECT_FALSE(Expectation(scene).candidates(shot)[1].is_sure);
 }
 
-// The first of the candidates is the reference's closest hit, where both are sure.
+// If both are sure, the first of the candidates is the reference's closest hit.
 TEST(ConformanceExpectation, AgreesWithTheReference) {
     Draws draws(3);
     SceneInput scene = scene_of(random_triangles(draws, 24));

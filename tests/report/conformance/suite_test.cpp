@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The suite on a device: what passes, what is known to fail, and that every case can fail.
+// The suite on a device: cases that pass, cases known to fail, and that every case can fail.
 #include "report/conformance/suite.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ namespace {
 
 using Ids = std::set<std::string>;
 
-// docs/conformance.md has the same, with what happens.
+// docs/conformance.md lists the same, and says what happens.
 struct KnownFaults {
     Ids must, should;
     Ids end_the_process;  // ctest conformance.command runs these, each in a process of its own
@@ -102,7 +102,7 @@ TEST_F(ConformanceSuite, TellsTheFirstFaultyRay) {
     }
 }
 
-// In full the same cases take more rays, in larger rounds.
+// Under full, the same cases take more rays, in larger rounds.
 TEST_F(ConformanceSuite, FullSharesItsRaysOutToTheCases) {
     if (!context().properties().ray_query) return;
     for (const Record& record : run({.is_full = true, .full_rays = 9'600'000, .only = of_topic(Topic::limits)})) {
@@ -113,7 +113,7 @@ TEST_F(ConformanceSuite, FullSharesItsRaysOutToTheCases) {
     }
 }
 
-// A device that never ends what the fifth case submits.
+// The device never ends the work that the fifth case submits.
 TEST(ConformanceOfAHungDevice, TellsTheCaseAndEnds) {
     faults::FaultInjector driver;
     const std::unique_ptr<Context> context =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Verdicts on what a driver answers, and on whether its answers to a scene and to the same one changed fit together.
+// Verdicts on a driver's answers, and on whether its answers to a scene and to the same one changed fit together.
 #include "report/conformance/verdict.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ class ConformanceVerdict : public ::testing::Test {
     SceneInput scene_ = scene_of(layered_triangles(3));
     Shot shot_ = shot_of({vec3(0.25f, 0.25f, -1), 0, vec3(0, 0, 1), INFINITY});
 
-    // The right answer for a layer.
+    // Returns the right answer for a layer.
     Answer hit(uint layer) const {
         Answer answer{};
         answer.kind = ANSWER_TRIANGLE;
@@ -126,14 +126,14 @@ TEST_F(ConformanceVerdict, OfBoxes) {
     EXPECT_EQ(judge_candidates(Expectation(scene_), shot_, answer, names), Finding::wrong_opacity);
 }
 
-// Each change of scene and rays leaves what float64 expects as it was, once brought back.
+// Each change of scene and rays leaves the expectation of float64 as it was, once it is brought back.
 class ConformanceRelation : public ::testing::Test {
   protected:
     Draws draws_{7};
     SceneInput scene_ = scene_of(random_triangles(draws_, 20));
     std::vector<Shot> shots_ = random_shots(draws_, 500);
 
-    // The middle of the first sure candidate, as an answer.
+    // Returns the middle of the first sure candidate as an answer.
     static Answer answer_of(const Expectation& expectation, const Shot& shot) {
         Answer answer{};
         double nearest = INFINITY;
@@ -160,7 +160,7 @@ class ConformanceRelation : public ::testing::Test {
         }
         EXPECT_GT(hits, 100u);
     }
-    // Without what brings answers back, most are not the same.
+    // Expects most answers to differ if they are not brought back.
     void expect_needs_bringing_back(const Changed& changed) const {
         const Expectation before(scene_), after(changed.scene);
         std::size_t different = 0;

@@ -89,7 +89,7 @@ TEST(Compare, ChanceIsNoChange) {
     EXPECT_LE(alarms, 17) << "of 200, at a stated rate of 5 %";
 }
 
-// The rays of a case share its scene: another seed is another rate.
+// The rays of a case share its scene, so another seed gives another rate.
 TEST(Compare, ScenesOfOtherSeedsAreNoChange) {
     std::mt19937 random(5);
     std::uniform_int_distribution<std::uint64_t> leaks(0, 2000);
@@ -106,7 +106,7 @@ TEST(Compare, ScenesOfOtherSeedsAreNoChange) {
     EXPECT_GT(of_one_seed, 100) << "where the rays are the same, such a difference is one";
 }
 
-// A case that had more time asks more rays, of which as many are lost.
+// A case that had more time asks more rays, and as many of them are lost.
 TEST(Compare, OtherAmountsAreNoChange) {
     std::vector<Record> now = twenty([](int i) { return measured(id(i), 100); });
     now[3] = measured(id(3), 100, 410, 4096);
@@ -169,7 +169,7 @@ TEST(Compare, WhatRanAndDoesNotIsWorse) {
     EXPECT_TRUE(compare(before, now).is_worse());
 }
 
-// A record that was not run has no settings: there is one for all of its case, accelerator and level.
+// A record that was not run has no settings: one stands for all of its case, accelerator and level.
 TEST(Compare, ACaseThatTheDriverCannotRunAnyMoreIsWorseWhateverItsSettings) {
     std::vector<Record> before = {measured("W1", 100), measured("W1", 100), measured("W1", 100, 0, 4096, "sw")};
     before[1].params = {{"aim", "edge"}};

@@ -54,7 +54,7 @@ if "llvmpipe" in floats[0]["device"]["name"]:
     arithmetic = [r for r in floats if r["case"] == "F09"]
     assert arithmetic and all(r["pass"] and r["faults"] == 0 and r["n"] > 0 for r in arithmetic), arithmetic
 
-# Beside a baseline of which a count was better, and in which a case passed.
+# Compares with a baseline in which a count was better and a case passed.
 better = [dict(r, faults=0, counts={}) for r in records]
 (here / "old.jsonl").write_text("".join(json.dumps(r) + "\n" for r in better))
 report("--only", "N07", "--accels", "sw", "--levels", "watertight", "-o", str(here / "second"), "--baseline",
@@ -64,7 +64,7 @@ assert {(r["backend"], r["level"]) for r in again} == {("sw", "watertight")}
 assert [r["counts"] for r in again] == [r["counts"] for r in records
                                         if (r["case"], r["backend"], r["level"]) == ("N07", "sw", "watertight")]
 
-# A baseline to which other commands have appended, and one that is broken.
+# Compares with a baseline to which other commands have appended, and with a broken one.
 with open(here / "old.jsonl", "a", encoding="utf-8") as old:
     old.write('{"schema": "twinray-trace/1", "n": 3}\n{"schema": "twinray-report/1", "case": "verify.random", "n": 5}\n')
 again = ["--only", "N07", "--accels", "sw", "--levels", "watertight", "--baseline", str(here / "old.jsonl")]
@@ -81,7 +81,7 @@ said = run("report", *again, "-o", str(here / "third"), status=1)
 assert f"{here / 'old.jsonl'}' line {number}: not a JSON object" in said, said
 report("--only", "N07", "-o", str(here / "third"), "--baseline", str(here / "none.jsonl"), status=1)
 assert not (here / "third").exists(), "a report was begun although its baseline cannot be read"
-# Reports beside each other: nothing changed, and what was made worse is found.
+# Compares reports: nothing has changed, and a result that was made worse is found.
 said = report("--compare", str(first), str(first / "report.jsonl"), "--json", str(here / "compared.json"))
 assert "verdict: no change beyond noise" in said and lines("compared.json")[0]["changes"] == [], said
 def made_worse(r):
@@ -101,7 +101,7 @@ for layout in ("compressed4", "bvh2"):
     report("--only", "W14,W15", "--accels", "sw", "--layout", layout, "-o", str(here / ("controls_" + layout)))
     assert sum(r["variant"].startswith("control: ") and bool(r["pass"])
                for r in lines("controls_" + layout + "/report.jsonl")) >= 2
-# A run that was cut short goes on with the case whose records it was writing.
+# An interrupted run resumes with the case whose records it was writing.
 progress = json.loads((first / "progress.json").read_text())
 cut = records[-1]["case"]
 del progress["cases"][cut]

@@ -82,7 +82,7 @@ TEST(Findings, ARayCountsOnceThoughLevelsTraceItAgain) {
     EXPECT_EQ(finding_in(records, "hw", Mistake::leak).level, "refined") << "the one with the most faults";
 }
 
-// However thoroughly each was asked.
+// The rate does not depend on how thoroughly each case was asked.
 TEST(Findings, TheRateIsTheMeanOfCasesAndOfTheKindsOfRaysInThem) {
     std::vector<Record> records = {checked("W04", "hw", 1'000'000, {{"HW_LEAK", 20'000}}),
                                    checked("W05", "hw", 1000, {{"HW_LEAK", 80}}),
@@ -131,7 +131,7 @@ TEST(Verdict, EachClaimRestsOnCasesOfTheCatalogue) {
         for (const std::string_view id : suite::cases_about(subject)) EXPECT_TRUE(ids.contains(std::string(id))) << id;
 }
 
-// The results of drivers with a known fault rate: cases of different sizes, each with kinds of rays.
+// Drivers have a known fault rate: their cases have different sizes, each with kinds of rays.
 TEST(Findings, TheirIntervalsHoldTheTruth) {
     std::mt19937_64 random(1);
     for (const double rate : {0.0, 1e-4, 1e-3, 1e-2}) {

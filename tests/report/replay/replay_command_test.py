@@ -14,7 +14,7 @@ def run(*arguments, status=0):
     return command.run(*arguments, "--quiet", status=status)
 
 
-# A flat grid of unit cells, where the boxes of drivers are flat, too.
+# In a flat grid of unit cells, the boxes of drivers are flat as well.
 n = 8
 firsts = [z * (n + 1) + x for z in range(n) for x in range(n)]
 faces = [face for i in firsts for face in ((i, i + n + 1, i + 1), (i + 1, i + n + 1, i + n + 2))]
@@ -26,7 +26,7 @@ leaks = sum(min(100, r["counts"]["HW_LEAK"]) for r in records if r["backend"] ==
 files = sorted((here / "out").glob("*HW_LEAK*.json")) if leaks else []
 assert len(files) == leaks, (len(files), leaks)
 
-# By hand: a ray through a vertex of four cells, that nobody loses.
+# This replay is written by hand: a ray through a vertex of four cells, which no driver loses.
 ray = {"origin": ["0x1p+1", "0x1.8p+1", "0x1p+1"], "direction": ["0x0p+0", "-0x1p+0", "0x0p+0"], "t_min": "0x0p+0", "t_max": "inf"}
 if files:
     replay = json.loads(files[0].read_text())

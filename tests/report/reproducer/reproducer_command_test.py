@@ -72,7 +72,7 @@ else:
     assert "no fault of the driver, so no reproducer" in said or "HW_" in said, said
     print("reproducer: this driver has no leak at the vertices of a grid")
 
-# Triangles in all directions, many behind another: the driver as it is has no fault there.
+# Triangles in all directions, many behind another: the unbroken driver has no fault there.
 random.seed(1)
 with open(here / "soup.obj", "w") as soup:
     for _ in range(400):

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A reproducer as it is handed out: the right answers, the program that asks for them, and the page that tells of both.
+// A reproducer as it is handed out: the right answers, the program that asks for them, and the page about both.
 #include <gtest/gtest.h>
 
 #include <twinray/geometry.h>

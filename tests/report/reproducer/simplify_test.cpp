@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The search for a fault's least case: which parts are asked for, by what numbers, and what is left at its end.
+// The search for a fault's least case: which parts it asks for, which numbers, and what is left at its end.
 #include "report/reproducer/simplify.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 namespace twinray::reproducer {
 namespace {
 
-// Shows a fault where all of `needed` are there; counts questions.
+// Shows a fault if all of `needed` are there, and counts questions.
 struct Needs {
     Indices needed;
     std::size_t questions = 0;
@@ -52,7 +52,7 @@ TEST(Ddmin, TheWorstCaseKeepsToItsBound) {
 }
 
 TEST(Ddmin, NothingCanBeLeftOutOfWhatComesBack) {
-    // Neither monotonic nor of one least answer: an even number of indices, one of which is divisible by 7.
+    // The fault is not monotonic and has several least answers: an even number of indices, one of which is 3 modulo 7.
     const auto shows_fault = [](const Indices& kept) {
         return kept.size() % 2 == 0 && std::ranges::any_of(kept, [](std::size_t i) { return i % 7 == 3; });
     };
@@ -94,7 +94,7 @@ TEST(ShortNumbers, AreShorterTheShortestFirstAndNear) {
             EXPECT_TRUE(std::isfinite(candidate)) << value;
             EXPECT_LT(length_of(candidate), length_of(value)) << value << " -> " << candidate;
         }
-        // The nearest of them has nearly as many bits, but of denormals, whose bits are few.
+        // The nearest of them has nearly as many bits, except among denormals, which have few bits.
         const auto nearest = std::ranges::min(shorter, {}, [&](float c) { return std::abs(c - value); });
         const bool is_denormal = std::abs(value) < std::numeric_limits<float>::min();
         EXPECT_TRUE(is_denormal || std::abs(nearest - value) <= std::abs(value) * 0x1p-18f) << value;
@@ -128,7 +128,7 @@ bool spans(const CaseTriangle& triangle, const FaultCase& fault, const vec3& poi
            box.lo.z <= point.z && point.z <= box.hi.z;
 }
 
-// Each edge from this vertex is of two triangles, of which there are three or more.
+// Returns whether there are three or more triangles at this vertex and each edge from it belongs to two of them.
 bool closes_around(const FaultCase& fault, const vec3& hub) {
     std::vector<vec3> rim;
     for (const CaseTriangle& t : fault.triangles)
@@ -179,7 +179,7 @@ TEST(FaultCase, AsBuiltIsTheSameWorldInOtherUnits) {
 }
 
 TEST(Simplify, KeepsWhatTheFaultNeedsInTheWorldAndAlone) {
-    // Some triangle over the point.
+    // The fault needs some triangle over the point.
     const auto shows_fault = [](const FaultCase& fault) {
         return std::ranges::any_of(fault.triangles, [&](const CaseTriangle& triangle) {
             return spans(triangle, fault, {0.5f, 1, 0.7f});
@@ -212,7 +212,7 @@ TEST(Simplify, JoinsTheSixTrianglesAroundAVertexToThree) {
 }
 
 TEST(Simplify, AFanOfAThousandTrianglesTakesFewQuestions) {
-    // Closed around the origin.
+    // The fan is closed around the origin.
     FaultCase fault{{Transform{}}, {}, some_ray};
     const auto rim = [](int i) {
         const float angle = 6.2831853f * static_cast<float>(i % 1000) / 1000;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Folders of reproducers, and the program in them with a ray that the driver answers rightly.
+// Folders of reproducers, and the program in them with a ray that the driver answers correctly.
 #include "report/reproducer/write.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A flat grid in which every coordinate is a whole number.
+// Makes a flat grid in which every coordinate is a whole number.
 Scene grid_scene() {
     Mesh grid = make_grid(8, 8);
     for (vec3& position : grid.positions) position *= 8.0f;
@@ -43,7 +43,7 @@ class WriteTest : public ::testing::Test {
     }
     bool has_driver() const { return has_driver_; }
     frame::Devices& devices() { return *devices_; }
-    // A ray at a vertex that the driver loses, if it does.
+    // Returns a ray at a vertex that the driver loses, if there is one.
     std::optional<Ray> lost_ray(const Scene& scene) {
         const ReferenceScene reference = ReferenceScene::of(scene);
         const std::vector<Ray> rays = vertex_aimed_rays(Reference(scene), 4000, 1);
@@ -54,7 +54,7 @@ class WriteTest : public ::testing::Test {
             if (class_of(reference, rays[i], hits[i]) == HitClass::hw_leak) return rays[i];
         return {};
     }
-    // A replay file of the ray, and the scene beside it.
+    // Writes a replay file of the ray, and the scene beside it.
     fs::path replay_of(const std::string& name, const Scene& scene, const Ray& ray, const char* backend) {
         replay::write_glb(folder_ / "grid.glb", scene);
         replay::write(folder_ / name, {"grid.glb",
@@ -70,7 +70,7 @@ class WriteTest : public ::testing::Test {
                                        "a version"});
         return folder_ / name;
     }
-    // The exit status of the program, compiled without warnings.
+    // Compiles the program without warnings and returns its exit status.
     int run(const std::string& program) {
         const fs::path source = folder_.write("program.c", program), file = folder_ / "program";
         const std::string compile = text(TWINRAY_C_COMPILER, " -std=c99 -Wall -Wextra -pedantic -Werror ",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A driver that is broken at a known rate: of hits, by what they are, a share is refused.
+// A driver that is broken at a known rate: it refuses a share of the hits, chosen by their values.
 #include "twinray/glsl/program.h"
 
 bool intersect_primitive(Candidate candidate, Ray ray_local, inout float t, inout vec2 uv) { return false; }
@@ -18,7 +18,7 @@ uvec3 scrambled(uvec3 v)
     return v;
 }
 
-// user_data: the share, times 2^32, and a seed.
+// user_data holds the share, times 2^32, and a seed.
 bool accept_hit(Candidate candidate, float t, vec2 uv)
 {
     uint share = AT(Uints(candidate.user_data), 0), seed = AT(Uints(candidate.user_data), 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The suite's cases: all of them, whose turn it is, and the state that a run leaves for the next.
+// The suite's cases: all of them, the order of their turns, and the state that a run leaves for the next.
 #include <gtest/gtest.h>
 
 #include <map>

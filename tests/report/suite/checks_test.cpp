@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How answers to rays and pictures are judged.
+// Judgements of answers to rays and of pictures.
 #include "report/suite/checks.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ class Checking : public ::testing::Test {
     MeshView view_ = square_;
     ReferenceInstance instance_{0, {}};
     ReferenceScene reference_{std::span(&view_, 1), std::span(&instance_, 1)};
-    // At it, past it, and one that nobody may trace.
+    // One ray hits the square, one passes it, and nobody may trace the third.
     std::vector<Ray> rays_ = {{vec3(0.3f, 0.2f, 3), 0, vec3(0, 0, -1), INFINITY},
                               {vec3(5, 5, 3), 0, vec3(0, 0, -1), INFINITY},
                               {vec3(0.3f, 0.2f, 3), 0, vec3(0), INFINITY}};
@@ -84,8 +84,8 @@ TEST(Flip, OfAPictureToItselfIsNothing) {
     for (const double difference : flip(picture, picture)) EXPECT_EQ(difference, 0);
 }
 
-// Lightness differs by 100; of green and blue, the most that there is, by 203.1: ((100 / 203.1)^0.7 - 0.4) / 0.6 of the
-// last twentieth.
+// Lightness differs by 100; green and blue differ the most, by 203.1: ((100 / 203.1)^0.7 - 0.4) / 0.6 of the last
+// twentieth.
 TEST(Flip, OfBlackAndWhiteIsNearlyOne) {
     EXPECT_NEAR(mean_flip(plain(vec3(0)), plain(vec3(1))), 0.95 + 0.05 * (std::pow(100 / 203.1, 0.7) - 0.4) / 0.6,
                 1e-3);
@@ -98,7 +98,7 @@ TEST(Flip, IsSymmetricAndGrowsWithTheDifference) {
     EXPECT_LT(mean_flip(plain(vec3(0.2f)), plain(vec3(0.3f))), mean_flip(plain(vec3(0.2f)), plain(vec3(0.5f))));
 }
 
-// The eye does not resolve a checkerboard of pixels 67 to a degree, but one seen from nearby.
+// The eye does not resolve a checkerboard of pixels 67 to a degree, but does resolve one from nearby.
 TEST(Flip, FineGrainIsSeenFromNearbyAlone) {
     HdrImage board = plain(vec3(0.5f));
     for (uint y = 0; y < 16; ++y)

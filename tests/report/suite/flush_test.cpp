@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Traversal on devices that flush denormals, which the CPU plays.
+// Traversal on devices that flush denormals, which the CPU imitates.
 #include "validation/cpu_reference/flush_denormals.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ std::size_t hit_count(const std::vector<Hit>& hits) {
     return count;
 }
 
-// t is 1e-36 and its products with the steps of compressed boxes are denormal: they are taken times a power of two.
+// t is 1e-36, and its products with the steps of compressed boxes are denormal, so they are scaled by a power of two.
 TEST(FlushedDenormals, LongDirectionsLoseNothing) {
     if (!FlushDenormals::is_able()) TWINRAY_LACKS("flushed_denormals", "this processor cannot");
     Scene scene;
@@ -46,7 +46,7 @@ TEST(FlushedDenormals, LongDirectionsLoseNothing) {
     }
 }
 
-// Times 1e30 a mesh is built in a unit of its own, in which a direction 1e-8 long is short.
+// At 1e30 times its size, a mesh is built in a unit of its own, in which a direction 1e-8 long is short.
 TEST(FlushedDenormals, ShortDirectionsInLargeScenesLoseNothing) {
     if (!FlushDenormals::is_able()) TWINRAY_LACKS("flushed_denormals", "this processor cannot");
     for (const auto& [size, length] : {std::pair{3e30f, 1e-8f}, {1e38f, 1.0f}, {1e20f, 1e-15f}, {3e38f, 4.0f}}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Whether the intervals that a report prints hold the truth: of drivers that are broken at a known rate.
+// Coverage of the intervals that a report prints: they hold the truth for drivers that are broken at a known rate.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -23,12 +23,12 @@
 namespace twinray::suite {
 namespace {
 
-// How many of so many intervals hold the truth at least, if 95 % of all do: 3 standard deviations less.
+// Returns how many of these intervals must hold the truth if 95 % of all do: 3 standard deviations less.
 double least_of(uint trials) { return 0.95 * trials - 3 * std::sqrt(0.05 * 0.95 * trials); }
 
 class Intervals : public test::VulkanTest {
   protected:
-    // Closest hits of a driver that refuses this share of them.
+    // Returns the closest hits of a driver that refuses this share of them.
     std::vector<Hit> broken_hits(SwTlas& accel, std::span<const Ray> rays, double share, uint seed) {
         const std::unique_ptr<TraceProgram> program = accel.make_program(broken_program);
         const Buffer data = device_copy(std::array{static_cast<uint>(share * 0x1p32), seed});
@@ -36,7 +36,7 @@ class Intervals : public test::VulkanTest {
     }
 };
 
-// From inside a convex mesh each ray has one hit: refused, it is a leak, and nothing else is.
+// From inside a convex mesh each ray has one hit; refused, it is a leak, and there are no other leaks.
 TEST_F(Intervals, OfLostRaysHoldTheRateOfABrokenDriver) {
     const Mesh ball = make_icosphere(2);
     const ClosedMesh closed(ball);
@@ -78,14 +78,14 @@ TEST_F(Intervals, OfLostRaysHoldTheRateOfABrokenDriver) {
     }
 }
 
-// An estimate, whose truth is known, as one seed gives it.
+// An estimate with a known truth, as one seed gives it.
 struct FractionEstimator {
     std::string name;
     double truth;
     std::function<Interval(std::uint64_t seed)> interval;
 };
 
-// With the host's denormals kept, and flushed. The device does what it does: lavapipe sets its threads itself.
+// Runs with the host's denormals kept, and flushed. The device is not affected: lavapipe sets its threads itself.
 class EstimateIntervals : public test::VulkanTest, public testing::WithParamInterface<bool> {
   protected:
     void SetUp() override {

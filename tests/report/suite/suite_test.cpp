@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The suite's runner, on a device, and cases that count crossings.
+// The suite's runner on a device, and cases that count crossings.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -43,7 +43,8 @@ SuiteCase make_case(const char* id, std::function<void(CaseRun&)> run) {
     return {id, "title", "measures", "criterion", std::move(run)};
 }
 
-// Traced without the triangles that `is_hole` names, so that a reference of the whole finds leaks.
+// Makes a world that is traced without the triangles that `is_hole` names, so that a reference of the whole finds
+// leaks.
 template <class IsHole>
 World world_with_holes(Mesh mesh, const IsHole& is_hole) {
     World world = world_of(mesh);
@@ -60,7 +61,7 @@ std::vector<Ray> rays() { return random_rays({vec3(-1), vec3(1)}, 500, 1); }
 
 const std::function<void(CaseRun&)> sound = [](CaseRun& run) { run.measure(world_of(make_icosphere(3)), rays()); };
 
-// If the same computation on the answers of both is right by SwTlas, a fault is the driver's.
+// If the same computation is right with SwTlas, a fault is the driver's.
 TEST_F(SuiteRun, WhatIsRightBySoftwareIsTheDriversFault) {
     if (!can_run()) return;
     const auto computed = [](CaseRun& run) {
@@ -248,7 +249,7 @@ class CrossingsTest : public SuiteRun {
     std::vector<Configuration> configurations_;  // none without a device
 };
 
-// Walls at z = 0, 1, ..., 11, two copies of each in two instances.
+// Returns walls at z = 0, 1, ..., 11, two copies of each in two instances.
 World twelve_double_walls() {
     Mesh walls;
     for (uint i = 0; i < 12; ++i) append(walls, make_quad(vec3(-1, -1, i), vec3(2, 0, 0), vec3(0, 2, 0)));

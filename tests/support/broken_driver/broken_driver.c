@@ -5,7 +5,7 @@
 //     VK_ADD_LAYER_PATH=FOLDER_OF_THE_MANIFEST VK_INSTANCE_LAYERS=VK_LAYER_TWINRAY_broken_driver
 //     TWINRAY_BROKEN_DRIVER=FAULT
 //
-// FAULT is a name of the table below; without one nothing is patched. Modules given to vkCreateShaderModule alone are
+// FAULT is a name of the table below; without one nothing is patched. Only modules given to vkCreateShaderModule are
 // seen, not those chained to a pipeline's stage, nor shader objects.
 #include <stdint.h>
 #include <stdio.h>
@@ -15,13 +15,13 @@
 #include <vulkan/vulkan.h>
 #include <vulkan/vk_layer.h>
 
-// Of SPIR-V.
+// Numbers of SPIR-V.
 enum { op_type_int = 21, op_constant = 43, op_function = 54, op_load = 61, op_decorate = 71, op_f_mul = 133 };
 enum { op_bitwise_or = 197, op_bitwise_and = 199, op_trace_ray = 4445, op_initialize_query = 4473 };
 enum { op_query_t = 6018, op_query_primitive = 6023, built_in = 11, primitive_id = 7, ray_t_max = 5326 };
 
-// What is done to the flags of each ray (`query` is op_initialize_query), or to what the driver answers: `operation`
-// with the constant whose bits are `bits`.
+// A change of each ray's flags (`query` is op_initialize_query), or of the driver's answers: `operation` with the
+// constant whose bits are `bits`.
 struct fault {
     const char* name;
     uint32_t query, variable;  // the instruction of ray queries, the variable of hit shaders
@@ -43,9 +43,9 @@ static const struct fault* chosen_fault(void) {
     return NULL;
 }
 
-// What is patched and by which types, as a first pass over the module finds it.
+// The places to patch and their types, as a first pass over the module finds them.
 struct target {
-    uint32_t type;      // of the constant: that of what it is combined with
+    uint32_t type;      // of the constant, and of its other operand
     uint32_t variable;  // a hit shader's, 0 for none
     size_t count;       // of instructions to patch
 };
@@ -71,7 +71,7 @@ static struct target find_target(const struct fault* fault, const uint32_t* code
     return target;
 }
 
-// A copy of the module with the fault, of *words; NULL: there is nothing to patch.
+// Returns a copy of the module with the fault, of *words words, or NULL if nothing needs a patch.
 static uint32_t* patched(const struct fault* fault, const uint32_t* code, size_t* words) {
     const struct target target = find_target(fault, code, *words);
     if (target.count == 0) return NULL;
@@ -92,7 +92,7 @@ static uint32_t* patched(const struct fault* fault, const uint32_t* code, size_t
             for (size_t i = 0; i < length; ++i) *out++ = at[i];
             continue;
         }
-        // Other flags before the instruction, or another result of it before what that was known as.
+        // Changes flags before the instruction, or a result right after it, under the name that the result had.
         const int of_flags = fault->query == op_initialize_query;
         const size_t changed = !of_flags ? 2 : opcode(at) == op_trace_ray ? 2 : 3;
         const uint32_t added = bound++, type = of_flags ? target.type : at[1];
@@ -109,7 +109,7 @@ static uint32_t* patched(const struct fault* fault, const uint32_t* code, size_t
     return copy;
 }
 
-// What comes after this layer, for each instance and device; what belongs to one shares its first pointer.
+// The functions after this layer, for each instance and device; all objects of one share its first pointer.
 struct next {
     void* key;
     PFN_vkGetInstanceProcAddr instance_function;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The bound by which level certified leaves triangles out, against rational arithmetic: what the filter is certain of
-// is so.
+// The bound by which level certified leaves triangles out, compared with rational arithmetic: the filter is right
+// whenever it is certain.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -30,14 +30,15 @@ struct Draws {
     }
 };
 
-// One instance of a geometry within [-1, 1]^3, a ray that passes close to an edge of it, and the edge.
+// One instance of a geometry within [-1, 1]^3, a ray that passes close to one of its edges, and that edge.
 struct Sample {
     Transform transform;
     Ray ray;
     vec3 a, b;
 };
 
-// Stretched by 2^-stretch to 2^stretch along axes of its own; moved by `place`; seen from `distance`.
+// Makes a sample that is stretched by 2^-stretch to 2^stretch along axes of its own, moved by `place` and seen from
+// `distance`.
 Sample sample(Draws& draws, double stretch, double place, double distance) {
     const auto scale = [&] { return std::exp2(draws.between(-stretch, stretch)); };
     dmat3 stretched(scale());
@@ -68,7 +69,7 @@ RefineInstance instance_of(const Transform& transform) {
     return instance;
 }
 
-// The exact sign that certain_side() is certain of, for rays whose dominant axis is that of `direction`.
+// Returns the exact sign that certain_side() is certain of, for rays with the dominant axis of `direction`.
 int exact_side_of(const Sample& sample, vec3 direction) {
     const Line line = object_line(sample.ray, Placement64(sample.transform, "sample"));
     const Vector normal = cross(vector_of(sample.a) - line.origin, vector_of(sample.b) - line.origin);
@@ -80,7 +81,7 @@ struct FilterResults {
     std::size_t n = 0, wrong = 0, open = 0;
 };
 
-// Of samples at each stretch and place, with the bound times `factor`.
+// Returns the results for samples at each stretch and place, with the bound times `factor`.
 FilterResults filter_results(float factor) {
     Draws draws{std::mt19937(3)};
     FilterResults found;

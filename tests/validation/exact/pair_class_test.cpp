@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Classes of triangles against a reference in rational arithmetic that shares no code and no method with them.
+// Classes of triangles, compared with a reference in rational arithmetic that shares no code and no method with them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,12 +17,12 @@ namespace twinray::exact {
 namespace {
 
 // Classes of triangles by another way than the engine's: the common part of both is computed in rational numbers, by
-// cutting one by the half-spaces that the other is made of, and then looked at.
+// cutting one with the half-spaces of the other, and then looked at.
 using Points = std::vector<Vector>;
 
 bool is_zero(const Vector& v) { return v.x == 0 && v.y == 0 && v.z == 0; }
 
-// All p with dot(normal, p) >= offset.
+// The points p with dot(normal, p) >= offset.
 struct HalfSpace {
     Vector normal;
     Rational offset;
@@ -52,7 +52,7 @@ struct Span {
     }
 };
 
-// A triangle as a convex set: what it lies in, and what bounds it there.
+// A triangle as a convex set: the line or plane that it lies in, and its borders there.
 struct Shape {
     Points points;
     std::vector<HalfSpace> equalities;  // each with its opposite
@@ -99,7 +99,7 @@ struct Shape {
     }
 };
 
-// The part of a convex polygon within a half-space (Sutherland and Hodgman).
+// Returns the part of a convex polygon within a half-space (Sutherland and Hodgman).
 Points cut(const Points& polygon, const HalfSpace& by) {
     std::vector<Rational> heights;
     for (const Vector& p : polygon) heights.push_back(by.height(p));
@@ -132,7 +132,7 @@ Vector middle_of(const Points& points) {
     return {sum.x / n, sum.y / n, sum.z / n};
 }
 
-// The extreme points, in no order and maybe more than once.
+// Returns the extreme points, in no order and maybe more than once.
 Points common_part(const WorldTriangle& a, const WorldTriangle& b) { return common_part(Shape(a), Shape(b)); }
 
 PairClass exact_pair_class(const WorldTriangle& a, const WorldTriangle& b) {
@@ -154,7 +154,7 @@ using enum PairClass;
 
 const WorldTriangle floor_triangle = triangle_of({0, 0, 0}, {4, 0, 0}, {0, 4, 0});
 
-// Every order of vertices and triangles has this class, and the reference says so, too.
+// Expects this class for every order of vertices and triangles, and from the reference.
 void expect_class(const WorldTriangle& a, const WorldTriangle& b, PairClass expected, const char* what) {
     EXPECT_EQ(name_of(exact_pair_class(a, b)), name_of(expected)) << what << ", reference";
     EXPECT_EQ(name_of(exact_pair_class(b, a)), name_of(expected)) << what << ", reference";
@@ -187,7 +187,7 @@ TEST(PairClassTest, Touches) {
 }
 
 TEST(PairClassTest, OfOnePlane) {
-    // x - 2 y + z = 0, so that nothing is along an axis.
+    // The plane is x - 2 y + z = 0, so that nothing is along an axis.
     const auto raised = [](double x, double y) { return dvec3(x, y, 2 * y - x); };
     const WorldTriangle base = triangle_of(raised(0, 0), raised(4, 0), raised(0, 4));
     const auto expect = [&](const char* what, dvec2 a, dvec2 b, dvec2 c, PairClass expected) {
@@ -233,7 +233,7 @@ TEST(PairClassTest, TrianglesWithoutAreaAreSegmentsAndPoints) {
     expect("two points", point({1, 2, 3}), point({1, 2, 4}), separate);
 }
 
-// The tip of one triangle k floats above, on or below the face of another, far from the origin too.
+// The tip of one triangle floats k steps above, on or below the face of another, far from the origin too.
 TEST(PairClassTest, GapsOfFewUlps) {
     for (const float height : {0.0f, 1.0f, 1e3f, 1e6f}) {
         float above = height, below = height;
@@ -289,7 +289,7 @@ dvec3 point_in_cube(std::mt19937_64& random) {
     return {x, y, coordinate(random)};
 }
 
-// One vertex of each is put on the other as well as float64 can, which is nearly never on it.
+// One vertex of each is put on the other as well as float64 can, so it is nearly never on it.
 TEST(PairClassTest, NearlyTouching) {
     std::mt19937_64 random(6);
     std::size_t counts[PAIR_CLASSES] = {};

@@ -39,7 +39,7 @@ def totals(file):
 write_torus("torus.ply", 96, 48)
 write_torus("open.ply", 96, 48, missing=1)
 
-# The promise.
+# twinray keeps its promise.
 said = leaks("torus.ply", "--ray-count", 1_000_000, "--json", here / "all.jsonl")
 assert "1000000 rays: 0 leaks, 0 double hits by twinray" in said, said
 record = records("all.jsonl")[0]
@@ -57,7 +57,7 @@ assert "continues after 60000 rays" in said, said
 assert totals("parts.json") == totals("once.json"), (totals("parts.json"), totals("once.json"))
 assert totals("once.json")[1] > 1000 and totals("once.json")[2] > 1000
 
-# Killed, a run leaves a whole file.
+# A killed run leaves a whole file.
 with subprocess.Popen([program, "leaks", str(here / "torus.ply"), "--quiet", "--ray-count", "1000000000000", "--state",
                        str(here / "killed.json")], stdout=subprocess.DEVNULL) as endless:
     deadline = time.monotonic() + 120

@@ -140,7 +140,7 @@ TEST_F(RecorderTest, ReadingNamesTheLine) {
     EXPECT_THROW(Recorder({"", "", {}}, folder_ / "none" / "report.jsonl"), Error);
 }
 
-// As `twinray trace`, `twinray verify` and the samples append them.
+// Lines are as `twinray trace`, `twinray verify` and the samples append them.
 TEST_F(RecorderTest, LinesOfOtherCommandsAreCounted) {
     std::ofstream(file_) << to_json(full_record()) << "\n\n"
                          << R"({"schema": "twinray-trace/1", "n": 3})" << '\n'
@@ -155,7 +155,7 @@ TEST_F(RecorderTest, LinesOfOtherCommandsAreCounted) {
                                 {"no schema", 1}, {"path_tracer", 1}, {"twinray-trace/1", 2}, {"verify.random", 1}}));
 }
 
-// Each cell is what the JSON line says, under one header for all.
+// Each cell has the value of the JSON line, under one header for all.
 TEST_F(RecorderTest, TableHoldsWhatTheLinesHold) {
     Record other;
     other.case_id = "N01";

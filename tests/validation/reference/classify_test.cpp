@@ -57,7 +57,7 @@ constexpr std::uint32_t inside_seed = 77;
 
 RayResult both(HitClass software, HitClass hardware) { return {software, hardware}; }
 
-// The same answer from both accelerators.
+// Classifies the same answer from both accelerators.
 RayResult check(const ReferenceScene& reference, const Ray& ray, const Hit& hit) {
     return classify(reference, ray, hit, hit);
 }

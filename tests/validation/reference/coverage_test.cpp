@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How far rounding may move a ray, and whether triangles cover it wherever that is.
+// Bounds of how far rounding may move a ray, and whether triangles cover it wherever it is.
 #include "validation/reference/coverage.h"
 
 #include <gtest/gtest.h>
@@ -79,7 +79,7 @@ TEST(ErrorBounds, NoTriangleInABoxExceedsItsMaxRadius) {
     }
 }
 
-// The triangles of the mesh as the ray sees them.
+// Returns the coverage by the mesh's triangles as the ray sees them.
 Coverage coverage_of(const Soup& soup, const Ray& ray) {
     const ErrorBounds bounds(ray, Placement64(), Accelerator::software);
     std::vector<PatchTriangle> patch;

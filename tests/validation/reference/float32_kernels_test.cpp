@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The classifier against an accelerator without a hierarchy, in float32, as a model of what a GPU kernel answers: it
-// rounds like a watertight kernel and must never be called at fault.
+// The classifier, tested with an accelerator without a hierarchy, in float32, as a model of a GPU kernel: it rounds
+// like a watertight kernel and must never be called at fault.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +22,8 @@ struct TriangleHit32 {
     float t, u, v;
 };
 
-// Woop et al. 2013 in float32, zero counts as inside, with edge functions that are right to a rounding.
+// Tests as Woop et al. 2013 do, in float32, where zero counts as inside, with edge functions that are right to a
+// rounding.
 std::optional<TriangleHit32> watertight32(vec3 o, vec3 d, const std::array<vec3, 3>& vertices) {
     const vec3 size = abs(d);
     const int kz = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
@@ -52,7 +53,7 @@ struct Scene32 {
 
     ReferenceScene reference() const { return reference_of(soups, instances); }
 
-    // Closest hit by testing every triangle in float32.
+    // Finds the closest hit by testing every triangle in float32.
     Hit trace(const Ray& ray) const {
         Hit best = miss();
         for (uint i = 0; is_traceable(ray) && i < instances.size(); ++i) {
@@ -76,8 +77,8 @@ struct Scene32 {
 };
 Scene32 one(const Soup& soup, const Transform& transform = {}) { return {{soup}, {{0, transform, 0}}}; }
 
-// The result of a kernel that refines: t, u and v of the same triangle's plane, in float64, unless that t leaves the
-// ray's interval.
+// Returns the result of a kernel that refines: t, u and v of the same triangle's plane, in float64, unless that t
+// leaves the ray's interval.
 Hit refined(const ReferenceScene& reference, const Ray& ray, Hit hit) {
     if (hit.hit == 0) return hit;
     const ActiveTriangle* triangle = reference.geometry(hit.instance_index).find(hit.primitive_index);
@@ -99,7 +100,7 @@ struct Tally {
     HitClassCounts software, hardware;
 };
 
-// Random and aimed rays against the kernel as both accelerators, and against its refined level.
+// Traces random and aimed rays with the kernel as both accelerators, and at its refined level.
 Tally tally(const Scene32& scene, std::size_t count, std::uint64_t seed) {
     const ReferenceScene reference = scene.reference();
     const Bounds bounds{vec3(reference.bounds().corners[0]), vec3(reference.bounds().corners[1])};

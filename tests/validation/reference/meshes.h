@@ -44,7 +44,7 @@ inline Ray make_ray(vec3 origin, vec3 direction, float t_min = 0, float t_max = 
     return {origin, t_min, direction, t_max};
 }
 
-// Uniform in [low, high), the same on every platform.
+// Returns a uniform number in [low, high), the same on every platform.
 inline float uniform(std::mt19937& random, float low, float high) {
     return low + (high - low) * static_cast<float>(random() >> 8) * 0x1p-24f;
 }
@@ -67,7 +67,7 @@ inline Soup random_soup(std::size_t count, float size, std::uint32_t seed) {
     return soup;
 }
 
-// n x n cells of size 1 in z = 0, moved by up to `jitter` in x and y and `height` in z; indexed.
+// Makes n x n cells of size 1 in z = 0, moved by up to `jitter` in x and y and `height` in z; indexed.
 inline Soup grid(uint n, float jitter, float height, std::uint32_t seed) {
     std::mt19937 random(seed);
     Soup soup;
@@ -137,7 +137,7 @@ inline ScaledAndTurned scaled_and_turned(std::mt19937& random, double most) {
     return {scaling, {turned * scaling, scaling * turned}};
 }
 
-// Scaled, sheared, and moved by up to `spread` along each axis.
+// Returns a transform that scales, shears, and moves by up to `spread` along each axis.
 inline Transform random_instance_transform(std::mt19937& random, float spread) {
     Transform m = Transform::scaling(vec3(uniform(random, 0.5f, 1.5f)));
     for (vec4& row : m.rows) row += vec4(uniform3(random, -0.5f, 0.5f), uniform(random, -spread, spread));
@@ -149,7 +149,7 @@ inline double distance_to_line(const dvec3& point, const Ray& ray) {
     return length(cross(point - dvec3(ray.origin), d));
 }
 
-// From inside a mesh around its origin, aimed at its vertices (even ones) and at points of its edges (odd ones).
+// Returns rays from inside a mesh around its origin, at its vertices (even ones) and at points of its edges (odd ones).
 inline std::vector<Ray> rays_from_inside(const Soup& soup, const Transform& transform, std::size_t count,
                                          std::uint32_t seed) {
     std::mt19937 random(seed);

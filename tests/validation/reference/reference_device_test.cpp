@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The reference on a device: the arithmetic that robust levels rest on, and what is ReferenceAccel's own; all that it
-// shares with the accelerators is in tests/accel/accel_contract_test.cpp.
+// The reference on a device: the arithmetic that robust levels rest on, and ReferenceAccel's own behaviour;
+// tests/accel/accel_contract_test.cpp tests all that it shares with the accelerators.
 #include "validation/reference/reference_accel.h"
 
 #include <cmath>

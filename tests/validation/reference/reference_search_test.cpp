@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The reference's search: areas of triangles, rays against them and against boxes, and the same as without boxes.
+// The reference's search: areas of triangles, rays against triangles and boxes, and searches without boxes, which give
+// the same.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -146,7 +147,7 @@ using namespace test;  // NOLINT
 
 Bounds to_bounds(const Box64& box) { return {vec3(box.corners[0]), vec3(box.corners[1])}; }
 
-// Random and aimed rays, and the same with an interval that cuts hits off; and axis-aligned ones, +0 and -0.
+// Returns random and aimed rays, the same with an interval that cuts hits off, and axis-aligned ones, +0 and -0.
 std::vector<Ray> all_kinds_of_rays(const ReferenceScene& reference, std::size_t count, std::uint64_t seed) {
     std::vector<Ray> rays = random_rays(to_bounds(reference.bounds()), count, seed);
     for (const auto& more : {vertex_aimed_rays(reference, count, seed), edge_aimed_rays(reference, count, seed)})
@@ -238,8 +239,8 @@ TEST(ReferenceSearch, EqualsBruteForceOnSliversSeenEdgeOn) {
     }
 }
 
-// Rays in the very plane of triangles but for the 2^-53 that the inverse matrix adds: the edge functions are noise of
-// any sign, and t would be anywhere between the vertices if it were not held in the triangle's box.
+// Rays lie in the very plane of triangles but for the 2^-53 that the inverse matrix adds: the edge functions are noise
+// of any sign, and t would be anywhere between the vertices if it were not held in the triangle's box.
 TEST(ReferenceSearch, EqualsBruteForceOnTrianglesSeenEdgeOn) {
     std::mt19937 random(53);
     const auto integer = [&](int low, int high) { return float(low + int(random() % uint(high - low + 1))); };

@@ -64,7 +64,7 @@ TEST_P(FacePictureTest, EdgesAreMixed) {
 }
 
 TEST_P(FacePictureTest, FacesTurnedAwayAreDarker) {
-    // From 60 degrees to the side.
+    // The camera looks from 60 degrees to the side.
     camera_.camera_to_world = {{vec4(0.5f, 0, 0.8660254f, 8.660254f), vec4(0, 1, 0, 0), vec4(-0.8660254f, 0, 0.5f, 5)}};
     EXPECT_NEAR(linear_of(drawn().raster.at(8, 2)).z, 0.75f * linear_of(behind_color).z, 0.01f);
 }
@@ -91,7 +91,7 @@ TEST_P(FacePictureTest, DotsAreHiddenByWhatIsInFrontOfThem) {
 
 TEST_P(FacePictureTest, StrokesAreHiddenWhereSomethingIsInFront) {
     FacePicture picture = drawn();
-    // Along the row of y = -1.75, from the square's left to its right, in its plane.
+    // This stroke follows the row of y = -1.75, from the square's left to its right, in its plane.
     const std::vector<Stroke> strokes = {{{-2.75, -1.75, -1}, {2.75, -1.75, -1}, 0.5f, mark_color},
                                          {{0, -2, -1}, {0, -2, 20}, 1, mark_color}};
     draw_strokes(picture, strokes);

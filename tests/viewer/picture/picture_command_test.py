@@ -53,7 +53,7 @@ corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (2, 0, 0), (3, 0, 0), (3,
 write_ply("pair.ply", corners, [(0, 1, 2), (0, 2, 3), (4, 5, 6), (4, 6, 7)])
 light = ["illumination", "pair.ply", "--direction", "0", "0", "-1", "--measure", "irradiance", "--grid", "300", "--quiet"]
 
-# Full light is yellow; a cosine of 1/2 the green blue of the middle of the map, three quarters as bright.
+# Full light is yellow; a cosine of 1/2 is the green blue of the middle of the map, three quarters as bright.
 for accel in ["sw", "hw"]:
     run(*light, "--accel", accel, "--validation", "--picture", f"{accel}.png", "--picture", f"{accel}.glb", "--view", "0", "0", "-1", *small)
 rows = png("sw.png")[66:126]

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Pictures without a device: views, scales of values, text, legends and matrices, as far as it can be told without
-// eyes.
+// Pictures without a device: views, scales of values, text, legends and matrices, as far as tests can judge them
+// without eyes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -204,7 +204,7 @@ TEST(Page, HoldsThePictureAndItsLegend) {
                  .legend = {.title = "values", .scale = ValueScale::linear(0, 1), .entries = {{swatch, "of a name"}}}});
     EXPECT_EQ(count_of(page, color), 120u * 200u);
     EXPECT_GT(count_of(page, swatch), 100u);
-    // From the top of the bar to its bottom colours go through the map.
+    // Colours go through the map from the top of the bar to its bottom.
     const auto first = [&](Rgb wanted) { return std::ranges::find(page.pixels, wanted) - page.pixels.begin(); };
     EXPECT_LT(first({253, 231, 37}), first({68, 1, 84}));
     EXPECT_LT(first({68, 1, 84}), static_cast<std::ptrdiff_t>(page.pixels.size()));
