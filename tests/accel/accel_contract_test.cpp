@@ -622,7 +622,7 @@ TEST_P(Accel, KernelsMaskInstancesInTheirBuffer) {
     EXPECT_EQ(seen(2).t, 8.0f);
     EXPECT_EQ(seen(2).custom_index, 77u);
     EXPECT_EQ(masked->get_instance(handle, 2).options.mask, 2u);
-    masked->push(square(-5));  // what was written moves along
+    masked->push(square(-5));  // the written instance moves along
     EXPECT_EQ(seen(1).t, 9.0f);
     masked->update_options(handle, 2, {.mask = 1});
     EXPECT_EQ(seen(1).t, 8.0f);

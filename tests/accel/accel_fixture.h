@@ -129,7 +129,7 @@ inline Ray down(float x, float y) { return {vec3(x, y, 10), 0, vec3(0, 0, -1), I
                                                ::twinray::test::Kind::pipeline),                                  \
                              ::twinray::test::name_of_kind)
 
-// For tests of the contract, which the reference keeps as well.
+// Instantiates tests of the contract, which the reference keeps as well.
 #define TWINRAY_OVER_EVERY_ACCEL_AND_THE_REFERENCE(Fixture)                                                        \
     INSTANTIATE_TEST_SUITE_P(Every, Fixture,                                                                       \
                              ::testing::Values(::twinray::test::Kind::software, ::twinray::test::Kind::ray_query,  \

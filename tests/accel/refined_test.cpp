@@ -167,7 +167,7 @@ TEST_P(Refined, ASurfaceAtTheEndOfARayIsLeftOutAndHidesNothing) {
     };
     accel().push(sheet(vec3(0)));
     std::mt19937 random(3);
-    const auto whole = [&](int most) {  // from -most to most
+    const auto whole = [&](int most) {  // a whole number from -most to most
         return static_cast<float>(std::uniform_int_distribution<int>(-most, most)(random));
     };
     std::vector<Ray> ending, beyond, hidden;

@@ -22,7 +22,7 @@ double microseconds_since(Clock::time_point start) {
 
 class Sync : public test::AccelTest {
   protected:
-    bool shares_context() const override { return false; }  // of memory and submissions, which are counted
+    bool shares_context() const override { return false; }  // the tests count memory and submissions
     // The queue waits until release_queue() says so.
     SyncPoint occupy_queue() {
         if (!caller_) caller_ = std::make_unique<test::Caller>(context());
@@ -246,7 +246,7 @@ TEST_P(Sync, OwnCommandsAreSubmittedInTheOrderOfTheirSyncs) {
     accel().update_transform(handle, Transform::translation({0, 0, 2}));
     accel().sync(*third);
     expect_error("commands 'third': others", [&] { third->submit(); });
-    context().wait_for_gpu();  // what nobody has submitted is not waited for
+    context().wait_for_gpu();  // does not wait for commands that nobody has submitted
     first->submit();
     second.reset();  // given up
     third->submit();

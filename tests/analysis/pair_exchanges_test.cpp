@@ -309,7 +309,7 @@ TEST_P(PairExchangesTest, TinyFacesAreAsAccurateAsLargeOnes) {
     constexpr float side = 0x1p-20f;  // areas of 1 and 10^-12
     Scene scene = scene_of({make_quad(vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)),
                             make_quad(vec3(0.5f, 0.5f, 1), vec3(0, side, 0), vec3(side, 0, 0))});
-    // From the tiny square to the vertices of four quarters: Howell B-4.
+    // Howell B-4, from the tiny square to the vertices of four quarters.
     const double x = 0.5, root = std::sqrt(1 + x * x);
     const double known = 4 / (2 * 3.14159265358979) * 2 * x / root * std::atan(x / root);
     for (const PairEstimator estimator : {PairEstimator::automatic, PairEstimator::area}) {

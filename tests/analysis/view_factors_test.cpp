@@ -127,7 +127,7 @@ TEST_P(ViewFactorsOfAccels, EveryRayInAClosedRoomMeetsAFace) {
         const std::vector<ViewFactorRow> all = rows(room(), {.sides = sides, .rays = 4096});
         ASSERT_EQ(all.size(), 12u + 80 + 12);
         for (const ViewFactorRow& row : all) {
-            if (sides == Sides::both && row.group < 12) continue;  // walls look out of the room, too
+            if (sides == Sides::both && row.group < 12) continue;  // walls also look out of the room
             EXPECT_EQ(row.rays, 4096u);
             if (sides == Sides::front) {
                 EXPECT_EQ(row.hits, row.rays) << "face " << row.group;

@@ -24,7 +24,7 @@ for accel in ("sw", "hw"):
     run("visible", "wall.obj", "--sensors", "grid.pts", "--up", "0", "0", "1", "--t-near", "0.01", "-o", "out.csv",
         "--accel", accel, "--json", "log.json")
     upward, behind, away, facing, on_it = rows()
-    # Of 145 patches 65 are behind the wall, and 15 over it: two of each row, and the zenith.
+    # 65 of 145 patches are behind the wall, and 15 over it: two of each row, and the zenith.
     assert upward[1] == behind[1] == 80, rows()
     assert 0.5 < upward[2] < 0.6 and away[2] == 1 and on_it == (4, *away[1:]) and facing[1:] == (0, 0), rows()
     assert 65 <= away[1] <= 72, rows()

@@ -130,7 +130,7 @@ std::unique_ptr<AbstractAccel> make(Context& context, bool hardware) {
 
 TEST_F(HostAllocator, ServesBothAccelerators) {
     Context context(host_.device);
-    const std::size_t own = memory_.live();  // of the context itself
+    const std::size_t own = memory_.live();  // the memory of the context itself
     for (const bool hardware : {false, true}) {
         if (hardware && !missing_for_hardware(context.properties()).empty()) continue;
         const std::size_t before = memory_.made;

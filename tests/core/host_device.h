@@ -48,7 +48,7 @@ inline VkBool32 VKAPI_PTR fail_test(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDe
     return VK_FALSE;
 }
 
-// With the validation layer, synchronisation included: any message fails the test.
+// Uses the validation layer, synchronisation included: any message fails the test.
 inline bool Host::create_instance() {
     VkApplicationInfo application{};
     application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;

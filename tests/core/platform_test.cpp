@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Features that every system has in a way of its own: programs that are started, folders, memory.
+// Features that each system implements in its own way: starting programs, folders, memory.
 #include "engine/core/platform.h"
 
 #include <algorithm>

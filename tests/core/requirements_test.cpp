@@ -152,7 +152,7 @@ TEST(Requirements, GoIntoTheHostsStructs) {
     EXPECT_EQ(info.types().count(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TIMELINE_SEMAPHORE_FEATURES), 0u);
 }
 
-// Vulkan forbids these structs beside that of version 1.2, so the others must come as structs of one feature, too.
+// Vulkan forbids these structs beside that of version 1.2, so the others must come as structs of one feature.
 TEST(Requirements, StandBesideStructsOfSingleFeatures) {
     VkPhysicalDeviceTimelineSemaphoreFeatures timeline{};
     timeline.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TIMELINE_SEMAPHORE_FEATURES;

@@ -20,7 +20,7 @@ import numpy as np
 
 RAYS = 2000
 ROUNDING = 1e-5  # of the extent: float32 files, and texts of six digits
-QUANTISED = 2e-3  # of the extent: 11 bits of Draco, the least of those here, on slopes
+QUANTISED = 2e-3  # of the extent: 11 bits of Draco, the fewest here, on slopes
 Y_UP = np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]])  # (x, y, z) -> (x, z, -y)
 THIRD_TURN = np.array([[0, 1, 0], [0, 0, 1], [1, 0, 0]])  # (x, y, z) -> (y, z, x)
 

@@ -15,7 +15,7 @@ void accel(Input input);        // histories of calls of AbstractAccel, against 
 void command(Input input);      // command lines
 void csv(Input input);          // rays, points, groups of faces, positions of the sun
 void encodings(Input input);    // gzip, base64, per cent signs
-void events(Input input);       // what a viewer plays
+void events(Input input);       // events that a viewer plays
 void exr(Input input);          // OpenEXR
 void film(Input input);         // checkpoints of the path tracer
 void gltf(Input input);         // .gltf and .glb

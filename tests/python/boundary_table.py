@@ -23,7 +23,7 @@ def whole(low, high, shape):
 def pieces():
     """A triangle (3, 3) and a point of its inside, on its plane exactly, for each ray."""
     weights = np.array([0.25, 0.25, 0.5])
-    corners = 4 * whole(-8, 8, (RAYS, 3, 3))  # so that the weighted sums are whole numbers of 1/256, too
+    corners = 4 * whole(-8, 8, (RAYS, 3, 3))  # so that weighted sums, too, are multiples of 1/256
     return corners, np.einsum("i,rij->rj", weights, corners)
 
 

@@ -22,7 +22,7 @@ class RaycastingScene(twinray.Scene):
         super().__init__()
 
 
-helpers = types.ModuleType("open3d_test")  # of the clone; its list of devices is all that is asked of it
+helpers = types.ModuleType("open3d_test")  # the clone's; tests only ask for its list of devices
 helpers.list_devices = lambda **options: [o3d.core.Device("CPU:0")]
 sys.modules["open3d_test"] = helpers
 o3d.t.geometry.RaycastingScene = RaycastingScene

@@ -52,7 +52,7 @@ def test_numpy_and_the_device_share_memory():
     scene.trace(shared, hits, any_hit=True)
     assert np.asarray(hits["is_hit"])[0] == 0
     del hits, shared, scene
-    assert view[0] == -1  # as the last trace left it: memory lives as long as what sees it
+    assert view[0] == -1  # as the last trace left it: memory lives as long as its views
 
 
 def test_bad_arrays_are_named():

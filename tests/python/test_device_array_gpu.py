@@ -31,7 +31,7 @@ def test_pytorch_writes_rays_and_reads_hits_in_place():
     expected = hits.numpy()["t_hit"]
     assert ((expected <= 0.25) | (expected == -1)).all() and (t.cpu().numpy() == expected).all()
     del shared, hits, scene
-    assert (t.cpu().numpy() == expected).all()  # memory lives as long as what sees it
+    assert (t.cpu().numpy() == expected).all()  # memory lives as long as its views
 
 
 def test_cupy_writes_rays_and_reads_hits_in_place():

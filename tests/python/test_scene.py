@@ -247,7 +247,7 @@ def test_memory_of_many_rays_is_that_of_a_block():
     scene = scene_of(grid(10), accel="sw")
     rays = np.full((1 << 22, 6), 0.5)
     rays[:, 3:] = [0, 0, 1]
-    scene.cast_rays(rays[: 1 << 21])  # what a block takes is there
+    scene.cast_rays(rays[: 1 << 21])  # a block's memory is there
     Path("/proc/self/clear_refs").write_text("5")  # the peak begins anew
     before = memory_in_use("VmRSS")
     results = sum(array.nbytes for array in scene.cast_rays(rays).values())

@@ -23,7 +23,7 @@ def accessor(kind, component, values):
     return len(accessors) - 1
 
 
-# Two flags: one of a mesh on two joints, of which the upper one bends, and one that a node carries along.
+# Two flags: one of a mesh on two joints, the upper of which bends, and one that a node carries along.
 joints = accessor("VEC4", 5123, [0, 0, 0, 0] * 2 + [1, 0, 0, 0] * 2)
 weights = accessor("VEC4", 5126, [1, 0, 0, 0] * 4)
 flag = {"POSITION": accessor("VEC3", 5126, [-1, 0, 0, 1, 0, 0, 1, 1, 0, -1, 1, 0])}

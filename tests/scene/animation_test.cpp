@@ -36,7 +36,7 @@ TEST(Keyframes, LinearOnesAreJoinedByLinesAndStayAtTheirEnds) {
 TEST(Keyframes, StepsHoldUntilTheNext) {
     const Keyframes keyframes{Interpolation::step, false, 1, {0, 1, 1, 2}, {5, 6, 7, 8}};
     EXPECT_EQ(value_at(keyframes, 0.999)[0], 5);
-    EXPECT_EQ(value_at(keyframes, 1)[0], 7);  // of equal times the last
+    EXPECT_EQ(value_at(keyframes, 1)[0], 7);  // the last of equal times
     EXPECT_EQ(value_at(keyframes, 1.5)[0], 7);
     EXPECT_EQ(value_at(keyframes, 2)[0], 8);
 }

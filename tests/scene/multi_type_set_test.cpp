@@ -31,7 +31,7 @@ struct ValueOf {
 
 class MultiTypeSetTest : public VulkanTest {
   protected:
-    bool shares_context() const override { return false; }  // of memory, which is counted
+    bool shares_context() const override { return false; }  // the tests count memory
     void SetUp() override {
         VulkanTest::SetUp();
         if (!IsSkipped() && !HasFatalFailure()) set_ = std::make_unique<Materials>(context(), "materials");

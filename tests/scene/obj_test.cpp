@@ -289,7 +289,7 @@ TEST(Mtl, SeveralFilesAndBlanksInNames) {
         load_scene(dir.write("a.obj", "mtllib my paint.mtl b.MTL # both\n" + TRIANGLE_WITH_UVS + "f 1 2 3\n"));
     EXPECT_TRUE(scene.warnings.empty()) << joined(scene.warnings);
     ASSERT_EQ(scene.materials.size(), 3u);
-    EXPECT_EQ(scene.materials[0].base_color.x, 0.125f);  // told anew
+    EXPECT_EQ(scene.materials[0].base_color.x, 0.125f);  // set again
     EXPECT_EQ(scene.materials[1].base_color.x, 0.25f);
     EXPECT_EQ(scene.materials[2].name, "default");
     EXPECT_EQ(scene.meshes[0].materials, std::vector<uint>{2});

@@ -161,7 +161,7 @@ TEST(Ply, AHeaderEndsItsLinesAsTheFirstOneDoes) {
     for (const char* end : {"\r", "\r\n", " \n"})
         EXPECT_EQ(count_triangles(load_ply(replaced(file, "\n", end))), 1u) << end;
     expect_ply_error(replaced(replaced(file, "property list", "propety list"), "\n", "\r"), "line 9 'propety list");
-    // In a body whose first byte is 10, that byte is no line end.
+    // If the first byte of the body is 10, it is no line end.
     std::string binary = replaced(binary_ply(false), "\r\n", "\r");
     const double ten = 0x0.000000000000ap-1022;  // its lowest byte
     std::memcpy(binary.data() + binary.find("end_header\r") + 11, &ten, sizeof ten);

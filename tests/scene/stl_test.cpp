@@ -84,7 +84,7 @@ TEST(Stl, EachSolidIsAMeshOfItsName) {
     ASSERT_EQ(scene.meshes.size(), 3u);
     EXPECT_EQ(scene.meshes[0].name, "s");
     EXPECT_EQ(scene.meshes[1].name, "two words");
-    EXPECT_EQ(scene.instances[2].name, "a");  // of the file
+    EXPECT_EQ(scene.instances[2].name, "a");  // the file's name
     EXPECT_EQ(load_stl(binary_square()).meshes[0].name, "a");
 }
 

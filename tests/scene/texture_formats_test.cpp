@@ -199,7 +199,7 @@ TEST(Mipmaps, AreMeansOfLinearLight) {
     const Texels texels = Texels::of("two", 2, 1, 4, TexelFormat::unorm8, std::span<const std::uint8_t>(two));
     EXPECT_EQ(with_mipmaps(texels).levels[1][0], std::byte(128));
     const std::vector<std::byte> coded = with_mipmaps(texels, true).levels[1];
-    EXPECT_EQ(coded[0], std::byte(188));  // what half of the light is in sRGB
+    EXPECT_EQ(coded[0], std::byte(188));  // half of the light in sRGB
     EXPECT_EQ(coded[3], std::byte(128));
 }
 

@@ -222,7 +222,7 @@ TEST(Traverse, TheTwinOfTheWholeAcceleratorTracesOnTheCpu) {
     scene.build();
     std::mt19937 random(5);
     std::uniform_real_distribution<float> unit(-1, 1);
-    for (int i = 0; i < 10'000; ++i) {  // from inside a closed sphere nothing leaks
+    for (int i = 0; i < 10'000; ++i) {  // no ray leaks from inside a closed sphere
         const vec3 origin(unit(random), unit(random), unit(random) - 5);
         const vec3 corner = sphere.positions[random() % sphere.positions.size()] + vec3(0, 0, -5);
         const Hit hit = scene.trace({origin, 0, corner - origin, INFINITY});

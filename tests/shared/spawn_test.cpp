@@ -79,7 +79,7 @@ struct Setting {
 // cancel.
 Setting random_setting(Random& random) {
     const double size = random.scale(60);
-    // Where coordinates are 0, only the size of the triangle is left to round.
+    // If coordinates are 0, only the size of the triangle is left to round.
     const bool is_at_origin = random.below(8) == 0;
     const dvec3 centre =
         is_at_origin ? dvec3(0) : random.in_box() * size * (random.below(2) ? std::pow(10, 6 * random.unit()) : 1);
@@ -196,7 +196,7 @@ TEST(Spawn, RaysThatPassDoNotMeetTheTriangleAgain) {
     EXPECT_GT(again, 30'000) << "the test does not test";
 }
 
-// The price is told: one unit in the last place of the coordinates against the triangle.
+// This is the price: one unit in the last place of the coordinates against the triangle.
 TEST(Spawn, TheOffsetGrowsWithTheDistanceFromTheOriginAndTheFeatureDoesNot) {
     const auto at = [](float distance) {
         const vec3 a(distance, 0, 0);

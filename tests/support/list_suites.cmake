@@ -5,7 +5,7 @@
 #         -P list_suites.cmake
 #     EMULATOR   runs the program, which is one of another system
 #     QUICK      suites that get the label LABEL.quick instead
-#     FULL       suites that get the label full, too
+#     FULL       suites that also get the label full
 #     RESULTS    where each suite leaves an XML file of what its tests did
 execute_process(COMMAND ${EMULATOR} ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE listing COMMAND_ERROR_IS_FATAL ANY)
 string(REPLACE "\r" "" listing "${listing}")

@@ -87,7 +87,7 @@ TEST(Compressed, BoxesWithoutAnEndAreLeavesAsAnyOther) {
             ASSERT_EQ(records.size(), record_count(n, width));
             const TreeCheck check = check_tree({tree.box.lo, tree.box.hi, {}, 0, n}, records, boxes);
             for (const std::string& violation : check.violations)
-                EXPECT_NE(violation.find("lies in planes"), std::string::npos)  // which end at 2^120
+                EXPECT_NE(violation.find("lies in planes"), std::string::npos)  // planes end at 2^120
                     << n << " leaves, nodes of " << width << ": " << violation;
         }
 }

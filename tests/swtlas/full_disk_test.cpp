@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A disk that is full: the limit on the size of files stands for it.
+// A full disk, imitated by the limit on the size of files.
 #include <sys/resource.h>
 
 #include <csignal>

@@ -148,7 +148,7 @@ TEST_P(SwRefit, ARefittedGeometryIsSoundAndKeepsItsTopology) {
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         if (i < soups) meshes[i].positions = make_soup(static_cast<uint>(meshes[i].triangles.size()), 77).positions;
         for (vec3& position : meshes[i].positions) position = position * 0.9f + vec3(0.1f * position.y, 0, 0.05f);
-        meshes[i].positions[1] = meshes[i].positions[0];  // what has both has no area
+        meshes[i].positions[1] = meshes[i].positions[0];  // a triangle that has both has no area
         if (meshes[i].positions.size() > 100) meshes[i].positions[100].y = NAN;
         accel.update_vertices(handles[i], meshes[i].positions);
     }

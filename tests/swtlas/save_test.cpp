@@ -55,7 +55,7 @@ class SwSave : public test::VulkanTest {
         return handles;
     }
 
-    // Which hit an any-hit query finds depends on the order of the top level, and refits keep an older one.
+    // The hit of an any-hit query depends on the order of the top level, and refits keep an older one.
     void expect_equal_hits(SwTlas& a, SwTlas& b, bool same_top_level) {
         std::vector<Ray> rays = random_rays({vec3(-3), vec3(3)}, 20'000, 5);
         std::size_t hit_count = 0;

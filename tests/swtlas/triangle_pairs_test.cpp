@@ -193,7 +193,7 @@ TEST(ChosenLeaves, AreOnesWhereVerticesTakeMore) {
         mesh.triangles[i] = uvec3(other.x, other.y, mesh.triangles[i].z);
     }
     ASSERT_EQ(leaves_of(mesh).size(), 290u);
-    EXPECT_EQ(chosen(mesh, true).leaves.size(), 0u);  // as many vertices as of triangles without a common one
+    EXPECT_EQ(chosen(mesh, true).leaves.size(), 0u);  // as many vertices as triangles without a common one
     mesh.positions.pop_back();
     mesh.triangles.back().z = 0;
     EXPECT_EQ(chosen(mesh, false).leaves.size(), 0u);

@@ -279,7 +279,7 @@ TEST_F(ViewerTest, LevelsAndCamerasAreOneAfterTheOther) {
         viewer.handle(KeyDown{"L"});
         EXPECT_EQ(viewer.state().level, level);
         const Raster& raster = viewer.frame(false);
-        std::size_t unlike = 0;  // where a ray meets an edge
+        std::size_t unlike = 0;  // rays that meet an edge differ
         for (std::size_t i = 0; i < raster.pixels.size(); ++i) unlike += raster.pixels[i] != watertight.pixels[i];
         EXPECT_LT(unlike, 100u);
     }

@@ -142,7 +142,7 @@ TEST(Findings, TheirIntervalsHoldTheTruth) {
             for (const char* id : {"W01", "W02", "W03", "W05", "W16"})
                 for (const std::uint64_t n : {2048u, 8192u}) {
                     const auto lost = std::binomial_distribution<std::uint64_t>(n, rate)(random);
-                    for (const char* level : {"watertight", "refined"}) {  // which ask the same rays
+                    for (const char* level : {"watertight", "refined"}) {  // both ask the same rays
                         records.push_back(checked(id, "hw", n, {{"HW_LEAK", lost}, {"AGREE", n - lost}}));
                         records.back().params = {{"n", n}};
                         records.back().level = level;

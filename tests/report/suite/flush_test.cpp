@@ -42,7 +42,7 @@ TEST(FlushedDenormals, LongDirectionsLoseNothing) {
         for (Ray& ray : stretched) ray.direction *= length;
         const std::size_t found =
             hit_count(trace_cpu_reference(*on_cpu, stretched, Level::watertight, Denormals::flushed));
-        EXPECT_GE(found + expected / 100, expected) << length;  // those nearer than 0.01 have a denormal t themselves
+        EXPECT_GE(found + expected / 100, expected) << length;  // hits nearer than 0.01 have a denormal t themselves
     }
 }
 

@@ -309,7 +309,7 @@ TEST_F(CrossingsTest, AMissingTriangleIsALeakOfItsBackend) {
 // A known kernel loses some of 512 rays.
 TEST_F(CrossingsTest, AControlMustShowMoreThanItsRate) {
     if (configurations_.empty()) return;
-    const World world = world_with_holes(make_icosphere(2), [](std::size_t i) { return i < 32; });  // of 320
+    const World world = world_with_holes(make_icosphere(2), [](std::size_t i) { return i < 32; });  // 32 of 320
     const ClosedMesh closed(make_icosphere(2));
     const std::vector<Ray> rays = InsideRays(closed, Aim::edges, 1).rays(0, 512);
     const auto passes = [&](double least_rate) {

@@ -66,7 +66,7 @@ TEST(ClosedMesh, AnEdgeOfAMissingTriangleIsOpen) {
     }
     Soup open = cube();
     open.triangles[0] = uvec3(0);
-    const auto edge = open_edge_of(open);  // of triangle 0, (0, 2, 1), triangle 1 has the edge 1-2
+    const auto edge = open_edge_of(open);  // triangle 0 is (0, 2, 1), and triangle 1 has the edge 1-2
     ASSERT_TRUE(edge);
     EXPECT_EQ(edge->primitive, 1u);
     EXPECT_EQ(edge->vertices[0], vec3(0, 1, 0));
@@ -206,7 +206,7 @@ TEST_F(InsideRaysTest, EvenCountsAreLeaksOrDoubleHits) {
         EXPECT_EQ(check_crossings(closed_, ray, 1), Parity::odd);
         EXPECT_EQ(check_crossings(closed_, ray, 0), Parity::leak);
         EXPECT_EQ(check_crossings(closed_, ray, 2), Parity::double_hit);
-        EXPECT_EQ(check_crossings(closed_, ray, 3), Parity::odd);  // what parity cannot see
+        EXPECT_EQ(check_crossings(closed_, ray, 3), Parity::odd);  // parity cannot see this
     }
 }
 
