@@ -70,7 +70,7 @@ struct BlasOptions {
 std::vector<Blas> build_blases(Commands& commands, std::span<const Geometry* const> geometries,
                                const BlasOptions& options);
 
-// The memory that this takes for meshes of triangles on the host.
+// Returns the memory that this takes for meshes of triangles on the host.
 BuildBytes blas_bytes(const Context& context, std::span<const GeometrySize> meshes, const BlasOptions& options);
 
 }  // namespace twinray

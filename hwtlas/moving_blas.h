@@ -25,7 +25,7 @@ class MovingBlasBuilder {
 
     // Makes room for a mesh of so many triangles, not built yet.
     Blas make(const std::string& name, uint triangle_count) const;
-    // The memory that building meshes on the device takes.
+    // Returns the memory that building meshes on the device takes.
     BuildBytes bytes(std::span<const GeometrySize> meshes, std::uint64_t scratch_budget) const;
     // Works in batches whose scratch fits into `scratch_budget`. update: every mesh was built before.
     void record(Commands& commands, std::span<const MovingMesh> meshes, BuildMode mode,

@@ -18,7 +18,7 @@ namespace twinray {
 struct Tlas {
     std::size_t capacity = 0;
     AccelerationStructure structure;
-    Buffer driver_records;  // what the driver builds from
+    Buffer driver_records;  // the driver's input
     Buffer instances;       // HwInstance each; empty when the order is kept
     Buffer scene;           // one HwTlasHeader
     Buffer scratch;

@@ -11,9 +11,9 @@
 
 namespace twinray {
 
-// The unit in which the software traversal wants a mesh: 1 while its largest coordinate is between 2^-20 and 2^60,
-// where products of two coordinates and their rounding errors stay in the range of float32, so that parts of a mesh
-// that are far smaller than the whole keep their size; else a power of two near its size, of a large one 2^-30 of it.
+// Returns the unit in which the software traversal wants a mesh: 1 if its largest coordinate is between 2^-20 and 2^60,
+// where products of two coordinates and their rounding errors stay in the range of float32, so that parts that are far
+// smaller than the mesh keep their size; else a power of two near its size, of a large one 2^-30 of it.
 float software_unit(std::span<const vec3> positions);
 
 // Byte offsets into one scratch buffer.
@@ -43,7 +43,7 @@ struct BuildPlan {
 // Throws Error if the batch has 2^32 leaves or more.
 BuildPlan plan_build(std::span<const uint> leaf_counts, Layout layout, const KernelTuning& tuning);
 
-// The most that a tree of so many leaves adds to the scratch of its batch.
+// Returns the most that a tree of so many leaves adds to the scratch of its batch.
 std::uint64_t scratch_share(uint leaf_count, Layout layout, const KernelTuning& tuning);
 
 // The fewest leaves of an item that may be in a list of a level: 1 / so many of all leaves have room there.

@@ -28,7 +28,7 @@ void Builder::record_boxes(Commands& commands, const BuildPlan& plan, const Batc
 
 namespace {
 
-// The nodes, or the records, among which areas are summed.
+// Returns the number of nodes, or of records, whose areas are summed.
 uint area_count(uint leaf_count, Layout layout) {
     return has_records(layout) ? record_count(leaf_count, width_of(layout)) : inner_count(leaf_count);
 }

@@ -112,7 +112,7 @@ void check_bvh2(const SavedGeometry& geometry) {
     if (!check.violations.empty()) fail("unsound tree: ", check.violations.front());
 }
 
-// A mesh as the builder sees it.
+// Returns a mesh as the builder sees it.
 BuildTree source_of(const Geometry& mesh) {
     BuildTree source{};
     if (mesh.kind == GEOMETRY_BOXES) {
@@ -124,7 +124,7 @@ BuildTree source_of(const Geometry& mesh) {
     return source;
 }
 
-// The leaf that a record was made from.
+// Returns the leaf that a record was made from.
 Leaf checked_leaf(const CompressedRecord& record, const Geometry& mesh) {
     const std::size_t primitives = mesh.primitive_count();
     const uint first = index_in(record);
@@ -159,7 +159,7 @@ void check_records(Layout layout, const SavedGeometry& geometry) {
         fail("nodes of ", check.width, " children in layout ", name_of(layout));
 }
 
-// Geometry::leaves of a tree that is sound.
+// Returns Geometry::leaves of a sound tree.
 std::vector<Leaf> leaves_in(std::span<const CompressedRecord> records) {
     if (!has_pairs(records)) return {};
     std::vector<Leaf> leaves;

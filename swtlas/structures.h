@@ -16,7 +16,7 @@ using glm::findMSB;
 struct BvhChild;
 using BvhChildren = Ref<BvhChild>;
 
-// The slots of a traversal's stack, of the thread that traces.
+// Returns the slots of a traversal's stack, of the thread that traces.
 inline std::array<uint, STACK_SIZE>& stack_slots() {
     thread_local std::array<uint, STACK_SIZE> slots;
     return slots;

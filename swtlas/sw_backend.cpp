@@ -46,7 +46,7 @@ struct SwBackend::Batch {
     std::vector<uint> counts = {};  // of leaves
     BuildPlan plan = {};
 
-    // The tree of input i.
+    // Returns the tree of input i.
     BuildTree tree(std::size_t i, const SwBuiltGeometry& target, const Source& source) const {
         return {plan.first[i],       counts[i],          source.mesh.positions,
                 source.mesh.indices, source.leaves,      {inputs[i].block->address()},

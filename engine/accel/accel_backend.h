@@ -116,7 +116,7 @@ class AccelBackend {
     SharedMesh mesh(AccelHandle handle) const;
     // Returns the mesh as the last sync left it; records the commands that bring it to the device if it is not there.
     MeshOnDevice lend_mesh(Commands& commands, AccelHandle handle);
-    std::vector<uint> face_metadata(AccelHandle handle) const;  // of each triangle; 0 if none was kept. Waits
+    std::vector<uint> face_metadata(AccelHandle handle) const;  // of each triangle; 0 if none was kept; waits
     // Counts the syncs that moved or changed something.
     std::uint64_t edit_count() const { return edit_count_; }
     const AccelOptions& options() const { return options_; }
@@ -176,7 +176,7 @@ class AccelBackend {
     static constexpr std::uint64_t geometry_block_bytes = GEOMETRY_SOURCE_OFFSET + sizeof(GeometrySource);
     static constexpr double default_rebuild_ratio = 1.5;
 
-    // One entry per input; null where the memory of `current` suffices.
+    // Returns one entry per input; null where the memory of `current` suffices.
     virtual std::vector<std::unique_ptr<BuiltGeometry>> build_geometries(Commands& commands,
                                                                          std::span<const GeometryInput> inputs) = 0;
     // Adapts `current` to vertices that moved. One entry per input; null where its memory suffices.
@@ -185,10 +185,10 @@ class AccelBackend {
     // Builds into the memory of `current` if that suffices, and then returns null.
     virtual std::unique_ptr<BuiltTlas> build_tlas(Commands& commands, const TlasInput& input,
                                                   const BuiltTlas* current) = 0;
-    // The memory for building them from the host's memory.
+    // Returns the memory for building them from the host's memory.
     virtual BuildBytes geometry_bytes(std::span<const GeometrySize> geometries) const = 0;
     virtual BuildBytes bytes_of(std::span<const Geometry* const> geometries) const;
-    // The memory for building a top level for `count` instances, with room for `capacity`.
+    // Returns the memory for building a top level for `count` instances, with room for `capacity`.
     virtual BuildBytes scene_bytes(std::size_t count, std::size_t capacity) const = 0;
     // Measures `current` as it was built last.
     virtual void measure_tlas(Commands& commands, const TlasInput& input, const BuiltTlas& current) const = 0;
@@ -249,7 +249,7 @@ class AccelBackend {
     enum class Dirty : std::uint8_t { no, compaction, moves, structure };  // moves: of instances and of vertices
 
     void mark(Dirty what) { dirty_ = std::max(dirty_, what); }
-    // The next sync examines the geometry and the handle's instances.
+    // Makes the next sync examine the geometry and the handle's instances.
     void edit(const std::shared_ptr<HeldGeometry>& held, Dirty what);
     void edit(AccelHandle handle, Dirty what);
     AccelHandle place(std::shared_ptr<HeldGeometry> held, std::span<const Transform> transforms,

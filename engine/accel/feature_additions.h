@@ -12,7 +12,7 @@ struct FeatureAddition {
     const char* name;
     uint features;
 };
-// From the most often needed to the rarest.
+// Ordered from the most often needed to the rarest.
 inline constexpr std::array feature_additions = {
     FeatureAddition{"+ hits", FEATURE_HITS},
     FeatureAddition{"+ transforms", FEATURE_TRANSFORMS},

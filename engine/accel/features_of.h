@@ -21,7 +21,7 @@ struct SceneTraits {
     uint common_mask = 0xff;      // bits that the masks of all instances share
     bool has_transforms = false;  // an instance may be, now or later, elsewhere than its geometry as it was built
 
-    // The scene that needs everything that needs no trace program.
+    // Returns the traits of a scene that needs every feature that takes no trace program.
     static constexpr SceneTraits of_every_kind() { return {.instances = 2, .common_mask = 0, .has_transforms = true}; }
 };
 

@@ -30,7 +30,7 @@ struct Welded {
 struct Geometry {
     std::string name;
     uint kind = GEOMETRY_TRIANGLES;
-    float scale = 1;              // what `positions` are in units of: a power of two
+    float scale = 1;              // the unit of `positions`: a power of two
     SharedArray<vec3> positions;  // these three of GEOMETRY_TRIANGLES
     SharedArray<uvec3> triangles;
     std::size_t non_finite_triangles = 0;  // inactive: never hit, still counted

@@ -15,8 +15,8 @@ namespace twinray {
 #include "shaders/shared/copy_transforms.h"
 #include "twinray/glsl/cpp_end.h"
 
-// The number of instances to make room for: the present capacity if `count` fits it well, else `count` with spare room
-// if it grows.
+// Returns the number of instances to make room for: the present capacity if `count` fits it well, else `count` with
+// spare room if it grows.
 std::size_t capacity_for(std::size_t count, std::size_t capacity);
 
 // The instances of one handle, and the state of the device's copy.

@@ -12,7 +12,7 @@
 namespace twinray {
 namespace {
 
-// The mesh lies from this offset on: positions, then triangles.
+// Describes a mesh that lies at this offset: positions, then triangles.
 MeshOnDevice mesh_in(const std::shared_ptr<Buffer>& buffer, std::uint64_t offset, std::size_t vertices, float scale) {
     return {buffer, {buffer->ref<float>(offset), buffer->ref<uint>(offset + vertices * sizeof(vec3))}, scale};
 }

@@ -18,12 +18,12 @@ namespace twinray {
 #include "shaders/shared/copies.h"
 #include "twinray/glsl/cpp_end.h"
 
-// A mesh in device memory, which is there as long as somebody has this. Syncs write moved vertices into the copy of an
+// A mesh in device memory, which exists as long as somebody holds this. Syncs write moved vertices into the copy of an
 // accelerator.
 struct MeshOnDevice {
     std::shared_ptr<Buffer> buffer;  // may hold other meshes, too
     PackedMesh mesh;
-    float scale = 1;  // what positions are in units of
+    float scale = 1;  // the unit of the positions
 
     explicit operator bool() const { return buffer != nullptr; }
 };
@@ -33,7 +33,7 @@ std::vector<MeshOnDevice> upload_meshes(Commands& commands, std::span<const Mesh
 // Returns the memory of all of them, each buffer once.
 std::uint64_t bytes_of(std::span<const MeshOnDevice> meshes);
 
-// The part of one geometry's mesh that the device has and lacks. It has no copy until a vertex is first moved, unless
+// The parts of one geometry's mesh that the device has and lacks. It has no copy until a vertex is first moved, unless
 // level refined or AccelOptions::keeps_surfaces needs it; from then on everything is built from the copy. For a
 // DeviceMesh in place it only holds costs: each sync that builds or refits it makes its copy anew.
 struct StoredMesh {

@@ -12,7 +12,7 @@ PipelineVariants::PipelineVariants(Create create, uint all, bool in_background)
 
 PipelineVariants::~PipelineVariants() {
     if (background_->process != platform::process_id()) {
-        // Its worker is not there to be waited for.
+        // Nobody waits for its worker.
         static_cast<void>(background_.release());
         return;
     }

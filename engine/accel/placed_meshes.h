@@ -33,8 +33,8 @@ class PlacedMeshes {
     std::vector<MeshInstance> instances;
 
   private:
-    std::vector<SharedMesh> owned_;     // what the views of an accelerator's meshes refer to
-    std::vector<AccelHandle> handles_;  // of these
+    std::vector<SharedMesh> owned_;     // the data that the views of an accelerator's meshes refer to
+    std::vector<AccelHandle> handles_;  // handles of these meshes
     AbstractAccel* accel_ = nullptr;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A scene into an accelerator, and back.
+// Pushes a scene into an accelerator, and reads one back.
 #include <algorithm>
 
 #include "engine/accel/held_geometry.h"

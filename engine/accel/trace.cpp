@@ -15,7 +15,7 @@
 namespace twinray {
 namespace {
 
-constexpr std::size_t rays_of_block = 1 << 20;  // that lie on the device at a time, of those that the host has
+constexpr std::size_t rays_of_block = 1 << 20;  // rays of the host that are on the device at a time
 
 // Returns the words for the first of the features, for messages.
 const char* words_for(uint features) {

@@ -17,7 +17,7 @@ void check_finite(const std::string& name, const char* what, const dvec3& point)
         fail(name, ": ", what, " (", point.x, ", ", point.y, ", ", point.z, ") must be finite");
 }
 
-// The map of vertices about `center` to the world as it is seen from `origin`.
+// Returns the map of vertices about `center` to the world as it is seen from `origin`.
 Transform about(const Transform64& transform, const dvec3& center, const dvec3& origin) {
     Transform local;
     for (int row = 0; row < 3; ++row) {
@@ -28,7 +28,7 @@ Transform about(const Transform64& transform, const dvec3& center, const dvec3& 
     return local;
 }
 
-// The middle of the finite vertices.
+// Returns the middle of the finite vertices.
 dvec3 center_of(std::span<const dvec3> positions) {
     dvec3 lo(INFINITY), hi(-INFINITY);
     for (const dvec3& p : positions) {
@@ -50,7 +50,7 @@ double bring_near(Ray64& ray, const Bounds& box) {
     const dvec3 lo(box.lo), hi(box.hi), to_middle = lo * 0.5 + hi * 0.5 - ray.origin;
     const double radius = 0.5 * length(hi - lo);
     if (!is_far(length(to_middle), 2 * radius)) return 0;
-    // Before the sphere around the box, or where the ray comes nearest to its middle.
+    // The ray is moved to before the sphere around the box, or to where it comes nearest to the middle of the box.
     const dvec3& d = ray.direction;
     const double scale = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}), speed = scale * length(d / scale);
     const double way = (dot(to_middle, d / speed) - 1.01 * radius) / speed;

@@ -74,7 +74,7 @@ class Contours {
 
     static Real log_of(Real square) { return square == 0 ? Real{0} : std::log(square) / 2; }
 
-    // The integral of ln r to the inner edge, along all of that.
+    // Returns the integral of ln r to the inner edge, along all of that.
     Term inner(Real s) const {
         const Vec3 to = to_edge_ - (outer_.from + way_ * s);
         const Real begin = dot(to, along_), end = begin + length_;

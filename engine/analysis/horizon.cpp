@@ -28,7 +28,7 @@ struct Maxima {
     std::vector<HorizonLevel> levels;
 };
 
-// The largest of the four heights of each square.
+// Returns the largest of the four heights of each square.
 std::vector<float> maxima_of_squares(const std::vector<float>& heights, const HeightRaster& raster) {
     std::vector<float> maxima;
     maxima.reserve(heights.size() / 3 * 4);

@@ -40,9 +40,9 @@ std::vector<std::uint64_t> sampled_pairs_of(const PairPlan& plan, std::size_t gr
     return counts;
 }
 
-// With M rays of which hardly one is blocked, the interval reaches some 4 / M of F times the ratio of the heaviest ray
-// to the mean, which is 4 at most if faces are a quarter of their size apart; that of hits reaches 2 sqrt(F / N). This
-// many rays keep it below that. A row's pairs need no more than 8 sqrt(pairs * N) together.
+// Returns the rounds that keep the interval below that of hits. With M rays, hardly one of which is blocked, it reaches
+// some 4 / M of F times the ratio of the heaviest ray to the mean, which is 4 at most if faces are a quarter of their
+// size apart; that of hits reaches 2 sqrt(F / N). A row's pairs need no more than 8 sqrt(pairs * N) together.
 std::uint64_t least_rounds(const PlannedPair& pair, double area, std::uint64_t rays_of_row) {
     double flow = 0;
     for (const SampledPair& faces : pair.sampled) flow += faces.unblocked;

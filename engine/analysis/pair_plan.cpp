@@ -177,7 +177,7 @@ class Planner {
         });
     }
 
-    // The bounds if an obstacle may be in front of any part of it.
+    // Returns the bounds if an obstacle may be in front of any part of it.
     static ContourExchange anything_up_to(const ContourExchange& unblocked) {
         const double half = (unblocked.flow + unblocked.error) / 2;
         return {half, half, unblocked.evaluations};
@@ -201,7 +201,7 @@ class Planner {
         pair.contour.evaluations += contour.evaluations;
     }
 
-    // With two sides, all points of both faces see each other on one or the other.
+    // Samples whole faces with two sides: all points of both then see each other on one side or the other.
     SampledPair sampled(const FacePair& faces) const {
         const Polygon64 &a = polygons_.faces[faces.a], &b = polygons_.faces[faces.b];
         const FacingPair parts = options_.sides == Sides::both ? FacingPair{a, b} : faces.parts.front();

@@ -44,7 +44,7 @@ Extent extent_of(const Polygon64& polygon, const dvec3& axis);
 struct PolygonBox {
     dvec3 low, high;
 };
-PolygonBox box_of(const Polygon64& polygon);  // which has vertices
+PolygonBox box_of(const Polygon64& polygon);  // the polygon has vertices
 
 // Returns the largest error of a coordinate after a few operations on numbers as large as `size`.
 double rounding_of(double size);

@@ -22,7 +22,7 @@ void check(std::span<const double> values, std::size_t rows, const char* name, d
             fail("radiosity: ", name, " of row ", i, " is ", values[i], "; it must be ", low, " to ", high);
 }
 
-// The factor for the float32 entries of a row after which they add up to the part that is not lost.
+// Returns the factor for the float32 entries of a row after which they add up to the part that is not lost.
 double closing_factor(const ViewFactorRow& row) {
     if (row.factors.empty()) return 1;
     double sum = 0;

@@ -59,8 +59,8 @@ const ViewFactor* find(const ViewFactorRow& row, uint target) {
     return found != row.factors.end() && found->target == target ? &*found : nullptr;
 }
 
-// The variance of A F if that many rays found the fraction F. `flow` gives the true fraction of a row, not the one it
-// found, so that a row that found less does not count for more.
+// Returns the variance of A F if that many rays found the fraction F. `flow` gives the true fraction of a row, not the
+// one it found, so that a row that found less does not count for more.
 double variance(double flow, double area, std::uint64_t rays) {
     const double fraction = std::min(1.0, flow / area);
     return area * area * fraction * (1 - fraction) / static_cast<double>(rays);
@@ -209,7 +209,7 @@ class Projection {
         return matrix;
     }
 
-    // `old`: the counted factor; null without rays, which leaves up to `unseen`.
+    // `old`: the counted factor; null without rays, when up to `unseen` is possible.
     static void carry_interval(const ViewFactor* old, float unseen, ViewFactor& factor) {
         const float low = factor.value - (old ? old->value - old->low : factor.value);
         const float high = factor.value + (old ? old->high - old->value : unseen);

@@ -41,7 +41,7 @@ void add_possible(std::vector<HoursOfFace>& sums, const Faces& faces, const SunP
     });
 }
 
-// The light that an unobstructed face receives from the sky.
+// Returns the light that an unobstructed face receives from the sky.
 double open_sky(dvec3 area_vector, dvec3 zenith, Sides sides) {
     return sides == Sides::both ? 1 : (1 + dot(normalize(area_vector), zenith)) / 2;
 }

@@ -42,7 +42,7 @@ bool is_full(const std::vector<ViewFactor>& known) {
     return left <= 0;
 }
 
-// Its interval has room for the roundings to float32.
+// Makes a factor whose interval has room for the roundings to float32.
 ViewFactor factor_of(const KnownExchange& exchange, uint target, double area) {
     const auto low = static_cast<float>(exchange.low / area), high = static_cast<float>(exchange.high / area);
     const float value = std::min(1.0f, static_cast<float>(exchange.flow / area));
@@ -156,8 +156,8 @@ std::size_t ViewFactors::batch_size() const {
                                    4096);
 }
 
-// The number of times that the first round's rays are taken after the next round: doubles while errors are above the
-// target; none if the row is done.
+// Returns the number of times that the first round's rays are taken after the next round: doubles while errors are
+// above the target; none if the row is done.
 std::uint64_t ViewFactors::State::rounds_of(const Row& row) {
     if (row.rounds == 0) return row.members.empty() ? 0 : 1;
     if (!options.target_error || row.sums.rays() * 2 > options.rays) return row.rounds;

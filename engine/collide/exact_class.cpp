@@ -10,7 +10,7 @@ namespace {
 #include "shaders/collide/neighbours.h"
 #include "twinray/glsl/cpp_end.h"
 
-// The point at which a line through vertices meets the plane of another triangle.
+// Returns the point at which a line through vertices meets the plane of another triangle.
 dvec3 point_of(const Cut& cut, const WorldTriangle& plane) {
     const double from = std::abs(volume_of(plane.a, plane.b, plane.c, cut.from).value());
     const double to = std::abs(volume_of(plane.a, plane.b, plane.c, cut.to).value());

@@ -6,7 +6,7 @@
 
 namespace twinray {
 
-// Exact for coordinates in the range of exact_sign.h.
+// Returns the class; exact for coordinates in the range of exact_sign.h.
 PairClass exact_class(const WorldTriangle& a, const WorldTriangle& b);
 
 // The same for triangles of meshes: two of one run that share vertices are separate unless they have more in common

@@ -12,7 +12,7 @@ namespace {
 #include "shaders/shared/exact_double.h"
 #include "twinray/glsl/cpp_end.h"
 
-// The rounding error of the sum s = fl(a + b) (Knuth's TwoSum).
+// Returns the rounding error of the sum s = fl(a + b) (Knuth's TwoSum).
 double sum_error(double a, double b, double s) {
     const double b_virtual = s - a;
     const double a_virtual = s - b_virtual;

@@ -32,10 +32,10 @@ class Expansion {
     std::size_t size_ = 0;
 };
 
-// det(a - d, b - d, c - d), and its sign: 1 if d sees a, b, c turn clockwise.
+// Return det(a - d, b - d, c - d), and its sign: 1 if d sees a, b, c turn clockwise.
 Expansion volume_of(const dvec3& a, const dvec3& b, const dvec3& c, const dvec3& d);
 int volume_sign(const dvec3& a, const dvec3& b, const dvec3& c, const dvec3& d);
-// The sign of det(a - c, b - c) as seen along an axis: 1 if a, b, c turn anticlockwise.
+// Returns the sign of det(a - c, b - c) as seen along an axis: 1 if a, b, c turn anticlockwise.
 int area_sign(const dvec3& a, const dvec3& b, const dvec3& c, uint axis);
 
 // Says why signs of these coordinates may be wrong, "" if they are right.

@@ -36,7 +36,7 @@ class PairClassifier {
     // Classifies each pair. Throws Error for a vertex that is not finite or out of the range of exact_class().
     std::vector<PairClass> classify(std::span<const TrianglePair> pairs);
 
-    // For the last call: the pairs that the host decided, and the time that it took.
+    // Return the number of pairs that the host decided in the last call, and the time that it took.
     std::uint64_t host_count() const { return host_count_; }
     double host_seconds() const { return host_seconds_; }
 

@@ -45,8 +45,8 @@ struct Context::State {
     Allocator& allocator() const { return *allocator_; }
     VkPipelineCache pipeline_cache() const { return pipeline_cache_; }
     PipelineTable& pipelines() { return pipelines_; }
-    // The layout of all descriptor sets of images (engine/core/image_array.h); the first call makes it. Any thread.
-    // Throws Error if the device has no image arrays.
+    // Returns the layout of all descriptor sets of images (engine/core/image_array.h); the first call makes it. Any
+    // thread. Throws Error if the device has no image arrays.
     VkDescriptorSetLayout image_array_layout();
     std::uint32_t queue_family() const { return queue_family_; }
     const KernelWatch& watch() const { return watch_; }                 // ContextDesc::watch_kernels

@@ -281,7 +281,7 @@ void Context::State::keep_pipelines() noexcept {
     std::size_t size = 0;
     if (pipeline_store_.file().empty() || !owns_pipeline_cache_ || is_lost_) return;
     if (vk_.vkGetPipelineCacheData(device_, pipeline_cache_, &size, nullptr) != VK_SUCCESS) return;
-    // From Mesa 26.2 on lavapipe's data are shorter than the header with which they must begin.
+    // From Mesa 26.2 on, lavapipe's data are shorter than the header with which they must begin.
     if (size == kept_pipeline_bytes_ || size < sizeof(VkPipelineCacheHeaderVersionOne)) return;
     try {
         std::vector<std::byte> data(size);

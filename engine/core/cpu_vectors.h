@@ -17,7 +17,7 @@ bool has_512_bit_vectors();
 int lavapipe_release(const DeviceProperties& device);
 
 // Returns whether the driver of a CPU computes with vectors of any width (LP_NATIVE_VECTOR_WIDTH): Mesa's did below 26.
-// From 26 on its own builds of acceleration structures crash at widths other than the one that it chooses.
+// In 26 and later, its own builds of acceleration structures crash at widths other than the one that it chooses.
 bool takes_any_vector_width(const DeviceProperties& device);
 
 }  // namespace twinray

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Why a device cannot be used: it is lost, or belongs to another process.
+// Explains why a device cannot be used: it is lost, or belongs to another process.
 #include "engine/core/device_fault.h"
 
 #include <algorithm>

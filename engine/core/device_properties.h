@@ -37,7 +37,7 @@ DeviceProperties query_device_properties(const VulkanTable& vk, VkPhysicalDevice
 std::vector<VkPhysicalDevice> physical_devices(const VulkanTable& vk, VkInstance instance);
 std::vector<VkExtensionProperties> device_extensions(const VulkanTable& vk, VkPhysicalDevice device);
 
-// First queue family with compute; -1 if none.
+// Returns the first queue family with compute; -1 if there is none.
 int compute_queue_family(const VulkanTable& vk, VkPhysicalDevice device);
 
 }  // namespace twinray

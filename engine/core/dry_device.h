@@ -17,7 +17,7 @@ struct RecordedWork {
 };
 RecordedWork take_recorded_work();
 
-// The allocator for them: null handles, and zeros in buffers that the host maps. No images.
+// Returns the allocator for them: null handles, and zeros in buffers that the host maps. No images.
 AllocatorHooks memoryless_allocator();
 
 }  // namespace twinray

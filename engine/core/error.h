@@ -18,7 +18,7 @@ std::string text(const Parts&... parts) {
     return out.str();
 }
 
-// "a, b, c".
+// Returns "a, b, c".
 inline std::string joined(const std::vector<std::string>& parts, const std::string& separator = ", ") {
     std::string all;
     for (const std::string& part : parts) all += (all.empty() ? "" : separator) + part;

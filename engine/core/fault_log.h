@@ -25,7 +25,7 @@ class FaultLog {
         std::memcpy(&faults, buffer_.mapped(), sizeof faults);
         return faults;
     }
-    // No kernel may run meanwhile that may write.
+    // No kernel that may write may run meanwhile.
     void clear() { std::memset(buffer_.mapped(), 0, sizeof(Faults)); }
 
   private:

@@ -10,7 +10,7 @@ namespace twinray {
 
 class Fnv1a {
   public:
-    // A byte, or a word at once, which is faster and another hash.
+    // Adds a byte; or a word at once, which is faster and gives another hash.
     void add(std::uint64_t item) { value_ = (value_ ^ item) * 0x100000001b3u; }
     template <class T, std::size_t n>
     void add_bytes(std::span<T, n> items) {
@@ -22,7 +22,7 @@ class Fnv1a {
     std::uint64_t value_ = 0xcbf29ce484222325u;
 };
 
-// 16 hexadecimal digits.
+// Returns 16 hexadecimal digits.
 inline std::string hexadecimal(std::uint64_t hash) {
     std::string digits(16, '0');
     for (std::size_t i = 16; i-- > 0; hash >>= 4) digits[i] = "0123456789abcdef"[hash & 15];

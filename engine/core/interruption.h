@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Long work on the host and waits for the device look whether their caller wants them to end: InterruptScope.
+// Lets long work on the host, and waits for the device, end early if their caller wants it: InterruptScope.
 #pragma once
 
 #include <cstddef>
@@ -10,10 +10,10 @@ namespace twinray {
 
 inline constexpr double seconds_between_looks = 0.1;
 
-// Whether an InterruptScope of this thread lives.
+// Returns whether this thread has a live InterruptScope.
 bool is_interruptible() noexcept;
 
-// For loops of short turns: looks in each 1024th.
+// For loops of short turns: looks in every 1024th turn.
 class LoopInterruption {
   public:
     void look() {

@@ -17,7 +17,7 @@ namespace twinray {
 // nlohmann's writer, copies and comparisons, and tinygltf, recurse; usual files have fewer than 15 levels.
 inline constexpr int most_json_levels = 100;
 
-// How deep brackets are nested in a text; if it is no JSON, parsing says so.
+// Returns how deep brackets are nested in a text. A text that is no JSON is left to the parser.
 inline int json_levels(std::string_view source) {
     int level = 0, deepest = 0;
     bool is_string = false;
@@ -25,7 +25,7 @@ inline int json_levels(std::string_view source) {
         const char c = source[i];
         if (c == '"') is_string = !is_string;
         if (is_string) {
-            if (c == '\\') ++i;  // what follows does not end the string
+            if (c == '\\') ++i;  // the next character does not end the string
             continue;
         }
         if (c == '[' || c == '{') deepest = std::max(deepest, ++level);

@@ -42,7 +42,7 @@ void shape_for_cpu_driver(KernelTuning& tuning, const DeviceProperties& device) 
     tuning.has_wide_loads = device.shader_int64;
     tuning.compares_numbers = true;
     tuning.leaves_per_invocation = 256;
-    // As many leaves and records as fit into a core's second-level cache, half a MiB.
+    // A core's second-level cache, half a MiB, holds this many leaves and records.
     tuning.subtree_leaves = 4096;
     tuning.sort_threads = device.shared_bytes < counters * sizeof(std::uint32_t) ? 0 : tuning.threads;
     // The operating system provides memory page by page, at 2.6 us each (measured on a virtual machine), at the first

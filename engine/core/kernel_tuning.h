@@ -41,7 +41,7 @@ struct KernelTuning {
     // it has a screen.
     double most_submission_seconds = 0.5;
 
-    // Properties of the driver, whatever the row.
+    // Properties of the driver, regardless of the row.
     bool has_fused_fma = false;          // GLSL's fma() is known to round once, which gives the error of a product
     bool builds_in_input_order = false;  // without spatial sorting, so that presorted input pays
 };

@@ -42,7 +42,7 @@ std::uint64_t most_groups(double most_seconds) {
     return static_cast<std::uint64_t>(slowest_groups_per_second * most_seconds * aimed_share);
 }
 
-// Who may want an end does not want to wait for what is submitted either.
+// A caller who may want to end the work does not want to wait for submitted work either.
 Pace::Pace(const Context& context)
     : most_seconds_(most_seconds(context.state().tuning().most_submission_seconds, is_interruptible())),
       allowed_(first_items(most_seconds_)) {}

@@ -14,8 +14,8 @@ struct MeasuredWork {
     double seconds = 0;
 };
 
-// The number of items of a submission before any is measured: a quarter of `most_seconds` if a device does 2^17 items
-// in a second. It is a multiple of 64, like all counts of items here, and at least 64.
+// Returns the number of items of a submission before any is measured: a quarter of `most_seconds` if a device does 2^17
+// items in a second. It is a multiple of 64, like all counts of items here, and at least 64.
 std::uint64_t first_items(double most_seconds);
 
 // Returns the number of items after `last`, which could have had `allowed`: as many as take a quarter of `most_seconds`

@@ -33,7 +33,7 @@ int process_id() noexcept;
 std::filesystem::path this_program();
 
 struct Program {
-    std::filesystem::path file;  // without a folder: the search path has it; empty: this program
+    std::filesystem::path file;  // without a folder, it is looked up in the search path; empty: this program
     std::vector<std::string> arguments = {};
     std::map<std::string, std::string> environment = {};  // changes of this process's
     bool is_silent = false;                               // what it prints is dropped
@@ -44,24 +44,24 @@ struct ProgramEnd {
 };
 // Waits for its end. Returns nothing if it cannot be started.
 std::optional<ProgramEnd> run_program(const Program& program);
-// This process becomes the program, or ends with its status. Returns only if it cannot be started.
+// Replaces this process by the program, or ends it with the program's status. Returns only if it cannot be started.
 void become_program(const Program& program);
 
-// The words after the program's name, or the last of them, given what main got. From then on a console shows UTF-8, and
-// lines end by LF in all that the program writes.
+// Returns the words after the program's name, or the last of them, given what main got. From then on a console shows
+// UTF-8, and lines end by LF in all that the program writes.
 std::vector<std::string> arguments_of(int count, char** words);
 
-// The file that text in UTF-8 names: Windows takes plain text for letters of one byte.
+// Returns the file that text in UTF-8 names: Windows takes plain text for letters of one byte.
 inline std::filesystem::path path_of(std::string_view text) { return std::u8string(text.begin(), text.end()); }
 
-// The user's folders for twinray's files; empty if the environment names none. They need not be there.
+// Returns the user's folders for twinray's files; empty if the environment names none. They need not be there.
 std::filesystem::path cache_folder();
 std::filesystem::path state_folder();
-// Makes a new one that other users cannot read. Throws Error naming where there is no place for it.
+// Makes a new folder that other users cannot read. Throws Error naming the place that has no room for it.
 std::filesystem::path make_temporary_folder();
 
-// Terminals. The first returns columns; 0: the standard output is none. The second returns whether the error output is
-// one that understands escape sequences.
+// Return the columns of the terminal, 0 if the standard output is none; and whether the error output is a terminal that
+// understands escape sequences.
 std::size_t terminal_width() noexcept;
 bool is_error_terminal() noexcept;
 

@@ -18,7 +18,7 @@ constexpr std::size_t none = ~std::size_t{0};
 // Places are positions of instructions in the module's words.
 struct Block {
     Id label;
-    std::size_t begin, last, end;  // its OpLabel, its terminator, what follows it
+    std::size_t begin, last, end;  // its OpLabel, its terminator, the position after it
     std::size_t merge = none;      // its OpSelectionMerge or OpLoopMerge
     bool is_live = false;
     bool is_needed = false;       // as a merge block or continue target of a live one
@@ -340,7 +340,7 @@ class Pruner {
     std::vector<std::size_t> index_;                   // of a function, and of a block in its function, by id
     std::vector<Id> entries_;
     std::vector<Function> functions_;
-    std::vector<Undefined> undefined_;  // what a back edge that is never taken brings
+    std::vector<Undefined> undefined_;  // the values from a back edge that is never taken
     std::vector<std::uint32_t> out_;
 };
 

@@ -50,8 +50,8 @@ RadixSort::RadixSort(Context& context, uint threads)
       scatter_(context, scatter_kernel(threads, false)),
       scatter_places_(context, scatter_kernel(threads, true)) {}
 
-// Room for the counters of at least as many groups as groups_of() says, and for the data that they keep. Subadditive,
-// because shares of a batch are added up.
+// Returns room for the counters of at least as many groups as groups_of() says, and for the data that they keep. It is
+// subadditive, because shares of a batch are added up.
 std::uint64_t RadixSort::counter_bytes(std::uint64_t count, uint threads) {
     const std::uint64_t blocks =
         threads ? std::min(divide_up(count, SORT_CPU_BLOCK), divide_up(count, CPU_GROUP * SORT_LONGEST_RUN) + threads)

@@ -63,14 +63,14 @@ class RadixSort {
     Pairs record_iota(Commands& commands, const Scratch& scratch, std::uint32_t bits) const;
     uint sort_groups(std::uint64_t count) const { return groups_of(count, threads_); }
 
-    // The number of items that an invocation sorts: few, so that there are many groups; with `threads`, so many that
-    // there are as many groups as threads, or a multiple of that so that a group's items fit caches: counters cost a
-    // group the same for any number of items.
+    // Returns the number of items that an invocation sorts: few, so that there are many groups; with `threads`, so many
+    // that there are as many groups as threads, or a multiple of that so that a group's items fit caches: counters cost
+    // a group the same for any number of items.
     static uint run_of(std::uint64_t count, uint threads);
     static uint groups_of(std::uint64_t count, uint threads);
     static uint digit_bits(uint threads);  // of one pass
-    // The bytes that the histogram of a pass keeps for its scatter, which would else count again: with `threads`, if
-    // that is at most a byte per item; else 0.
+    // Returns the bytes that the histogram of a pass keeps for its scatter, which would else count again: with
+    // `threads`, if that is at most a byte per item; else 0.
     static std::uint64_t kept_bytes(std::uint64_t count, uint threads);
 
   private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The words of a SPIR-V module, with the numbers of its specification, and what is made of a module for one pipeline.
+// The words of a SPIR-V module, with the numbers of its specification, and changes to a module for one pipeline.
 #pragma once
 
 #include <cstddef>

@@ -9,7 +9,7 @@
 namespace twinray {
 namespace {
 
-// Continued fraction of the incomplete beta function, DLMF 8.17.22, evaluated forwards by Lentz's method.
+// Evaluates the continued fraction of the incomplete beta function, DLMF 8.17.22, forwards by Lentz's method.
 double beta_fraction(double a, double b, double x) {
     constexpr double tiny = std::numeric_limits<double>::min();
     const auto not_zero = [](double value) { return value == 0 ? tiny : value; };
@@ -32,7 +32,7 @@ double beta_fraction(double a, double b, double x) {
     return fraction;
 }
 
-// Regularised incomplete beta function I_x(a, b), 0 < x < 1; I_p(k + 1, n - k) is the chance of more than k of n.
+// Returns the regularised incomplete beta I_x(a, b), 0 < x < 1; I_p(k + 1, n - k) is the chance of more than k of n.
 double regularised_beta(double a, double b, double x) {
     const double log_front =
         std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x);
@@ -40,7 +40,7 @@ double regularised_beta(double a, double b, double x) {
     return 1 - std::exp(log_front) * beta_fraction(b, a, 1 - x) / b;
 }
 
-// The x in [low, 1] at which the beta distribution has the chance `chance` below it.
+// Returns the x in [low, 1] at which the beta distribution has the chance `chance` below it.
 double beta_quantile(double a, double b, double chance, double low = 0) {
     double high = 1;
     for (int i = 0; i < 60; ++i) {
@@ -59,7 +59,7 @@ double upper_bound(std::uint64_t count, std::uint64_t trials, double chance) {
     return beta_quantile(k + 1, n - k, chance, k / n);
 }
 
-// For a binomial distribution of n trials: the smallest k with P(at most k) >= chance.
+// Returns the smallest k with P(at most k) >= chance for a binomial distribution of n trials.
 std::size_t binomial_quantile(std::size_t n, double p, double chance) {
     const auto at_most = [&](std::size_t k) {
         return k >= n ? 1.0 : 1 - regularised_beta(static_cast<double>(k) + 1, static_cast<double>(n - k), p);
@@ -76,7 +76,7 @@ std::size_t binomial_quantile(std::size_t n, double p, double chance) {
     return low;
 }
 
-// The value that Student's t exceeds in 2.5 % of all cases.
+// Returns the value that Student's t exceeds in 2.5 % of all cases.
 double student_97_5(double degrees) {
     double low = 0, high = 1;
     const auto two_sided = [&](double t) { return regularised_beta(degrees / 2, 0.5, degrees / (degrees + t * t)); };

@@ -13,24 +13,24 @@ namespace twinray {
 
 // Returns NaN for no value; the mean of the middle two for an even number.
 double median(std::vector<double> values);
-// Median of |value - median(values)|: a spread that outliers do not move.
+// Returns the median of |value - median(values)|: a spread that outliers do not move.
 double median_absolute_deviation(std::span<const double> values);
 
-// `sorted`: ascending. p in [0, 1], linear between neighbours; NaN for no value.
+// Returns the p-quantile, p in [0, 1], linear between neighbours; NaN for no value. `sorted`: ascending.
 double quantile(std::span<const double> sorted, double p);
-// A 95 % confidence interval of the population's p-quantile between two of the samples, without assumptions on the
-// distribution: the ranks are quantiles of the binomial distribution. If the samples are too few (under 6 for the
+// Returns a 95 % confidence interval of the population's p-quantile between two of the samples, without assumptions on
+// the distribution: the ranks are quantiles of the binomial distribution. If the samples are too few (under 6 for the
 // median, under 368 for p = 0.99) it ends at the smallest or largest and covers less. `sorted` must not be empty.
 Interval quantile_interval_95(std::span<const double> sorted, double p);
 
-// One-sided 95 % upper confidence bound of a probability after `count` events in `trials` (Clopper and Pearson
-// 1934): the p for which `count` or fewer events have a chance of 5 %. About 3 / trials for no event; 1 when
+// Returns the one-sided 95 % upper confidence bound of a probability after `count` events in `trials` (Clopper and
+// Pearson 1934): the p for which `count` or fewer events have a chance of 5 %. About 3 / trials for no event; 1 when
 // count >= trials.
 double upper_bound_95(std::uint64_t count, std::uint64_t trials);
-// The two-sided interval that misses the probability with the chance `miss`; [0, 1] for no trial. It also holds, for
-// the mean probability, where the trials are independent but not equally likely (Hoeffding 1956).
+// Returns the two-sided interval that misses the probability with the chance `miss`; [0, 1] for no trial. It also
+// holds, for the mean probability, where the trials are independent but not equally likely (Hoeffding 1956).
 Interval rate_interval(std::uint64_t count, std::uint64_t trials, double miss);
-// The 95 % interval.
+// Returns the 95 % interval.
 inline Interval rate_interval_95(std::uint64_t count, std::uint64_t trials) {
     return rate_interval(count, trials, 0.05);
 }
@@ -40,19 +40,19 @@ struct Stratum {
     std::uint64_t count = 0, trials = 0;
     double weight = 1;  // over the sum of all weights
 };
-// The weighted mean of the rates, whatever the numbers of trials. Strata without a trial are left out; NaN for none.
+// Returns the weighted mean of the rates for any numbers of trials. Strata without a trial are left out; NaN for none.
 double mean_rate(std::span<const Stratum> strata);
 // Returns the interval that misses it with the chance `miss`, by Fay and Feuer (1997), with the beta distribution of as
 // many effective trials in place of their gamma distribution: for one stratum it is rate_interval. [0, 1] for none.
 Interval mean_rate_interval(std::span<const Stratum> strata, double miss);
 
-// The distance of a sum of independent numbers within [0, most] from its expectation, exceeded with the chance `miss`
-// at most: Bernstein's inequality (1924) with a bound of the variance from the numbers. `squared_differences`: these
-// are put into pairs, in an order that does not depend on them, and the squares of their differences are summed; one
-// without a partner is compared with 0. If partners have like expectations, that is little more than the variance.
+// Returns the distance of a sum of independent numbers within [0, most] from its expectation, exceeded with the chance
+// `miss` at most: Bernstein's inequality (1924) with a bound of the variance from the numbers. `squared_differences`:
+// these are put into pairs, in an order that does not depend on them, and the squares of their differences are summed;
+// one without a partner is compared with 0. If partners have like expectations, that is little more than the variance.
 double paired_margin(double squared_differences, double most, double miss);
-// The 95 % interval of the expected count of independent trials of any probabilities, `odd` of whose pairs (as above)
-// have exactly one event: the intersection of paired_margin and rate_interval, each with half the chance to miss.
+// Returns the 95 % interval of the expected count of independent trials of any probabilities, `odd` of whose pairs (as
+// above) have exactly one event: paired_margin and rate_interval intersected, each with half the chance to miss.
 Interval paired_count_interval_95(std::uint64_t count, std::uint64_t odd, std::uint64_t trials);
 
 // y = scale * x^slope, by least squares of log y over log x, with the 95 % interval of the slope that Student's

@@ -151,7 +151,7 @@ void Context::State::wait_for(SyncPoint point) const {
     if (point.semaphore == timeline_) submission_log_.reached(point.value);
 }
 
-// It keeps waiting while the device finishes submissions.
+// Keeps waiting while the device finishes submissions.
 VkResult Context::State::wait_for(const VkSemaphoreWaitInfo& info) const {
     if (most_wait_seconds_ <= 0) return wait_patiently(info, UINT64_MAX);
     const auto most = static_cast<std::uint64_t>(most_wait_seconds_ * 1e9);
@@ -164,7 +164,7 @@ VkResult Context::State::wait_for(const VkSemaphoreWaitInfo& info) const {
     }
 }
 
-// For so many nanoseconds; in pieces where somebody may want to end it.
+// Waits for so many nanoseconds; in pieces if somebody may want to end the wait.
 VkResult Context::State::wait_patiently(const VkSemaphoreWaitInfo& info, std::uint64_t most) const {
     if (!is_interruptible()) return vk_.vkWaitSemaphores(device_, &info, most);
     constexpr auto piece = static_cast<std::uint64_t>(seconds_between_looks * 1e9);

@@ -36,7 +36,7 @@ namespace {
 
 constexpr std::size_t batch = 1 << 20;  // points
 
-// A power of two that makes all boxes together about 1 large.
+// Returns a power of two that makes all boxes together about 1 large.
 float scale_for(std::span<const MeshView> meshes, std::span<const MeshInstance> instances) {
     std::vector<Bounds> bounds;
     for (const MeshView& mesh : meshes) bounds.push_back(bounds_of(mesh));

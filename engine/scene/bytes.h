@@ -10,7 +10,7 @@
 
 namespace twinray {
 
-// The CRC-32 of zlib, PNG and gzip; it finds every error within 32 neighbouring bits. `start`: of the bytes before.
+// Returns the CRC-32 of zlib, PNG and gzip: it finds all errors within 32 neighbouring bits. `start`: of earlier bytes.
 std::uint32_t crc32_of(std::span<const std::byte> bytes, std::uint32_t start = 0);
 
 // Unpacks gzip data; `object` names its source in errors (damaged, truncated, more than 4 GiB unpacked).
@@ -25,7 +25,7 @@ std::optional<Bytes> decode_base64(std::string_view base64);
 // Converts %20 to a space and so on; a percent sign without two hexadecimal digits stays.
 std::string decode_percent(std::string_view uri);
 
-// The extension with its dot, in lower case.
+// Returns the extension with its dot, in lower case.
 std::string lower_suffix(const std::filesystem::path& file);
 
 }  // namespace twinray

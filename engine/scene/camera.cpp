@@ -37,8 +37,8 @@ void for_each_triangle(const Scene& scene, const Take& take) {
     }
 }
 
-// The sum of all triangles' normals times their areas, over the sum of their areas: 0 for closed surfaces; for rooms
-// with one side open it points out of the opening, for a picture on a wall to the viewer.
+// Returns the sum of all triangles' normals times their areas, over the sum of their areas: 0 for closed surfaces; for
+// rooms with one side open it points out of the opening, for a picture on a wall to the viewer.
 dvec3 mean_normal(const Scene& scene) {
     dvec3 sum(0.0);
     double area = 0;
@@ -50,7 +50,7 @@ dvec3 mean_normal(const Scene& scene) {
     return area > 0 ? sum / area : sum;
 }
 
-// The unit direction from the scene to the camera.
+// Returns the unit direction from the scene to the camera.
 vec3 usual_backward(const Scene& scene) {
     const vec3 three_quarters = normalize(vec3(0.55f, 0.4f, 1));
     const dvec3 facing = mean_normal(scene);
@@ -83,7 +83,7 @@ class Wedge {
         low_ = std::min(low_, along - toward);
         high_ = std::max(high_, along + toward);
     }
-    // The camera's position, from the origin along the axis and backward; 0 without points.
+    // Returns the camera's position, from the origin along the axis and backward; 0 without points.
     double middle() const { return low_ <= high_ ? (low_ + high_) / 2 : 0; }
     double distance() const { return low_ <= high_ ? (high_ - low_) / (2 * slope_) : 0; }
 

@@ -39,7 +39,7 @@ Transform turned_about_y(float sine, float cosine, vec3 offset) {
 constexpr uint bead_count = 1200, color_count = 48;
 constexpr float outer_radius = 2.4f, dome_height = 1.0f;
 
-// Deep blue at the heart, over turquoise and cream, to coral at the rim; linear.
+// Returns a linear colour: deep blue at the heart, over turquoise and cream, to coral at the rim.
 vec3 petal_color(float along) {
     constexpr vec3 stops[] = {{0.02f, 0.03f, 0.1f},  {0.02f, 0.16f, 0.24f}, {0.10f, 0.46f, 0.42f},
                               {0.86f, 0.72f, 0.42f}, {0.82f, 0.26f, 0.10f}, {0.42f, 0.035f, 0.07f}};
@@ -65,7 +65,7 @@ Transform placed(float size, vec3 center) {
     return {{vec4(size, 0, 0, center.x), vec4(0, size, 0, center.y), vec4(0, 0, size, center.z)}};
 }
 
-// The k-th bead of Vogel's spiral (1979): each is a golden angle further, so that all have the same room.
+// Returns the k-th bead of Vogel's spiral (1979): each is a golden angle further, so that all have the same room.
 Instance bead(uint k) {
     const float along = std::sqrt((static_cast<float>(k) + 0.5f) / bead_count), radius = outer_radius * along;
     const float angle = static_cast<float>(k) * std::numbers::pi_v<float> * (3 - std::sqrt(5.0f));

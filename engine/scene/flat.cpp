@@ -16,7 +16,7 @@ namespace {
 
 using glm::dmat3;
 
-// The longest cross product of two columns: perpendicular to all of them if they lie in a plane.
+// Returns the longest cross product of two columns: perpendicular to all of them if they lie in a plane.
 glm::dvec3 normal_of_columns(const dmat3& columns) {
     glm::dvec3 longest(0);
     for (int i = 0; i < 3; ++i)
@@ -38,7 +38,7 @@ bool has_inverse(const glm::dmat4& matrix, const dmat3& linear, double rounding)
 
 dvec3 unit_of(const glm::dvec3& v) { return dvec3(v / glm::length(v)); }
 
-// One of v and -v, the same for both.
+// Returns one of v and -v, the same for both.
 dvec3 canonical(const dvec3& v) {
     for (int i = 0; i < 3; ++i)
         if (v[i] != 0) return v[i] < 0 ? -v : v;

@@ -19,7 +19,7 @@ namespace {
 using Channels = std::array<std::uint16_t, 4>;
 using ChannelTable = std::array<std::uint16_t, 256>;
 
-// sRGB to linear light in 16 bits.
+// Returns a table from sRGB to linear light in 16 bits.
 ChannelTable linear_table() {
     ChannelTable table{};
     for (std::size_t i = 0; i < table.size(); ++i)

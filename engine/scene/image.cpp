@@ -55,7 +55,7 @@ std::string fault_of_huffman_tables(std::span<const std::uint8_t> segment) {
 // Returns whether the marker has no length: fill bytes, restarts, and the escape of a byte 0xff.
 bool is_alone(std::uint8_t marker) { return marker <= 0x01 || (marker >= 0xd0 && marker <= 0xd8) || marker == 0xff; }
 
-// The bytes behind a line.
+// Returns the bytes behind a line.
 std::span<const std::uint8_t> next_line(std::span<const std::uint8_t> bytes) {
     const auto end = std::ranges::find(bytes, '\n');
     return {end == bytes.end() ? end : end + 1, bytes.end()};
@@ -68,7 +68,7 @@ std::span<const std::uint8_t> radiance_rows(std::span<const std::uint8_t> bytes)
     return next_line(next_line(bytes));
 }
 
-// The factors by which, according to the header, pixels were multiplied. EXPOSURE lines apply to all channels,
+// Returns the factors by which, according to the header, pixels were multiplied. EXPOSURE lines apply to all channels,
 // COLORCORR lines to each; every line multiplies with those before it.
 dvec3 radiance_factors(std::span<const std::uint8_t> bytes) {
     dvec3 factors(1);

@@ -17,8 +17,8 @@
 namespace twinray {
 namespace {
 
-// The most bytes of pixels that a byte of a file can become: deflate's 1032, for lines or for the means and ends of
-// DWA's 8 x 8 blocks, or 127 for two of a run. Other codecs stay below deflate's.
+// Returns the most bytes of pixels that a byte of a file can become: deflate's 1032, for lines or for the means and
+// ends of DWA's 8 x 8 blocks, or 127 for two of a run. Other codecs stay below deflate's.
 std::uint64_t most_expansion(Imf::Compression compression) {
     switch (compression) {
         case Imf::NO_COMPRESSION: return 1;
@@ -71,7 +71,7 @@ HdrImage read_pixels(Imf::InputFile& in, const std::filesystem::path& file) {
     return image;
 }
 
-// The windows of the image's pixels and of the whole that they belong to; both include their last pixel.
+// Return the windows of the image's pixels and of the whole that they belong to; both include their last pixel.
 Imath::Box2i data_window(const HdrImage& image) {
     const HdrImage::Part part = image.part.value_or(HdrImage::Part{});
     const Imath::V2i first(static_cast<int>(part.x), static_cast<int>(part.y));
@@ -83,7 +83,7 @@ Imath::Box2i display_window(const HdrImage& image) {
     return {Imath::V2i(0, 0), size - Imath::V2i(1, 1)};
 }
 
-// OpenEXR 3.1 knows methods 0 to 9; newer ones are HTJ2K and ZSTD. Empty where the header names a known one or none.
+// Names a method newer than OpenEXR 3.1 (which knows 0 to 9): HTJ2K or ZSTD; empty if the header names another or none.
 std::string newer_compression(const std::filesystem::path& file) {
     constexpr std::string_view name("compression\0compression\0", 24);
     constexpr std::size_t header_part = 1 << 16, size_of_length = 4;

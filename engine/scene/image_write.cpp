@@ -39,7 +39,7 @@ void write_exposed(const std::filesystem::path& file, const HdrImage& image, flo
 
 }  // namespace
 
-// sRGB and linear light: IEC 61966-2-1.
+// Converts between sRGB and linear light: IEC 61966-2-1.
 float linear_of_srgb(float encoded) {
     const float c = std::clamp(encoded, 0.0f, 1.0f);
     return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);

@@ -13,17 +13,17 @@ namespace twinray {
 
 // WebP and AVIF pictures, by libwebp and libavif where twinray was built with them.
 enum class Codec : std::uint8_t { none, webp, avif };
-// Decided by the first bytes.
+// Returns the codec, decided by the first bytes.
 Codec codec_of(std::span<const std::uint8_t> bytes);
 
-// Whether this twinray was built with the codec's library.
+// Returns whether this twinray was built with the codec's library.
 bool has_library(Codec codec);
 
 // Throws Error naming `object` where the picture is damaged, over 2^28 pixels or of more pixels than its bytes vouch
 // for, and where there is no library.
 Image decode_by_codec(Codec codec, std::span<const std::uint8_t> bytes, const std::string& object);
 
-// The pixels of an OpenEXR file as stored. Throws Error naming the file.
+// Returns the pixels of an OpenEXR file as stored. Throws Error naming the file.
 HdrImage load_exr_image(const std::filesystem::path& file);
 
 // Writes linear 32-bit float, and channels beside them; a part of an image as the data window of the whole's display
@@ -34,10 +34,10 @@ void write_exr_image(const std::filesystem::path& file, const HdrImage& image, s
 // likely damaged than meant.
 void check_image_size(std::int64_t width, std::int64_t height, const std::string& object);
 
-// A PNG file in memory. `pixels`: width * height of them, row 0 on top.
+// Returns a PNG file in memory. `pixels`: width * height of them, row 0 on top.
 std::vector<std::byte> encode_png(uint width, uint height, std::span<const Rgb> pixels);
 
-// Magenta and black squares replace an image that cannot be shown, so that nobody overlooks it.
+// Returns magenta and black squares, which replace an image that cannot be shown, so that nobody overlooks it.
 Image checkerboard_image(const std::string& name);
 
 }  // namespace twinray

@@ -49,7 +49,7 @@ Value slerp(const Value& a, Value b, double t) {
     return weighted(a, std::sin((1 - t) * angle) / sine, b, std::sin(t * angle) / sine);
 }
 
-// glTF 2.0, appendix C.5. Tangents are per second.
+// Interpolates as in glTF 2.0, appendix C.5. Tangents are per second.
 Value hermite(const Keyframes& keyframes, std::size_t key, double t, double duration) {
     const double t2 = t * t, t3 = t2 * t;
     const Value points =

@@ -20,7 +20,7 @@ struct Bounds64 {
     dvec3 hi = dvec3(-INFINITY);
 
     bool is_empty() const { return !(lo.x <= hi.x); }
-    void include(const dvec3& point);  // what is not finite is passed over
+    void include(const dvec3& point);  // passes over points that are not finite
     double extent() const;             // its largest side; 0 when empty
     double reach() const;              // its largest coordinate by magnitude; 0 when empty
 };

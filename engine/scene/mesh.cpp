@@ -51,7 +51,7 @@ double along(const vec4& row, vec3 point) {
     return double(row.x) * point.x + double(row.y) * point.y + double(row.z) * point.z + row.w;
 }
 
-// The box of the box: no vertex in it leaves this one, since rounding keeps the order of sums.
+// Returns the box around the transformed box: no vertex in the box leaves it, since rounding keeps the order of sums.
 Bounds box_around(const PlacedMesh& placed) {
     Bounds bounds;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -65,7 +65,7 @@ Bounds box_around(const PlacedMesh& placed) {
     return bounds;
 }
 
-// No axis is mixed with another: the box of the box is that of the vertices.
+// Returns whether no axis is mixed with another: the box around the box is then that of the vertices.
 bool keeps_axes(const Transform& transform) {
     return std::ranges::all_of(transform.rows,
                                [](const vec4& row) { return (row.x != 0) + (row.y != 0) + (row.z != 0) <= 1; });

@@ -126,7 +126,7 @@ Pose pose_at(const Rig& rig, const Animation& animation, double seconds);
 
 // Belongs to an instance.
 glm::dmat4 matrix_of(const Pose& pose, const Rig::Attachment& attachment);
-// The frame of a camera or light: it keeps the axes that a node scales to 0, since glTF excludes scales from both.
+// Returns the frame of a camera or light, with the axes that a node scales to 0, since glTF excludes scales from both.
 glm::dmat4 frame_of(const Pose& pose, const Rig::Attachment& attachment);
 // Returns by joint the map from the mesh as it was bound to world space. Rounded once; not finite if the pose is not.
 std::vector<Transform> joint_transforms(const Skin& skin, const Pose& pose);

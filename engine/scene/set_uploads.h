@@ -31,7 +31,7 @@ class SetUploads {
     using Type = SetStorage::Type;
     SetUploads(Context& context, std::string name, std::vector<Type> types);
 
-    // Called when the host changed, or appended, this element of a type.
+    // Call it when the host has changed, or appended, this element of a type.
     void note_push() { is_clean_ = false; }
     void note_update(std::size_t type, uint index);
 

@@ -52,7 +52,7 @@ void write_number(TexelFormat format, std::byte* at, double value) {
     }
 }
 
-// IEC 61966-2-1, in float64.
+// Decodes sRGB by IEC 61966-2-1, in float64.
 double linear_number(double encoded) {
     return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
 }
@@ -60,7 +60,7 @@ double srgb_number(double linear) {
     return linear <= 0.0031308 ? linear * 12.92 : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
 }
 
-// The texels of one axis of the larger level that a texel of the smaller one covers.
+// The texels of one axis of the larger level that one texel of the smaller level covers.
 struct Cover {
     double from, to;
     double of(uint texel) const { return std::min(to, texel + 1.0) - std::max(from, double(texel)); }

@@ -9,7 +9,7 @@ namespace twinray {
 struct TexelSize {
     uint width, height;
 };
-// The size of a level: half as wide and high as the one before, at least 1.
+// Returns the size of a level: half as wide and high as the one before, at least 1.
 TexelSize level_size(const Texels& texels, std::size_t level);
 std::size_t texel_bytes(const Texels& texels);  // of one texel
 
@@ -17,9 +17,9 @@ std::size_t texel_bytes(const Texels& texels);  // of one texel
 void check_texels(const Texels& texels, const std::string& object);
 // Returns whether one may use the memory of the other.
 bool is_alike(const Texels& a, const Texels& b);
-// With four channels.
+// Returns the texels with four channels.
 Texels widened(Texels texels);
-// unorm16 of sRGB as unorm16 of linear light, alpha as it is.
+// Converts unorm16 of sRGB to unorm16 of linear light; alpha stays as it is.
 Texels decoded_srgb16(Texels texels);
 
 }  // namespace twinray

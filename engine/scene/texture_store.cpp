@@ -38,7 +38,7 @@ bool is_decoded(const TextureOptions& options, const Texels& texels) {
     return options.is_srgb && texels.format == TexelFormat::unorm8;
 }
 
-// One level has nothing between it and another.
+// Returns the filter between levels; a texture of one level needs none.
 Filter between_levels(const TextureOptions& options, const Texels& texels) {
     return texels.levels.size() == 1 ? Filter::nearest : options.between_levels;
 }
@@ -58,7 +58,7 @@ VkFormat format_of(const Texels& texels, bool is_srgb) {
     return formats[static_cast<std::size_t>(texels.format)][texels.channels / 2];
 }
 
-// In a buffer each level begins at a multiple of 4 bytes.
+// Rounds up: in a buffer each level begins at a multiple of 4 bytes.
 std::uint64_t aligned(std::uint64_t bytes) { return (bytes + 3) / 4 * 4; }
 std::uint64_t bytes_of_levels(const Texels& texels) {
     std::uint64_t bytes = 0;
@@ -66,7 +66,7 @@ std::uint64_t bytes_of_levels(const Texels& texels) {
     return bytes;
 }
 
-// The properties of texels that is_alike() compares, without their numbers.
+// Returns the properties of texels that is_alike() compares, without their numbers.
 Texels form_of(const Texels& texels) {
     return {{},
             texels.width,
@@ -274,7 +274,7 @@ TextureStore::State::Made TextureStore::State::make(std::size_t index, const Tex
     return made;
 }
 
-// Another array, with the textures that stay as they are.
+// Returns a new array, which keeps the textures that stay as they are.
 ImageArray TextureStore::State::array_with(const std::vector<Made>& made) const {
     std::vector<VkDescriptorImageInfo> images;
     for (const Texture& texture : textures_) images.push_back(texture.image.descriptor());

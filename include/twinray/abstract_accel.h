@@ -97,10 +97,10 @@ class AbstractAccel {
     // ranges from instance_buffer(), as push() does.
     void update_options(AccelHandle handle, std::size_t index, const InstanceOptions& options);
 
-    bool is_valid(AccelHandle handle) const;  // whether it names a pushed object that was not erased
+    bool is_valid(AccelHandle handle) const;  // whether it names a pushed object that has not been erased
     // Waits for the GPU if kernels may have moved the instances.
     InstanceState get_instance(AccelHandle handle, std::size_t index) const;
-    std::vector<InstanceState> get_instances(AccelHandle handle) const;  // all of them, in the order of their indices
+    std::vector<InstanceState> get_instances(AccelHandle handle) const;  // all of them, ordered by index
     std::size_t n_instances() const;                                     // of all handles
     std::size_t n_instances(AccelHandle handle) const;                   // 0 for a dead handle
     std::size_t n_geometries() const;                    // a mesh or boxes of several handles count once
@@ -203,14 +203,14 @@ class AbstractAccel {
     Capability capability(Feature feature) const;
     // Throws Error, which names `kernel`, if the accelerator lacks Feature::kernel_queries.
     void check_kernel_queries(const std::string& kernel) const;
-    std::vector<Capability> capabilities() const;  // of all features, in their order
+    std::vector<Capability> capabilities() const;  // 0 for a dead handle
     // Tells which of the two modules of a kernel with twinray/glsl/query.glsl fits.
     bool is_software() const;
 
     void wait_for_gpu();  // see Context::wait_for_gpu
     // Returns the GPU time per pass of the last sync() that built something into commands of its own; waits for it.
     std::vector<PassTiming> build_timings() const;
-    // The state at the last sync; memory that only older work may still read is not counted.
+    // Returns the state at the last sync; memory that only older work may still read is not counted.
     MemoryUsage memory_usage() const;
     // Returns the memory that the next sync takes for unbuilt geometries and top levels: the exact size of structures,
     // except for meshes without a triangle that can be hit, and all scratch. Staging memory comes on top.

@@ -55,12 +55,12 @@ struct Face {
     uint instance, primitive;
 };
 
-// Which sides of faces radiate or receive; either one stops rays.
+// The sides of faces that radiate or receive; either side stops rays.
 enum class Sides : std::uint8_t {
     front,  // the vertices are counter-clockwise on it, in object space
     both,
 };
-// The spelling that options use.
+// Returns the spelling that options use.
 constexpr std::string_view name_of(Sides sides) { return sides == Sides::front ? "front" : "both"; }
 
 // How faces are collected into groups.
@@ -124,7 +124,7 @@ class Faces {
 
 // The sample points: Owen-scrambled Sobol points (PBRT-v4, 8.7), or random ones.
 enum class Sequence : std::uint8_t { sobol, random };
-// The spelling that options use.
+// Returns the spelling that options use.
 constexpr std::string_view name_of(Sequence sequence) { return sequence == Sequence::sobol ? "sobol" : "random"; }
 
 // Options for the rows of the matrix.
@@ -150,7 +150,7 @@ enum class PairEstimator : uint {
 };
 inline constexpr std::array all_pair_estimators = {PairEstimator::automatic, PairEstimator::hits, PairEstimator::area,
                                                    PairEstimator::contour};
-// The spelling that options use.
+// Returns the spelling that options use.
 constexpr std::string_view name_of(PairEstimator estimator) {
     constexpr std::array<std::string_view, 4> names = {"auto", "hits", "area", "contour"};
     return names[static_cast<std::size_t>(estimator)];

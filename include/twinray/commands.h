@@ -176,10 +176,10 @@ class Commands {
     // The same for the passes recorded so far: more may follow. Not allowed within a pass.
     double submit_part();
     bool is_of_caller() const;  // whether they were made with CallerCommands
-    // The point at which these commands are done: CallerCommands::done, or the one that submit() returned.
+    // Returns the point at which these commands are done: CallerCommands::done, or the one that submit() returned.
     SyncPoint done() const;
-    // A point that they will reach, for work that relies on them before they are submitted, such as a sync recorded
-    // into them. Own commands for which it was called are submitted in the order of those calls.
+    // Returns a point that they will reach, for work that relies on them before they are submitted, such as a sync
+    // recorded into them. Own commands for which it was called are submitted in the order of those calls.
     SyncPoint promise();
 
     // After the submission: waits for the GPU. Returns an entry per pass; none if the queue has no timestamps.

@@ -83,7 +83,7 @@ struct DeviceChoice {
 // a decimal index, or a part of the device's name (case-insensitive).
 DeviceChoice choose_device(std::span<const DeviceProperties> devices, const std::string& request);
 
-// Every Vulkan device with what it offers. Throws Error when there is no Vulkan at all. Null: the system's loader.
+// Lists every Vulkan device with its properties. Throws Error if there is no Vulkan at all. Null: the system's loader.
 std::vector<DeviceProperties> list_devices(PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr);
 
 // Queries a physical device of the application's instance. Throws Error for an instance below Vulkan 1.1.
@@ -106,7 +106,7 @@ class DeviceRequirements {
     DeviceRequirements& operator=(const DeviceRequirements&) = delete;
 
     const DeviceProperties& supported() const;  // as given
-    // A sentence each: "twinray needs timelineSemaphore because ...; this device has it".
+    // Returns a sentence for each: "twinray needs timelineSemaphore because ...; this device has it".
     std::vector<std::string> sentences() const;
 
     // Use these two for a device that enables nothing else: features() is its VkDeviceCreateInfo::pNext.
@@ -263,11 +263,11 @@ class Context {
     std::uint32_t queue_family() const;          // the family of the one queue
     const DeviceProperties& properties() const;  // what is enabled, not merely supported
     std::uint64_t allocated_bytes() const;       // size of the buffers and images made with it
-    // The address that kernels get for absent data. It is odd, and there is memory at it, because some drivers read
-    // before they know that they need not. Kernels test it with is_absent() of twinray/glsl/common.glsl. Kernel<Args>
-    // puts it in place of 0; a struct that the application uploads needs it in each member that kernels test.
+    // Returns the address that kernels get for absent data. It is odd, and there is memory at it, because some drivers
+    // read before they know that they need not. Kernels test it with is_absent() of twinray/glsl/common.glsl.
+    // Kernel<Args> puts it in place of 0; a struct that the application uploads needs it in each member that is tested.
     std::uint64_t absent() const;
-    // Replaces those of the addresses that are 0 by absent().
+    // Replaces each of the addresses that is 0 by absent().
     template <class... T>
     void fill_absent(Ref<T>&... refs) const {
         ((refs.address = refs.address ? refs.address : absent()), ...);

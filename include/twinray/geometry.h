@@ -189,7 +189,7 @@ struct Transform {
 
     static Transform translation(vec3 offset);  // moves by it
     static Transform scaling(vec3 factors);     // along the axes
-    // From a column-major matrix m[column][row], like GLM's; throws Error unless its fourth row is (0, 0, 0, 1).
+    // Takes a column-major matrix m[column][row], like GLM's; throws Error unless its fourth row is (0, 0, 0, 1).
     template <class Matrix>
     static Transform of(const Matrix& m) {
         return of_columns({vec4(m[0][0], m[0][1], m[0][2], m[0][3]), vec4(m[1][0], m[1][1], m[1][2], m[1][3]),
@@ -201,14 +201,14 @@ struct Transform {
 };
 static_assert(sizeof(Transform) == 48);
 
-// Evaluated in float64, rounded once.
+// Evaluates the map in float64 and rounds once.
 vec3 transform_point(const Transform& transform, vec3 point);
 vec3 transform_vector(const Transform& transform, vec3 vector);  // without the offset
 
 // The map that applies b first, then a.
 Transform operator*(const Transform& a, const Transform& b);
 
-// Determinant of the linear part, in float64.
+// Returns the determinant of the linear part, in float64.
 double determinant(const Transform& transform);
 
 // Says why the map cannot place an instance; "" if it can. Faults: an entry is not finite, the linear part is singular
@@ -216,7 +216,7 @@ double determinant(const Transform& transform);
 // many devices treat as 0.
 std::string fault_of(const Transform& transform);
 
-// The inverse, computed in float64 and rounded once. Throws Error, naming `object`, if the map has a fault_of().
+// Returns the inverse, computed in float64, rounded once. Throws Error, naming `object`, if the map has a fault_of().
 Transform inverse(const Transform& transform, const char* object);
 
 // Axis-aligned box; the default is empty (lo > hi).

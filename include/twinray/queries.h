@@ -39,7 +39,7 @@ struct HitsOfRays {
     std::vector<std::uint64_t> first;  // index of each ray's first hit, and at the end the number of all hits
     std::vector<Hit> hits;             // ascending by t for each ray, then by (instance, primitive)
 
-    // The hits of one ray.
+    // Returns the hits of one ray.
     std::span<const Hit> of(std::size_t ray) const {
         return std::span(hits).subspan(first[ray], first[ray + 1] - first[ray]);
     }
@@ -57,7 +57,7 @@ class AllHits {
     // Throws Error for a scene with boxes, and if there are more than max_hits() hits, naming their number.
     HitsOfRays operator()(std::span<const Ray> rays, const TraceDesc& desc = {});
 
-    // The limit on hits, which take 36 bytes of device memory each. Default: 2^27; at most 2^32 - 1.
+    // Returns the limit on hits, which take 36 bytes of device memory each. Default: 2^27; at most 2^32 - 1.
     std::uint64_t max_hits() const;
     void set_max_hits(std::uint64_t count);  // for the calls to come
 
@@ -114,7 +114,7 @@ class BroadPhase {
     // The same as the first function for kernels: valid until the next call.
     DevicePairs instance_pairs_on_device(AbstractAccel& accel);
 
-    // The limit on pairs. A pair takes 8 bytes of device memory, and 16 while they are sorted.
+    // Returns the limit on pairs. A pair takes 8 bytes of device memory, and 16 while they are sorted.
     std::uint64_t max_pairs() const;
     void set_max_pairs(std::uint64_t count);  // at most 2^32 - 1
     std::uint64_t bytes() const;              // device memory that is kept
@@ -140,7 +140,7 @@ inline constexpr std::array all_pair_classes = {PairClass::separate,         Pai
                                                 PairClass::edge_touch,       PairClass::coplanar_touch,
                                                 PairClass::coplanar_overlap, PairClass::crossing};
 
-// The spelling of `twinray collide`.
+// Returns the spelling of `twinray collide`.
 constexpr std::string_view name_of(PairClass pair_class) {
     constexpr std::string_view names[] = {"separate",       "vertex_touch",     "edge_touch",
                                           "coplanar_touch", "coplanar_overlap", "crossing"};
@@ -215,7 +215,7 @@ class NarrowPhase {
     // 2^-245 to 2^259.
     std::vector<PairClass> classify(std::span<const TrianglePair> pairs);
 
-    // The limit on pairs of boxes, of instances and of triangles. At most 2^32 - 1.
+    // Returns the limit on pairs of boxes, of instances and of triangles. At most 2^32 - 1.
     std::uint64_t max_pairs() const;
     // Applies to later calls.
     void set_max_pairs(std::uint64_t count);
@@ -286,7 +286,7 @@ class PointQuery {
     // Returns the number of crossings of the last winding numbers that float64 could not decide, so that the host did.
     std::uint64_t host_decided() const;
 
-    // The limit on what a call of within() finds, 16 bytes of device memory each. Default: 2^27; at most 2^32 - 1.
+    // Returns the limit on finds per call of within(), 16 bytes of device memory each. Default: 2^27; at most 2^32 - 1.
     std::uint64_t max_found() const;
     void set_max_found(std::uint64_t count);  // for the calls to come
     std::uint64_t bytes() const;              // device memory that is kept

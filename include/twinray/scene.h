@@ -278,7 +278,7 @@ struct ImageChannel {
     std::variant<std::vector<float>, std::vector<uint>> values;
 };
 
-// Exposure in stops that brings the geometric mean luminance of the pixels that are not black to a middle grey of 0.18.
+// Returns the exposure in stops that brings the geometric mean luminance of the non-black pixels to a grey of 0.18.
 float automatic_exposure(const HdrImage& image);
 
 // Writes by suffix: .exr, linear 32-bit float, without exposure; .png, 8-bit sRGB, `exposure` stops brighter and tone
@@ -290,9 +290,8 @@ void write_image(const std::filesystem::path& file, const HdrImage& image, float
 // Returns whether write_image() supports the suffix.
 bool is_image_file(const std::filesystem::path& file);
 
-// ---- Animation: skins, morph targets and node hierarchies of glTF 2.0 (3.7.2.2, 3.7.3 and 3.11)
-// ---------------------- They are posed in float64. Scene::rig holds them; all else of a loaded scene is in the rest
-// pose.
+// ---- Animation: skins, morph targets and node hierarchies of glTF 2.0 (3.7.2.2, 3.7.3 and 3.11) ---------------------
+// They are posed in float64. Scene::rig holds them; all else of a loaded scene is in the rest pose.
 
 // The time range of an animation.
 struct TimeRange {

@@ -45,14 +45,14 @@ struct ListEntry {
 // Passed to a list: makes its lines, each after a comma.
 #define TWINRAY_LIST_ENTRY(P, number, Type, name) , ::twinray::ListEntry<number, Type, #name>
 
-// Whether the lines are numbered 0, 1, 2, ...
+// Returns whether the lines are numbered 0, 1, 2, ...
 template <class... Entries>
 constexpr bool is_numbered = []<std::size_t... I>(std::index_sequence<I...>) {
     return ((Entries::number == I) && ...);
 }
 (std::index_sequence_for<Entries...>{});
 
-// The number of the line that has this type; how many there are if none has.
+// Returns the number of the line that has this type; the number of lines if none has.
 template <class T, class... Entries>
 constexpr std::size_t number_of = [] {
     constexpr bool is_it[] = {std::is_same_v<T, typename Entries::Type>...};
@@ -90,14 +90,14 @@ constexpr decltype(auto) pick(F f, Tuple&& tuple, std::size_t index, Args&&... a
 
 }  // namespace unrolled
 
-// f(element, args...) for each element of a tuple, in order.
+// Calls f(element, args...) for each element of a tuple, in order.
 template <Captureless F, class Tuple, class... Args>
 constexpr void for_unrolled(F f, Tuple&& tuple, Args&&... args) {
     const auto each = [&]<std::size_t... I>(std::index_sequence<I...>) { (f(std::get<I>(tuple), args...), ...); };
     each(unrolled::Indices<Tuple>{});
 }
 
-// f(i, args...) for i = 0, 1, ... count - 1. Each i is a std::integral_constant and may be a template argument.
+// Calls f(i, args...) for i = 0, 1, ... count - 1. Each i is a std::integral_constant and may be a template argument.
 template <std::size_t count, Captureless F, class... Args>
 constexpr void for_unrolled(F f, Args&&... args) {
     const auto each = [&]<std::size_t... I>(std::index_sequence<I...>) {
@@ -106,7 +106,7 @@ constexpr void for_unrolled(F f, Args&&... args) {
     each(std::make_index_sequence<count>{});
 }
 
-// The tuple of f(element, args...).
+// Returns the tuple of f(element, args...).
 template <Captureless F, class Tuple, class... Args>
 constexpr auto map_unrolled(F f, Tuple&& tuple, Args&&... args) {
     const auto map = [&]<std::size_t... I>(std::index_sequence<I...>) {
@@ -123,7 +123,7 @@ constexpr T reduce_unrolled(F f, Tuple&& tuple, T init, Args&&... args) {
     return init;
 }
 
-// The sum of f(element, args...), added from the left. An empty tuple has none: it does not compile.
+// Returns the sum of f(element, args...), added from the left. An empty tuple has none: it does not compile.
 template <Captureless F, class Tuple, class... Args>
 constexpr auto sum_unrolled(F f, Tuple&& tuple, Args&&... args) {
     static_assert(unrolled::size_of<Tuple> > 0, "an empty tuple has no sum");
@@ -133,7 +133,7 @@ constexpr auto sum_unrolled(F f, Tuple&& tuple, Args&&... args) {
     return sum(unrolled::Indices<Tuple>{});
 }
 
-// f(element, args...) for the element at an index that is known at run time; f returns the same type for all of them.
+// Calls f(element, args...) for the element at an index known at run time; f returns the same type for all of them.
 // Throws Error for an index out of range; in a constant expression it does not compile.
 template <Captureless F, class Tuple, class... Args>
 constexpr decltype(auto) get_unrolled(F f, Tuple&& tuple, std::size_t index, Args&&... args) {
@@ -162,7 +162,7 @@ class SetStorage {
     ~SetStorage();
     SetStorage(SetStorage&&) noexcept;
 
-    // Called before the host appends to so many elements of a type, and when it changed one.
+    // Call it before the host appends to so many elements of a type, and when it has changed one.
     void note_push(std::size_t size);
     void note_update(std::size_t type, uint index);
     // The elements of each type as the host holds them.
@@ -202,7 +202,7 @@ class MultiTypeSet {
     static_assert(sizeof(View) == sizeof...(Entries) * sizeof(SetSlot) + 16, "the view is that of another list");
 
   public:
-    // Whether T is one of the set's element types.
+    // Tells whether T is one of the set's element types.
     template <class T>
     static constexpr bool holds = number_of<T, Entries...> < sizeof...(Entries);
 

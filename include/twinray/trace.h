@@ -24,7 +24,7 @@ struct TraceArgs;
 class Commands;
 class TraceProgram;
 
-// Which hit is wanted: the one with the smallest t, or any one.
+// The hit that is wanted: the one with the smallest t, or any one.
 enum class Query : std::uint8_t { closest, any };
 
 // The order in which rays are traced. Each hit is written at its ray's index and has the same bits in either order.
@@ -38,7 +38,7 @@ enum class RayOrder : std::uint8_t {
 };
 
 inline constexpr std::array all_ray_orders = {RayOrder::given, RayOrder::sorted};
-// The spelling that options use.
+// Returns the spelling that options use.
 constexpr std::string_view name_of(RayOrder order) { return order == RayOrder::sorted ? "sorted" : "given"; }
 
 // How a ray is tested against triangles, from the fastest to the surest. The hardware accelerator always uses the
@@ -50,7 +50,7 @@ enum class Level : std::uint8_t {
     certified,   // float64 decides which hits there are and their order; software only
 };
 inline constexpr std::array all_levels = {Level::fast, Level::watertight, Level::refined, Level::certified};
-// The spelling that options use.
+// Returns the spelling that options use.
 constexpr std::string_view name_of(Level level) {
     constexpr std::string_view names[] = {"fast", "watertight", "refined", "certified"};
     return names[static_cast<std::size_t>(level)];
@@ -64,7 +64,7 @@ enum class Layout : std::uint8_t {
 };
 
 inline constexpr std::array all_layouts = {Layout::compressed4, Layout::bvh2, Layout::compressed8};
-// The spelling that options use.
+// Returns the spelling that options use.
 constexpr std::string_view name_of(Layout layout) {
     constexpr std::string_view names[] = {"compressed4", "bvh2", "compressed8"};
     return names[static_cast<std::size_t>(layout)];
@@ -77,7 +77,7 @@ enum class BuildQuality : std::uint8_t {
 };
 
 inline constexpr std::array all_build_qualities = {BuildQuality::fast, BuildQuality::high, BuildQuality::ploc};
-// The spelling that options use.
+// Returns the spelling that options use.
 constexpr std::string_view name_of(BuildQuality quality) {
     return quality == BuildQuality::fast ? "fast" : quality == BuildQuality::high ? "high" : "ploc";
 }
@@ -107,8 +107,8 @@ struct AccelOptions {
     bool compiles_in_background = true;
 };
 
-// Which triangles are ignored: those seen from the back, or from the front. The front is the side that (v1 - v0) x (v2
-// - v0) points to, in object space: seen from there, the corners are counter-clockwise.
+// The triangles that are ignored: those seen from the back, or from the front. The front is the side that (v1 - v0) x
+// (v2 - v0) points to, in object space: seen from there, the corners are counter-clockwise.
 enum class Cull : std::uint8_t { none, back, front };
 
 // Describes a trace: its rays, its options and where the hits go.
@@ -208,7 +208,7 @@ struct AccelView {
     std::uint64_t revision = 0;  // the accelerator's revision() at that time
     uint features = 0;           // FEATURE_* that any trace of it may need: kernels may be specialised for them
 
-    // The constant for KernelDesc::constants of a kernel with twinray/glsl/query.glsl.
+    // Returns the constant for KernelDesc::constants of a kernel with twinray/glsl/query.glsl.
     SpecializationConstant features_constant() const;
     bool operator==(const AccelView&) const = default;
 };

@@ -60,7 +60,7 @@ struct HitClassCounts {
     std::uint64_t total() const;                                                                      // of all classes
     std::uint64_t faults_of_ours() const;      // of those that is_fault_of_ours() names
     std::uint64_t faults_of_hardware() const;  // of those that is_fault_of_hardware() names
-    // Upper bound of the rate of faults (Clopper, Pearson 1934): 3 / total() if none was seen; 1 for no ray.
+    // Returns an upper bound of the rate of faults (Clopper, Pearson 1934): 3 / total() if none was seen; 1 for no ray.
     double bound_95() const;
 };
 HitClassCounts count(std::span<const HitClass> classes);  // counts per class
@@ -82,7 +82,7 @@ struct ReferenceHit {
     bool operator==(const ReferenceHit&) const = default;
 };
 
-// Whose rules apply: SwTlas must be right wherever float32 can be; for a driver, a class states what it does.
+// The rules that apply: SwTlas must be right wherever float32 can be; for a driver, a class states what it does.
 enum class TracedBy : std::uint8_t { software, hardware };
 
 // A scene in float64, built once on the CPU. Copies share it; threads may share it too.
@@ -92,7 +92,7 @@ class Reference {
     explicit Reference(const Scene& scene);
     Reference(std::span<const MeshView> meshes, std::span<const ReferenceInstance> instances);
 
-    // The smallest t in (t_min, t_max), then the lowest (instance, primitive); rays that are not is_traceable() miss.
+    // Finds the smallest t in (t_min, t_max), then the lowest (instance, primitive); rays not is_traceable() miss.
     ReferenceHit closest_hit(const Ray& ray) const;
     bool any_hit(const Ray& ray) const;  // whether anything is on the ray
 

@@ -11,7 +11,7 @@ struct FacePart
     float first; // the first triangle's share of the area: 1 where there is no other
 };
 
-// A point uniform by area, for u uniform in the unit square: its barycentric coordinates.
+// Returns a point uniform by area, for u uniform in the unit square: its barycentric coordinates.
 FUNC vec2 sample_part(FacePart part, vec2 u)
 {
     bool is_first = u.x < part.first;

@@ -26,7 +26,7 @@ FUNC uint face_of(FaceTable table, Hit hit)
     return AT(table.instances, hit.instance_index).first + hit.primitive_index;
 }
 
-// The point (1-u-v) v0 + u v1 + v v2 of a face, in world space, with the data for a ray to leave it.
+// Returns the point (1-u-v) v0 + u v1 + v v2 of a face, in world space, with the data for a ray to leave it.
 FUNC SurfacePoint point_on_face(FaceTable table, uint face, vec2 uv)
 {
     Face which = AT(table.faces, face);

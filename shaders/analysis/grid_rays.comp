@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The rays of a run of cells.
+// Makes the rays of a run of cells.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

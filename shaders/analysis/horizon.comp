@@ -31,7 +31,7 @@ struct Way
     float eye;
 };
 
-// How many steps are done at a length, by the same rounding as step * pause.
+// Returns how many steps are done at a length, by the same rounding as step * pause.
 int steps_done(float along, float speed, float pause)
 {
     int steps = int(along * speed);
@@ -39,7 +39,7 @@ int steps_done(float along, float speed, float pause)
     return float(steps) * pause > along ? steps - 1 : steps;
 }
 
-// Whether a triangle at the cell is there: two neighbours of the six that its triangles have.
+// Returns whether the cell is a corner of a triangle: two neighbours of the six that its triangles have are there.
 bool is_corner(ivec2 cell)
 {
     const ivec2 around[6] =
@@ -55,9 +55,9 @@ bool is_corner(ivec2 cell)
     return is_any;
 }
 
-// The slope to the point of an edge of the surface, `part` of it behind p, if it is steeper than `least` and part of a
-// triangle: that with `third` or `other_third`, or at an end of the edge any. It is no higher than the edge's ends, by
-// the same rounding as that of maxima.
+// Returns the slope to the point of an edge of the surface, `part` of it behind p, if it is steeper than `least` and
+// part of a triangle: that with `third` or `other_third`, or at an end of the edge any. It is no higher than the edge's
+// ends, by the same rounding as that of maxima.
 float slope_to(Way way, ivec2 p, ivec2 q, ivec2 third, ivec2 other_third, float part, float along, float least)
 {
     float end = max(AT_END, along * max(way.speed.x, way.speed.y) * AT_END_BY_STEPS);
@@ -75,8 +75,8 @@ float slope_to(Way way, ivec2 p, ivec2 q, ivec2 third, ivec2 other_third, float 
     return is_surface ? slope : least;
 }
 
-// The steepest of `best` and the points where a way crosses the diagonal and the far sides of a square: `done` steps
-// away, reached at `along` and left at `leave`.
+// Returns the steepest of `best` and the points where a way crosses the diagonal and the far sides of a square: `done`
+// steps away, reached at `along` and left at `leave`.
 float slope_in_square(Way way, ivec2 done, float along, vec2 leave, float best)
 {
     ivec2 near = way.start + way.side * done, far = near + way.side;

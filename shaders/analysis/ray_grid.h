@@ -30,7 +30,7 @@ struct GridRaysArgs
     uint count;
 };
 
-// Column and row of a cell. Any two cells 2 i and 2 i + 1 are neighbours, except at the ends of strips.
+// Returns column and row of a cell. Any two cells 2 i and 2 i + 1 are neighbours, except at the ends of strips.
 FUNC uvec2 grid_cell(RayGrid grid, uint index)
 {
     uint strip = index / (GRID_STRIP * grid.side);

@@ -35,7 +35,7 @@ struct CountFreeArgs
     uint reserved;
 };
 
-// The point u of stratum `index` of `count` with equal areas, which fill `rows` rows of the unit square.
+// Returns the point u of stratum `index` of `count` with equal areas, which fill `rows` rows of the unit square.
 FUNC vec2 in_stratum(uint index, uint count, uint rows, vec2 u)
 {
     uint row = index * rows / count;

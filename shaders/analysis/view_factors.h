@@ -62,8 +62,8 @@ FUNC vec4 sample_of(FaceRaysArgs args, uint face, uint replicate, uint index)
     return vec4(unit_floats(uvec2(words.x, words.y)), unit_floats(uvec2(words.z, words.w)));
 }
 
-// A point of the face, with barycentric coordinates u, v. One nearer to an edge than some offsets is moved away from
-// it: it might be rounded to the far side of a wall that meets the face at the edge, or start beyond it.
+// Returns a point of the face, with barycentric coordinates u, v. One nearer to an edge than some offsets is moved away
+// from it: it might be rounded to the far side of a wall that meets the face at the edge, or start beyond it.
 FUNC SurfacePoint inner_point(FaceTable table, uint face, vec2 uv)
 {
     SurfacePoint point = point_on_face(table, face, uv);
@@ -74,8 +74,8 @@ FUNC SurfacePoint inner_point(FaceTable table, uint face, vec2 uv)
     return point_on_face(table, face, vec2(inside.y, inside.z));
 }
 
-// A ray from a face, uniform by area and by the cosine of its angle with the normal. With two sides, half the rays
-// leave each.
+// Returns a ray from a face, uniform by area and by the cosine of its angle with the normal. With two sides, half the
+// rays leave each.
 FUNC Ray diffuse_ray(FaceTable table, uint face, vec4 u, bool is_two_sided)
 {
     bool is_front = !is_two_sided || u.z < 0.5f;

@@ -80,7 +80,7 @@ FUNC TreeBox empty_tree_box()
 
 FUNC bool is_empty(TreeBox box) { return !(box.min.x <= box.max.x); }
 
-// Closed boxes: those that touch overlap.
+// Returns whether the boxes overlap. They are closed: boxes that touch overlap.
 FUNC bool overlap(TreeBox a, TreeBox b)
 {
     return a.min.x <= b.max.x && b.min.x <= a.max.x && a.min.y <= b.max.y && b.min.y <= a.max.y && a.min.z <= b.max.z &&
@@ -103,14 +103,14 @@ FUNC TreeBox around(TreeBox a, TreeBox b)
     return both;
 }
 
-// It halves first: the sum might not be finite.
+// Returns the centre. It halves first, because the sum might not be finite.
 FUNC vec3 center_of(TreeBox box)
 {
     PRECISE vec3 center = box.min * 0.5f + box.max * 0.5f;
     return center;
 }
 
-// The node after `node` and all below it, in depth-first order; 0 after the last.
+// Returns the node after `node` and all below it, in depth-first order; 0 after the last.
 FUNC uint next_subtree(uint node)
 {
     uint next = node + 1u;

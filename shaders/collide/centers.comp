@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A box around the centres of all boxes that are not empty.
+// Computes a box around the centres of all boxes that are not empty.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The class of each pair of triangles; those that are not separate are listed.
+// Classifies each pair of triangles; pairs that are not separate are listed.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_explicit_arithmetic_types_float64 : require

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The places of the boxes' centres along a Hilbert curve through the 2^20 x 2^20 x 2^20 cells of a cube, 60 bits: the
-// lower 30 of the boxes in the order given, then the higher of those in the order that sorting by the former made.
-// Unlike a Morton curve it never jumps, so that each stretch of it is in a small box (Kamel and Faloutsos, "Hilbert
-// R-tree", 1994).
+// Computes the places of the boxes' centres along a Hilbert curve through the 2^20 x 2^20 x 2^20 cells of a cube, 60
+// bits: the lower 30 of the boxes in the order given, then the higher of those in the order that sorting by the former
+// made. Unlike a Morton curve it never jumps, so that each stretch of it is in a small box (Kamel and Faloutsos,
+// "Hilbert R-tree", 1994).
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"
@@ -13,7 +13,7 @@ layout(push_constant, scalar) uniform Push { HilbertOrderArgs args; };
 
 const uint HILBERT_BITS = 20u; // an axis
 
-// The bits of the index, dealt out to three words from the highest on: Skilling, "Programming the Hilbert curve", 2004.
+// Deals the bits of the index out to three words, from the highest on: Skilling, "Programming the Hilbert curve", 2004.
 uvec3 hilbert_words(uvec3 cell)
 {
     uvec3 x = cell;
@@ -36,7 +36,7 @@ uvec3 hilbert_words(uvec3 cell)
     return uvec3(x.x ^ flips, x.y ^ flips, x.z ^ flips);
 }
 
-// The 30 higher or lower bits of the index of the cell that holds a point of the cube from `low` with sides `size`.
+// Returns the 30 higher or lower bits of the index of the cell with a point of the cube from `low` with sides `size`.
 uint hilbert_code(vec3 point, vec3 low, float size, bool is_higher)
 {
     uvec3 words = hilbert_words(cells_of(point, low, low + vec3(size)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The world boxes of instances, rounded outward, for either accelerator.
+// Computes the world boxes of instances, rounded outward, for either accelerator.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

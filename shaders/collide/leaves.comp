@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The leaves: boxes in sorted order.
+// Writes the leaves: boxes in sorted order.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The nodes of one level: boxes around their children. Nodes without leaves below them are empty.
+// Writes the nodes of one level: boxes around their children. Nodes without leaves below them are empty.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

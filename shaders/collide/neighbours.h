@@ -10,7 +10,7 @@ FUNC uint count_among(uvec3 t, uvec3 u)
     return uint(t.x == u.x || t.x == u.y || t.x == u.z) + uint(t.y == u.x || t.y == u.y || t.y == u.z) +
            uint(t.z == u.x || t.z == u.y || t.z == u.z);
 }
-// The lower of both: a triangle without area may name a vertex twice.
+// Returns the lower of both: a triangle without area may name a vertex twice.
 FUNC uint count_shared(uvec3 t, uvec3 u) { return min(count_among(t, u), count_among(u, t)); }
 
 // Returns whether p and q are in one direction from v; if in doubt, true.
@@ -47,8 +47,8 @@ FUNC WorldTriangle from_vertex(WorldTriangle t, uvec3 ids, uvec3 others)
     return turned;
 }
 
-// The class of neighbours: PAIR_SEPARATE if they have only their shared vertices and the edge between two of them in
-// common.
+// Returns the class of neighbours: PAIR_SEPARATE if they have only their shared vertices and the edge between two of
+// them in common.
 FUNC uint class_of_neighbours(WorldTriangle t, uvec3 t_ids, WorldTriangle u, uvec3 u_ids)
 {
     uint found = class_of(t, u);

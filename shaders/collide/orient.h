@@ -15,7 +15,7 @@ FUNC int certain_sign(double value, double bound)
     return bound == double(0.0f) ? 0 : UNKNOWN_SIGN; // 0: each product has a factor of exactly 0
 }
 
-// The sign of det(a - d, b - d, c - d): positive if d sees a, b, c turn clockwise. 0 if two points are one.
+// Returns the sign of det(a - d, b - d, c - d): positive if d sees a, b, c turn clockwise. 0 if two points are one.
 FUNC int filtered_volume_sign(dvec3 a, dvec3 b, dvec3 c, dvec3 d)
 {
     const double BOUND = double(8.8817841970012523e-16f);
@@ -36,7 +36,7 @@ FUNC int filtered_volume_sign(dvec3 a, dvec3 b, dvec3 c, dvec3 d)
     return certain_sign(volume, bound);
 }
 
-// The coordinates across `axis`, in cyclic order of x, y, z.
+// Returns the coordinates across `axis`, in cyclic order of x, y, z.
 FUNC dvec2 without_axis(dvec3 p, uint axis)
 {
     if (axis == 0u) return dvec2(p.y, p.z);
@@ -44,7 +44,8 @@ FUNC dvec2 without_axis(dvec3 p, uint axis)
     return dvec2(p.x, p.y);
 }
 
-// The sign of det(a - c, b - c) as seen along an axis: positive if a, b, c turn anticlockwise. 0 if two points are one.
+// Returns the sign of det(a - c, b - c) as seen along an axis: positive if a, b, c turn anticlockwise, 0 if two are
+// equal.
 FUNC int filtered_area_sign(dvec3 a, dvec3 b, dvec3 c, uint axis)
 {
     const double BOUND = double(4.4408920985006262e-16f);

@@ -69,7 +69,7 @@ struct ClassifyArgs
     uint reserved;
 };
 
-// An order of points, for results that do not depend on that of vertices.
+// Orders points, so that results do not depend on the order of vertices.
 FUNC bool is_before(dvec3 p, dvec3 q)
 {
     if (p.x != q.x) return p.x < q.x;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The leaves that overlap each query. Within one tree a query begins right of its own leaf, so that each pair is found
-// once.
+// Finds the leaves that overlap each query. Within one tree a query begins right of its own leaf, so that each pair is
+// found once.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The class of two triangles from nothing but signs of volumes and areas of their vertices. Whoever includes this has
-// declared
+// Finds the class of two triangles from nothing but signs of volumes and areas of their vertices. The including file
+// declares
 //     int volume_sign(dvec3 a, dvec3 b, dvec3 c, dvec3 d)   of det(a - d, b - d, c - d)
 //     int area_sign(dvec3 a, dvec3 b, dvec3 c, uint axis)   of det(a - c, b - c) as seen along an axis
 // which give -1, 0, 1, or UNKNOWN_SIGN. With signs that are always known the class is exact.
@@ -163,8 +163,8 @@ FUNC Cuts cuts_of(WorldTriangle t, ivec3 s)
     return cuts;
 }
 
-// On the line where the planes meet, the side of q on which p is: one sign for all cuts p of one triangle and q of the
-// other.
+// Returns the side of q on which p is, on the line where the planes meet: one sign for all cuts p of one triangle and q
+// of the other.
 FUNC int order_of(Cut p, Cut q) { return volume_sign(p.from, p.to, q.from, q.to); }
 
 FUNC bool is_touch_of_vertex(int order, Cut p, Cut q) { return order == 0 && (p.is_vertex || q.is_vertex); }
@@ -225,7 +225,7 @@ FUNC uint point_triangle_class(Hull point, Hull t)
     return side == 0 ? coplanar_class(point, t, t.axis) : PAIR_SEPARATE;
 }
 
-// An axis along which three of four points have an area; 3: there is none, they are on one line.
+// Returns an axis along which three of four points have an area; 3: there is none, they are on one line.
 FUNC uint axis_of(dvec3 a, dvec3 b, dvec3 c, dvec3 d, INOUT(bool) doubt)
 {
     for (uint axis = 0u; axis < 3u; axis = axis + 1u)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Triangles as instances place them: vertices in float64, and boxes around them, rounded outward.
+// Computes triangles as instances place them: vertices in float64, and boxes around them, rounded outward.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_explicit_arithmetic_types_float64 : require

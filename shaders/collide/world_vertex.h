@@ -39,7 +39,7 @@ FUNC WorldTriangle world_triangle(TriangleRun run, uvec3 indices)
     return triangle;
 }
 
-// A float not above x, and the largest such one but for denormals.
+// Returns a float not above x, and the largest such one but for denormals.
 FUNC float float_below(double x)
 {
     const float LARGEST = 3.402823466e38f;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the stages of the pipeline share: the same shots and answers as query.comp, whose arguments lie in a buffer.
+// The common part of the pipeline's stages: the same shots and answers as in query.comp; the arguments are in a buffer.
 #include "twinray/glsl/common.glsl"
 #include "shaders/shared/trace.h"
 #include "shaders/conformance/query.h"

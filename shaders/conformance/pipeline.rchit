@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What was committed. Which hit record runs tells of the instance's offset, which no stage is told.
+// Writes the committed hit. The hit record that runs shows the instance's offset, which no stage can read.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_ray_tracing : require

@@ -25,7 +25,7 @@ void note_candidate(uint shot, uint position, bool is_box, rayQueryEXT query)
                        rayQueryGetIntersectionPrimitiveIndexEXT(query, false));
 }
 
-// The end of the ray behind which nothing is found any more.
+// Returns the end of the ray behind which nothing is found any more.
 float end_of(rayQueryEXT query, Ray ray)
 {
     bool has_hit = rayQueryGetIntersectionTypeEXT(query, true) != gl_RayQueryCommittedIntersectionNoneEXT;

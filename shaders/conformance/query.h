@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What the conformance suite asks of a driver and what it is told; read by C++ and GLSL.
+// The questions of the conformance suite to a driver, and the answers; read by C++ and GLSL.
 #ifndef TWINRAY_CONFORMANCE_QUERY_H
 #define TWINRAY_CONFORMANCE_QUERY_H
 
-// A ray with all that a ray query takes, and what is to become of its candidates.
+// A ray with all that a ray query takes, and the treatment of its candidates.
 struct Shot
 {
     Ray ray;
@@ -55,7 +55,7 @@ struct Answer
 BUFFER_OF(Answer, 4);
 const uint OPACITY_UNKNOWN = 0xffffffffu;
 
-// One word for a candidate: which primitive it is. Instances below 2048, geometries below 256, primitives below 4096.
+// Returns one word that names a candidate. Instances are below 2048, geometries below 256, primitives below 4096.
 FUNC uint candidate_name(bool is_box, uint instance, uint geometry, uint primitive)
 {
     return (is_box ? 0x80000000u : 0u) | (instance << 20u) | (geometry << 12u) | primitive;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Floats, times a factor, from the caller's device memory, of which only the address is known.
+// Copies floats, times a factor, from the caller's device memory, of which only the address is known.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

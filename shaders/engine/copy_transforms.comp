@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Transforms from the caller's device memory into instance records; ids, masks and flags stay.
+// Copies transforms from the caller's device memory into instance records; ids, masks and flags stay.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

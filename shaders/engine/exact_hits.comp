@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// t, u and v of hits in float64, of rays in float64.
+// Computes t, u and v of hits in float64, of rays in float64.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define TWINRAY_REFINED

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A vertex and a triangle an invocation. Triangles that are not there, or name a vertex that is not, lose their area.
+// Gathers a vertex and a triangle per invocation. Triangles that are missing or name a missing vertex lose their area.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

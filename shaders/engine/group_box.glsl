@@ -34,7 +34,7 @@ void join_boxes(vec3 lo, vec3 hi)
     }
 }
 
-// Called by all invocations of all groups. True for one invocation of all, once every box is in.
+// Called by all invocations of all groups. Returns true in one invocation of all, once every box is in.
 bool add_box(REF(WorldBoundBits) bits, uint group_count, GeometryBox box)
 {
     uint thread = gl_LocalInvocationIndex;
@@ -51,7 +51,7 @@ bool add_box(REF(WorldBoundBits) bits, uint group_count, GeometryBox box)
     return true;
 }
 
-// For the invocation that add_box() picked.
+// Returns the whole box. Called by the invocation that add_box() picked.
 GeometryBox whole_box(REF(WorldBoundBits) bits)
 {
     GeometryBox box;

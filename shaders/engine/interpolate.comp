@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// An attribute at each hit, for hosts.
+// Interpolates an attribute at each hit, for hosts.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The index of a new element in a list; from the list's capacity on there is no room for it.
+// Appends to a list and returns the index of the new element; from the list's capacity on there is no room for it.
 uint append_to(ListTotal_ref total)
 {
     uint slot = atomicAdd(AT(total, 0).low, 1u);

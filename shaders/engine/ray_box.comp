@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The box of the origins of those rays that are traced.
+// Computes the box of the origins of the rays that are traced.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

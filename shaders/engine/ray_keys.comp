@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What rays are sorted by.
+// Computes the keys by which rays are sorted.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What refining needs of each instance.
+// Gathers the data of each instance that refining needs.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The surface of each hit, for hosts.
+// Finds the surface of each hit, for hosts.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

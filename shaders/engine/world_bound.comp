@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A box around all usable instances, and how many are not.
+// Computes a box around all usable instances, and counts those that are not usable.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

@@ -10,7 +10,7 @@
 layout(local_size_x = 256) in;
 layout(push_constant, scalar) uniform Push { HwGatherArgs args; };
 
-// Which record comes at a position.
+// Returns the index of the record at a position.
 uint index_at(uint position)
 {
     if (args.count == 1u) return 0u;

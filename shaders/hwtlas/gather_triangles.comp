@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The driver's triangles in their build order. One that is not active is collapsed to a point inside the box of the
-// others: see hwtlas/blas.h.
+// Writes the driver's triangles in their build order. An inactive triangle is collapsed to a point inside the box of
+// the others: see hwtlas/blas.h.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// From the driver's numbering back to the user's.
+// Maps the driver's numbering back to the user's.
 #ifndef TWINRAY_HWTLAS_IDS_GLSL
 #define TWINRAY_HWTLAS_IDS_GLSL
 #include "shaders/shared/world_bound.h"
@@ -39,7 +39,7 @@ Hit hit_of(Candidate candidate, float t, vec2 uv)
     return hit;
 }
 
-// The ray flags for the driver.
+// Returns the ray flags for the driver.
 uint ray_flags(TraceOptions options, uint opaque, uint terminate_on_first_hit)
 {
     uint flags = options.flags;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The boxes around instances, in the order in which the driver takes them, whose areas are measured.
+// Computes the boxes around instances whose areas are measured, in the order in which the driver takes them.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

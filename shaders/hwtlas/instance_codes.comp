@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Morton codes of instances, by which they are presorted.
+// Computes Morton codes of instances, by which they are presorted.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"
@@ -8,8 +8,8 @@
 layout(local_size_x = 256) in;
 layout(push_constant, scalar) uniform Push { HwCodesArgs args; };
 
-// The code of what cannot be hit: lavapipe from Mesa 26.1 on takes one instance for another where an inactive one comes
-// before it.
+// The code of an instance that cannot be hit: from Mesa 26.1 on, lavapipe confuses instances if an inactive one comes
+// before an active one.
 const uint LAST = 0x3fffffffu;
 
 uint code_of(InstanceRecord record)

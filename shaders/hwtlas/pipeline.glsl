@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What all shaders of the ray tracing pipeline begin with, after their extensions.
+// The common beginning of all shaders of the ray tracing pipeline, after their extensions.
 #ifndef TWINRAY_HWTLAS_PIPELINE_GLSL
 #define TWINRAY_HWTLAS_PIPELINE_GLSL
 #include "twinray/glsl/common.glsl"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One ray through a HwTlasHeader by a ray query.
+// Traces one ray through a HwTlasHeader by a ray query.
 #ifndef TWINRAY_HWTLAS_RAY_QUERY_GLSL
 #define TWINRAY_HWTLAS_RAY_QUERY_GLSL
 #include "shaders/hwtlas/ids.glsl"
@@ -24,7 +24,7 @@ void consider_triangle(HwTlasHeader scene, rayQueryEXT query, TraceOptions optio
         rayQueryConfirmIntersectionEXT(query);
 }
 
-// uv: of the box that was hit last, for which the query has no place.
+// uv: the values of the box that was hit last, for which the query has no place.
 void consider_box(HwTlasHeader scene, rayQueryEXT query, Ray ray, TraceOptions options, inout vec2 uv)
 {
     Candidate candidate = candidate_of(scene, query, false, options);

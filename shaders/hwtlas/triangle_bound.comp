@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The box of a mesh: around its active triangles.
+// Computes the box of a mesh, around its active triangles.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Morton codes of the triangles within the mesh's box, for drivers that build in input order.
+// Computes Morton codes of the triangles within the mesh's box, for drivers that build in input order.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"
@@ -11,7 +11,7 @@
 layout(local_size_x = 256) in;
 layout(push_constant, scalar) uniform Push { HwTrianglesArgs args; };
 
-const uint LAST = 0x3fffffffu; // of what cannot be hit
+const uint LAST = 0x3fffffffu; // for triangles that cannot be hit
 
 void main()
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The mean of a pixel's rays.
+// Writes the mean of a pixel's rays.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

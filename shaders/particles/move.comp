@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One frame of each particle: where it is, what the accelerator is told, and its material.
+// Moves each particle by one frame: its position, the accelerator's instance, and its material.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

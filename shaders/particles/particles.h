@@ -41,7 +41,7 @@ struct MoveArgs
     float max_speed; // at the hot end of the colours
 };
 
-// From blue (t = 0) by green and yellow to white (t = 1), straight in each quarter.
+// Returns a colour from blue (t = 0) by green and yellow to white (t = 1), straight in each quarter.
 FUNC vec3 heat_color(float t)
 {
     float quarter = min(floor(4.0f * t), 3.0f);
@@ -70,8 +70,8 @@ struct Motion
     float velocity;
 };
 
-// A step along an axis between walls at -1 and 1, which throw a particle back. However fast it is, it stays between
-// them.
+// Moves by a step along an axis between walls at -1 and 1, which throw a particle back. However fast it is, it stays
+// between them.
 FUNC Motion moved(Motion motion, float radius, float acceleration, float seconds, float bounce)
 {
     PRECISE float velocity = motion.velocity + acceleration * seconds;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Light that the lamp sends to the camera from what a ray met, by the material that the instance's key names.
+// Computes the light that the lamp sends to the camera from each hit, by the material that the instance's key names.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/multi_type_set.glsl"
@@ -30,7 +30,7 @@ Surface surface_of(WallMaterial material, vec3 position, vec3 normal)
     return Surface(material.color * (is_dark ? 0.7 : 1.0), 0.0, 1.0);
 }
 
-// Trowbridge-Reitz lobe with height-correlated masking, and Schlick's Fresnel term, times the cosine.
+// Returns a Trowbridge-Reitz lobe with height-correlated masking, and Schlick's Fresnel term, times the cosine.
 vec3 reflected(Surface surface, vec3 normal, vec3 to_eye, vec3 to_lamp)
 {
     float cos_lamp = max(dot(normal, to_lamp), 0.0);

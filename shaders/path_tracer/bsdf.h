@@ -24,7 +24,7 @@ FUNC bool scatters(Bsdf bsdf)
     return !is_smooth(bsdf) || (!bsdf.is_glass && largest(bsdf.diffuse) > 0.0f);
 }
 
-// The approximate fraction of the light from wo that the base reflects or passes.
+// Returns the approximate fraction of the light from wo that the base reflects or passes.
 FUNC float base_albedo(Bsdf bsdf, float cosine)
 {
     if (bsdf.is_glass) return 1.0f;
@@ -58,7 +58,7 @@ FUNC LayerChances layer_chances(Bsdf bsdf, vec3 wo)
     return chances;
 }
 
-// The fraction that the layers let through to the base and out again.
+// Returns the fraction that the layers let through to the base and out again.
 FUNC float under_layers(Bsdf bsdf, vec3 wo, vec3 wi)
 {
     float passed_on = 1.0f;
@@ -113,7 +113,7 @@ FUNC BsdfChoice choose(Bsdf bsdf, vec3 wo, float lobe, vec2 u)
     return base;
 }
 
-// The fraction of the light from wo that passes a pane: the fraction that choose() lets pass, on average.
+// Returns the fraction of the light from wo that passes a pane: the fraction that choose() lets pass, on average.
 FUNC vec3 passed_by_pane(Bsdf bsdf, vec3 wo)
 {
     return bsdf.diffuse * ((1.0f - fresnel_dielectric(wo.z, bsdf.eta)) * under_layers(bsdf, wo, -wo));

@@ -4,9 +4,9 @@
 #ifndef TWINRAY_PATH_TRACER_BSDF_ALBEDO_H
 #define TWINRAY_PATH_TRACER_BSDF_ALBEDO_H
 
-// For a grain: the roughness of an even surface that reflects no less of the light from w. That is the one in the plane
-// of w, and across the grain down to less than half of it, because tilts of microfacets out of the plane make more of
-// them grazing: fitted, and a test holds it against samples.
+// Returns, for a grain, the roughness of an even surface that reflects no less of the light from w. That is the one in
+// the plane of w, and across the grain down to less than half of it, because tilts of microfacets out of the plane make
+// more of them grazing: fitted, and a test holds it against samples.
 FUNC float alpha_towards(Bsdf bsdf, vec3 w)
 {
     float sine2 = w.x * w.x + w.y * w.y;
@@ -17,10 +17,10 @@ FUNC float alpha_towards(Bsdf bsdf, vec3 w)
     return sqrt(dot(slope, slope) / sine2) * (1.0f - 0.55f * (1.0f - bsdf.alpha / bsdf.alpha_grain) * across * across);
 }
 
-// Albedo of a white mirror for light from w, and Schlick's part of it: fits to quadrature of microfacets that scatter
-// once. Schlick's part is that of a cosine which is larger at grazing, for facets that are seen face the viewer; it is
-// at most 0.033 too high and 0.005 too low for cosines from 0.01 on. A white mirror's, of which a dielectric has 4 %,
-// is at most 0.15 too high and 0.012 too low.
+// Returns the albedo of a white mirror for light from w, and Schlick's part of it: fits to quadrature of microfacets
+// that scatter once. Schlick's part is that of a cosine which is larger at grazing, for facets that are seen face the
+// viewer; it is at most 0.033 too high and 0.005 too low for cosines from 0.01 on. A white mirror's, of which a
+// dielectric has 4 %, is at most 0.15 too high and 0.012 too low.
 FUNC vec2 mirror_albedo(Bsdf bsdf, vec3 w)
 {
     if (is_smooth(bsdf)) return vec2(1.0f, schlick_weight(w.z));
@@ -32,7 +32,7 @@ FUNC vec2 mirror_albedo(Bsdf bsdf, vec3 w)
     return vec2(1.0f - lost, schlick_weight(w.z + most * near * near));
 }
 
-// Their means over all directions by the cosine, the second at most 0.0015 too low; for a grain, upper bounds.
+// Returns their means over all directions by the cosine, the second at most 0.0015 too low; for a grain, upper bounds.
 FUNC vec2 mean_mirror_albedo(Bsdf bsdf)
 {
     if (is_smooth(bsdf)) return vec2(1.0f, 1.0f / 21.0f);

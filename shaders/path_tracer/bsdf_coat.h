@@ -7,7 +7,7 @@
 
 FUNC float coat_fresnel(float cosine) { return 0.04f + 0.96f * schlick_weight(cosine); }
 
-// The fraction of the light from or to a direction that the coat keeps.
+// Returns the fraction of the light from or to a direction that the coat keeps.
 FUNC float kept_by_coat(Bsdf bsdf, vec3 w) { return bsdf.coat * coat_fresnel(dot(w, bsdf.coat_normal)); }
 
 FUNC float under_coat(Bsdf bsdf, vec3 wo, vec3 wi)
@@ -34,7 +34,7 @@ FUNC BsdfValue evaluate_coat(Bsdf bsdf, vec3 wo, vec3 wi)
     return value;
 }
 
-// If it is smooth, this is the mirror direction.
+// Samples the coat: a smooth one in the mirror direction.
 FUNC vec3 sample_coat(Bsdf bsdf, vec3 wo, vec2 u)
 {
     if (has_smooth_coat(bsdf)) return bsdf.coat_normal * (2.0f * dot(wo, bsdf.coat_normal)) - wo;

@@ -4,7 +4,7 @@
 #ifndef TWINRAY_PATH_TRACER_BSDF_GLASS_H
 #define TWINRAY_PATH_TRACER_BSDF_GLASS_H
 
-// wo refracted at a facet with normal h; dot(wo, h) > 0 and no total reflection.
+// Returns wo refracted at a facet with normal h; dot(wo, h) > 0 and no total reflection.
 FUNC vec3 refracted(vec3 wo, vec3 h, float eta)
 {
     float cosine = dot(wo, h);

@@ -30,7 +30,7 @@ vec2 roughness_and_metallic(SceneData scene, Surface surface, uint flags)
     return vec2(roughness, metallic);
 }
 
-// The part of a surface that is glass.
+// Returns the part of a surface that is glass.
 float glass_part(SceneData scene, Surface surface, uint flags, float metallic)
 {
     float transmission = AT(scene.materials, surface.material).transmission;

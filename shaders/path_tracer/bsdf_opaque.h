@@ -15,7 +15,7 @@ FUNC Bsdf opaque_of(vec3 color, float metallic, float roughness, float ior)
     return bsdf;
 }
 
-// The reflection of the dielectric part weighted and colored: KHR_materials_specular.
+// Weights and colors the reflection of the dielectric part: KHR_materials_specular.
 FUNC Bsdf with_specular(Bsdf bsdf, vec3 color, float metallic, float ior, float weight, vec3 specular_color)
 {
     float root = (ior - 1.0f) / (ior + 1.0f);
@@ -30,7 +30,7 @@ FUNC vec3 schlick(Bsdf bsdf, float cosine)
     return bsdf.f0 + (vec3(bsdf.f90) - bsdf.f0) * schlick_weight(cosine);
 }
 
-// Chance of sampling the specular lobe instead of the diffuse one.
+// Returns the chance of sampling the specular lobe instead of the diffuse one.
 FUNC float specular_chance(Bsdf bsdf, float cosine)
 {
     float specular = largest(schlick(bsdf, cosine));

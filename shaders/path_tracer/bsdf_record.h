@@ -7,7 +7,7 @@
 
 struct Bsdf
 {
-    vec3 diffuse;  // albedo of the Lambertian part; glass: tint of what passes
+    vec3 diffuse;  // albedo of the Lambertian part; glass: tint of passing light
     vec3 f0;       // Fresnel reflectance at normal incidence
     float f90;     // and at grazing
     float alpha;   // GGX; LAYER_ANISOTROPY: across the grain
@@ -72,7 +72,7 @@ FUNC BsdfValue no_value()
     return value;
 }
 
-// A black mirror without layers, to be filled in.
+// Returns a black mirror without layers, to be filled in.
 FUNC Bsdf plain_bsdf()
 {
     Bsdf bsdf;
@@ -95,7 +95,7 @@ FUNC Bsdf plain_bsdf()
 
 FUNC bool has_layer(Bsdf bsdf, uint layer) { return (LAYERS & layer) != 0u && (bsdf.layers & layer) != 0u; }
 
-// Infinitely thin walls: light passes them as if reflected and then mirrored, so that nothing bends.
+// Returns whether it is an infinitely thin wall: light passes as if reflected and then mirrored, so that nothing bends.
 FUNC bool is_thin(Bsdf bsdf) { return bsdf.is_glass && !has_layer(bsdf, LAYER_VOLUME); }
 
 FUNC bool is_smooth(Bsdf bsdf)
@@ -103,10 +103,10 @@ FUNC bool is_smooth(Bsdf bsdf)
     return bsdf.alpha < SMOOTH_ALPHA || (bsdf.is_glass && bsdf.eta == 1.0f && !is_thin(bsdf));
 }
 
-// Passing light goes straight on.
+// Returns whether passing light goes straight on.
 FUNC bool is_pane(Bsdf bsdf) { return is_thin(bsdf) && is_smooth(bsdf); }
 
-// Microfacets of the base, with or without a grain.
+// Returns w in the frame of the grain, for microfacets of a base with a grain.
 FUNC vec3 along_grain(Bsdf bsdf, vec3 w)
 {
     return vec3(bsdf.grain.x * w.x + bsdf.grain.y * w.y, bsdf.grain.x * w.y - bsdf.grain.y * w.x, w.z);
@@ -143,8 +143,8 @@ FUNC float facet_pdf(Bsdf bsdf, vec3 wo, vec3 h)
 // Maps a random number that chose the second of two things to its place among those that do.
 FUNC float remapped(float lobe, float chance) { return clamp((lobe - chance) / (1.0f - chance), 0.0f, 0.99999994f); }
 
-// The chance of sampling the first of two things of these albedos; each keeps a minimum, because the shares at other
-// angles differ.
+// Returns the chance of sampling the first of two things of these albedos; each keeps a minimum, because the shares at
+// other angles differ.
 FUNC float chance_of(float first, float second)
 {
     if (first <= 0.0f) return 0.0f;

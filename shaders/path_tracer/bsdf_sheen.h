@@ -8,14 +8,14 @@
 
 const float SHEEN_LEAST_ROUGHNESS = 0.1f; // where the table begins; below, the lobe is a rim that no picture resolves
 
-// The density of normals: sin^(1 / alpha).
+// Returns the density of normals: sin^(1 / alpha).
 FUNC float charlie_density(vec3 h, float alpha)
 {
     float sine2 = min(h.x * h.x + h.y * h.y, 1.0f);
     return (2.0f + 1.0f / alpha) * pow(sine2, 0.5f / alpha) / (2.0f * PI);
 }
 
-// The logarithm of Lambda for cosines to one half, fitted by the authors.
+// Returns the logarithm of Lambda for cosines to one half, fitted by the authors.
 FUNC float charlie_log_lambda(float cosine, float alpha)
 {
     float t = (1.0f - alpha) * (1.0f - alpha);
@@ -33,7 +33,7 @@ FUNC float charlie_lambda(float cosine, float alpha)
     return exp(2.0f * charlie_log_lambda(0.5f, alpha) - charlie_log_lambda(max(1.0f - cosine, 0.0f), alpha));
 }
 
-// Directional albedo of the unscaled lobe, which may exceed 1.
+// Returns the directional albedo of the unscaled lobe, which may exceed 1.
 FUNC float sheen_albedo(float cosine, float roughness)
 {
     float x = sqrt(clamp(cosine, 0.0f, 1.0f)) * float(SHEEN_COSINES - 1u);
@@ -47,13 +47,13 @@ FUNC float sheen_albedo(float cosine, float roughness)
     return mix(low, high, y - float(j)) / SHEEN_UNIT;
 }
 
-// The most that the sheen keeps of the light from or to a direction.
+// Returns the most that the sheen keeps of the light from or to a direction.
 FUNC float kept_by_sheen(Bsdf bsdf, float cosine)
 {
     return largest(bsdf.sheen) * min(sheen_albedo(cosine, bsdf.sheen_roughness), 1.0f);
 }
 
-// The extension's albedo scaling of the surface below.
+// Returns the extension's albedo scaling of the surface below.
 FUNC float under_sheen(Bsdf bsdf, vec3 wo, vec3 wi)
 {
     if (wi.z <= 0.0f) return 1.0f - kept_by_sheen(bsdf, wo.z);

@@ -31,9 +31,9 @@ const uint FILTER_BOX = 0u;      // the pixel itself
 const uint FILTER_TRIANGLE = 1u; // one pixel to each side
 const uint FILTER_GAUSSIAN = 2u; // standard deviation half a pixel, never cut off
 
-// The position of a sample of a pixel, from the pixel's centre, in pixels. Its density is the reconstruction filter, so
-// that every sample has weight 1 and no pixel shares samples with its neighbours (Ernst, Stamminger and Greiner,
-// "Filter Importance Sampling", 2006). The gaussian is Box and Muller's.
+// Returns the position of a sample of a pixel, from the pixel's centre, in pixels. Its density is the reconstruction
+// filter, so that every sample has weight 1 and no pixel shares samples with its neighbours (Ernst, Stamminger and
+// Greiner, "Filter Importance Sampling", 2006). The gaussian is Box and Muller's.
 FUNC vec2 filter_offset(uint filter_kind, vec2 u)
 {
     if (filter_kind == FILTER_BOX) return u - 0.5f;

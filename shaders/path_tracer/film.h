@@ -31,7 +31,7 @@ struct FilmPixel
 };
 BUFFER_OF(FilmPixel, 8);
 
-// |x| is mantissa << shift, in units of 2^-149, for finite x.
+// Returns the mantissa of |x|, which is mantissa << shift, in units of 2^-149, for finite x.
 FUNC uint film_mantissa(float x)
 {
     uint bits = floatBitsToUint(x);
@@ -39,10 +39,10 @@ FUNC uint film_mantissa(float x)
 }
 FUNC uint film_shift(float x) { return max((floatBitsToUint(x) >> 23u) & 0xffu, 1u) - 1u; }
 
-// The lower of the two positions for a number of so many bits, which need not all be used.
+// Returns the lower of the two positions for a number of so many bits, which need not all be used.
 FUNC uint film_position(uint shift, uint bits) { return max((shift + bits - 1u) / FILM_DIGIT_BITS, 1u) - 1u; }
 
-// Bits [40 position, 40 position + 40) of mantissa << shift, for mantissas of at most 48 bits.
+// Returns bits [40 position, 40 position + 40) of mantissa << shift, for mantissas of at most 48 bits.
 FUNC uvec2 film_digit(uvec2 mantissa, uint shift, uint position)
 {
     int up = int(shift) - int(FILM_DIGIT_BITS * position);
@@ -80,7 +80,7 @@ FUNC void film_add_color(INOUT(uvec2) high, INOUT(uvec2) low, float value, uint 
     high = add64(high, is_negative ? negate64(high_digit) : high_digit);
 }
 
-// A block's sum of finite radiance.
+// Adds a block's sum of finite radiance.
 FUNC void film_add(INOUT(FilmPixel) pixel, vec3 radiance, float luminance_of_it)
 {
     uint shift = max(film_shift(radiance.x), max(film_shift(radiance.y), film_shift(radiance.z)));

@@ -14,7 +14,7 @@ uint volume_of(SceneData scene, uint material)
     return AT(scene.layered, material).layers & LAYER_VOLUME;
 }
 
-// KHR_materials_specular: color, and weight as alpha.
+// Returns the color, and the weight as alpha, of KHR_materials_specular.
 vec4 specular_of(SceneData scene, Surface surface)
 {
     uint m = surface.material;
@@ -26,7 +26,7 @@ vec4 specular_of(SceneData scene, Surface surface)
     return specular;
 }
 
-// KHR_materials_anisotropy: rougher along the grain.
+// Makes the surface rougher along the grain: KHR_materials_anisotropy.
 void set_anisotropy(inout Bsdf bsdf, SceneData scene, Surface surface, vec3 normal)
 {
     uint m = surface.material;
@@ -95,7 +95,7 @@ void set_layers(inout Bsdf bsdf, SceneData scene, Surface surface, vec3 normal, 
     if ((layers & LAYER_COAT) != 0u) set_coat(bsdf, scene, surface, normal, wo);
 }
 
-// Beer and Lambert: the remaining light after a way through a volume.
+// Returns the light that remains after a way through a volume (Beer and Lambert).
 vec3 transmittance(SceneData scene, uint medium, float distance)
 {
     return exp(AT(scene.layered, medium - 1u).extinction * -max(distance, 0.0));

@@ -33,7 +33,7 @@ struct LightReceiver
     bool has_two_sides; // light from behind counts, too: the surface transmits
 };
 
-// cos and sin of max(a - b, 0), for angles from 0 to pi. Components: x cos, y sin.
+// Returns cos and sin of max(a - b, 0), for angles from 0 to pi. Components: x cos, y sin.
 FUNC vec2 angle_beyond(vec2 a, vec2 b)
 {
     if (a.x > b.x) return vec2(1.0f, 0.0f);
@@ -48,8 +48,8 @@ FUNC bool is_behind(LightNode node, LightReceiver at, vec3 way, float distance)
     return dot(at.normal, way) + dot(abs(at.normal), node.half_size) + FACING_ERROR * distance <= 0.0f;
 }
 
-// An estimate of the light of a node that arrives, never 0 if some may. Angles are taken as small as they can be for
-// any light of the node: within the sphere around its box, and within its cone.
+// Returns an estimate of the light of a node that arrives, never 0 if some may. Angles are taken as small as they can
+// be for any light of the node: within the sphere around its box, and within its cone.
 FUNC float light_importance(LightNode node, LightReceiver at)
 {
     const float MOST = 1.0e30f; // so that two have a sum
@@ -72,7 +72,7 @@ FUNC float light_importance(LightNode node, LightReceiver at)
     return min(node.power * facing * shining / distance2, MOST);
 }
 
-// The probability of the first of two children; below 0: neither can light the receiver.
+// Returns the probability of the first of two children; below 0: neither can light the receiver.
 FUNC float chance_of_first(LightNode first, LightNode second, LightReceiver at)
 {
     float a = light_importance(first, at);
@@ -81,7 +81,7 @@ FUNC float chance_of_first(LightNode first, LightNode second, LightReceiver at)
     return a / (a + b);
 }
 
-// A unit vector on the octahedron, 16 bits per coordinate, with the number of sides in the last bit.
+// Returns a unit vector on the octahedron, 16 bits per coordinate, with the number of sides in the last bit.
 FUNC uint packed_facing(vec3 normal, bool has_two_sides)
 {
     vec3 n = normal / (abs(normal.x) + abs(normal.y) + abs(normal.z));
@@ -138,7 +138,7 @@ FUNC ChosenLeaf choose_leaf(REF(LightNode) tree, LightReceiver at, float u)
     return leaf;
 }
 
-// The probability that choose_leaf takes the way: from its lowest bit on, a level each, 1 for the second child.
+// Returns the probability that choose_leaf takes the way: from its lowest bit on, a level each, 1 for the second child.
 FUNC float chance_of_way(REF(LightNode) tree, LightReceiver at, uint way)
 {
     float chance = 1.0f;

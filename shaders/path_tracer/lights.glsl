@@ -23,7 +23,7 @@ uint sample_alias(REF(AliasEntry) table, uint first, uint count, uint word)
     return first + (fraction < entry.probability ? column : entry.alias);
 }
 
-// The cell of a table of cumulated probabilities that u in [0, 1) falls into, plus how far into it.
+// Returns the cell of a table of cumulated probabilities that u in [0, 1) falls into, plus how far into it.
 float sample_sums(Floats sums, uint first, uint count, float u)
 {
     uint low = 0u;
@@ -45,8 +45,8 @@ vec3 environment_pixel(Environment env, int x, int y)
     return AT(env.pixels, uint(clamp(y, 0, int(env.height) - 1)) * env.width + min(column, env.width - 1u)).rgb;
 }
 
-// The map as seen, filtered. As light, it is constant in each pixel, which is how it is sampled: near a sun a filtered
-// value could exceed the density of its own pixel a hundred times, and such samples are bright dots. at: in pixels.
+// Returns the filtered map as seen. As light it is constant in each pixel, since it is sampled so: near a sun a
+// filtered value could exceed the density of its own pixel a hundred times; such samples are bright dots. at: pixels.
 vec3 environment_seen(Environment env, vec2 at)
 {
     vec2 low = floor(at - 0.5);
@@ -58,7 +58,7 @@ vec3 environment_seen(Environment env, vec2 at)
     return mix(top, bottom, weight.y);
 }
 
-// In pixels; u grows from -x over -z, +x to +z.
+// Returns the position in pixels; u grows from -x over -z, +x to +z.
 vec2 environment_position(Environment env, vec3 direction)
 {
     float turns = atan(direction.z, direction.x) / (2.0 * PI) + 0.5;
@@ -182,7 +182,7 @@ LightSample sample_light(SceneData scene, LightReceiver at, uvec2 choice, vec2 u
     return light;
 }
 
-// Density with which sample_light would have found this point of an emitter.
+// Returns the density with which sample_light would have found this point of an emitter.
 float emitter_pdf(SceneData scene, Hit hit, Surface surface, LightReceiver at, vec3 direction)
 {
     SurfaceInstance instance = AT(scene.instances, hit.instance_index);

@@ -34,7 +34,7 @@ vec3 emission(SceneData scene, uint material, uint flags, TextureCoordinates uv)
     return color;
 }
 
-// Radiance leaving the surface on the given side.
+// Returns the radiance that leaves the surface on the given side.
 vec3 emitted(SceneData scene, uint material, uint flags, TextureCoordinates uv, bool is_front)
 {
     if (!is_front && (flags & MATERIAL_TWO_SIDED) == 0u) return vec3(0.0);
@@ -67,7 +67,7 @@ vec3 facing(vec3 normal, Surface surface, vec3 wo)
     return cosine < least_cosine ? normalize(normal + wo * (least_cosine - cosine)) : normal;
 }
 
-// The shading normal on the side of wo.
+// Returns the shading normal on the side of wo.
 vec3 shading_normal(SceneData scene, Surface surface, uint flags, vec3 wo)
 {
     vec3 normal = surface.normal;

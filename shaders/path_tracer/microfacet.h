@@ -6,7 +6,7 @@
 // Below this a microfacet lobe is narrower than float directions resolve well: treated as a mirror (pbrt-v4 does so).
 const float SMOOTH_ALPHA = 1e-3f;
 
-// Schlick's weight of the reflectance at grazing against that at normal incidence.
+// Returns Schlick's weight of the reflectance at grazing against that at normal incidence.
 FUNC float schlick_weight(float cosine)
 {
     float x = 1.0f - clamp(cosine, 0.0f, 1.0f);
@@ -14,7 +14,7 @@ FUNC float schlick_weight(float cosine)
     return x2 * x2 * x;
 }
 
-// Unpolarised reflectance of a dielectric; 1 under total internal reflection.
+// Returns the unpolarised reflectance of a dielectric; 1 under total internal reflection.
 FUNC float fresnel_dielectric(float cosine, float eta)
 {
     float sine2 = (1.0f - cosine * cosine) / (eta * eta);
@@ -25,14 +25,14 @@ FUNC float fresnel_dielectric(float cosine, float eta)
     return 0.5f * (parallel * parallel + perpendicular * perpendicular);
 }
 
-// GGX normal distribution, written so that nothing cancels for small alpha.
+// Returns the GGX normal distribution, written so that nothing cancels for small alpha.
 FUNC float ggx_density(vec3 h, float alpha)
 {
     float scaled = (h.x * h.x + h.y * h.y) / (alpha * alpha) + h.z * h.z;
     return 1.0f / (PI * alpha * alpha * scaled * scaled);
 }
 
-// Smith's Lambda.
+// Returns Smith's Lambda.
 FUNC float ggx_lambda(vec3 w, float alpha)
 {
     float tangent2 = (w.x * w.x + w.y * w.y) / (w.z * w.z);
@@ -54,7 +54,7 @@ FUNC float ggx_lambda_stretched(vec3 w, vec2 alpha)
     return 0.5f * (sqrt(1.0f + dot(slope, slope) / (w.z * w.z)) - 1.0f);
 }
 
-// Dupuy and Benyoub, "Sampling Visible GGX Normals with Spherical Caps", 2023.
+// Samples as in Dupuy and Benyoub, "Sampling Visible GGX Normals with Spherical Caps", 2023.
 FUNC vec3 sample_visible_normal_stretched(vec3 wo, vec2 alpha, vec2 u)
 {
     vec3 stretched = normalize(vec3(alpha.x * wo.x, alpha.y * wo.y, wo.z));

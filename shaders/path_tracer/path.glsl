@@ -48,7 +48,7 @@ void add(uint pixel, vec3 radiance)
     else atomicAdd(AT(wave.counters, 0).non_finite, 1u);
 }
 
-// Weight of light that a ray sampled with density `own` has found, where light sampling has density `other`.
+// Returns the weight of light that a ray sampled with density `own` has found, if light sampling has density `other`.
 float found_weight(float own, float other)
 {
     if (STRATEGY == STRATEGY_BSDF) return 1.0;

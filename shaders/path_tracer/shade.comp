@@ -65,7 +65,7 @@ bool is_above(Vertex vertex, vec3 direction)
     return (dot(vertex.surface.point.normal, direction) > 0.0) == vertex.is_front;
 }
 
-// The medium in which a ray in the local direction wi starts; 0: none.
+// Returns the medium in which a ray in the local direction wi starts; 0: none.
 uint medium_towards(Vertex vertex, vec3 wi)
 {
     if (!HAS_MEDIA) return 0u;
@@ -73,7 +73,7 @@ uint medium_towards(Vertex vertex, vec3 wi)
     return vertex.is_front ? vertex.surface.material + 1u : 0u;
 }
 
-// Next-event estimation.
+// Samples a light: next-event estimation.
 void light_directly(Vertex vertex)
 {
     SceneData scene = AT(wave.scene, 0);

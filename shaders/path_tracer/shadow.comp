@@ -9,7 +9,7 @@ layout(push_constant, scalar) uniform Push { WaveArgs args; };
 
 WaveData wave;
 
-// The light that glass lets pass straight on: that of a pane.
+// Returns the light that glass lets pass straight on: that of a pane.
 vec3 passed_as_glass(SceneData scene, Ray ray, Surface surface, uint flags, vec3 color)
 {
     vec2 factors = roughness_and_metallic(scene, surface, flags);

@@ -3,7 +3,7 @@
 #ifndef TWINRAY_PATH_TRACER_WEIGHTS_H
 #define TWINRAY_PATH_TRACER_WEIGHTS_H
 
-// Veach's power heuristic with exponent 2, without overflow. Density 0 of `own` means that it needs no partner.
+// Returns Veach's power heuristic with exponent 2, without overflow. Density 0 of `own` means that it needs no partner.
 FUNC float mis_weight(float own, float other)
 {
     if (own <= 0.0f) return 1.0f;

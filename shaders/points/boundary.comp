@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The angles under which points see what the edges of open surfaces sweep.
+// Sums the angles under which points see the area that the edges of open surfaces sweep.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_explicit_arithmetic_types_float64 : require

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A box around each point.
+// Makes a box around each point.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_explicit_arithmetic_types_float64 : require

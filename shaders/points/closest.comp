@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The triangle closest to each point; of several, the one of lowest number. Near children first; bit k of `waiting`
-// says that the sibling of the node k levels up is still to be searched.
+// Finds the triangle closest to each point; of several, the one of lowest number. Near children come first; bit k of
+// `waiting` says that the sibling of the node k levels up is still to be searched.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_explicit_arithmetic_types_float64 : require
@@ -14,9 +14,9 @@ dvec3 point;
 PointBox point_box;
 TrianglePoint best; // its `squared` is the limit until an item is found
 uint best_item = NO_ITEM;
-float best_above;   // best.squared as bounds of boxes are
+float best_above;   // best.squared in the form of bounds of boxes
 
-float nothing() { return uintBitsToFloat(0x7f800000u); } // the bound of what is empty
+float nothing() { return uintBitsToFloat(0x7f800000u); } // the bound of an empty box
 
 float bound_of(uint node)
 {
@@ -35,7 +35,7 @@ void test(uint leaf)
     best_above = squared_distance_above(found.squared, args.scale);
 }
 
-// The next node that is near enough; 0: there is none.
+// Returns the next node that is near enough; 0: there is none.
 uint next_waiting(uint node, inout uint waiting)
 {
     while (waiting != 0u)

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// What the boundary of an open surface adds to the crossings of point_winding.h for the generalized winding number
-// (Jacobson, Kavan, Sorkine-Hornung, "Robust Inside-Outside Segmentation using Generalized Winding Numbers", 2013).
-// Swept along -x to infinity, the boundary closes the surface, and the line of the crossings, along +x, never meets
-// what it sweeps: so they are the winding number of the two together, and the solid angle of what each edge sweeps, a
+// The part that the boundary of an open surface adds to the crossings of point_winding.h for the generalized winding
+// number (Jacobson, Kavan, Sorkine-Hornung, "Robust Inside-Outside Segmentation using Generalized Winding Numbers",
+// 2013). Swept along -x to infinity, the boundary closes the surface, and the line of the crossings, along +x, never
+// meets the swept area: so they are the winding number of the two together, and the solid angle of each edge's area, a
 // spherical triangle with a corner at -x, is taken off again (the idea: Martens, Trettner, Bessmeltsev, "The Antipodal
-// Method", 2026). Whoever includes this has declared area_sign: see triangle_pair.h.
+// Method", 2026). The including file declares area_sign: see triangle_pair.h.
 #ifndef TWINRAY_POINTS_POINT_BOUNDARY_H
 #define TWINRAY_POINTS_POINT_BOUNDARY_H
 #include "shaders/points/point_search.h"
@@ -20,7 +20,7 @@ FUNC AngleSum no_angle()
     return none;
 }
 
-// And the angle of (x, y), which is not (0, 0); of (x, 0) with x < 0, half a turn, back where `is_back`.
+// Adds the angle of (x, y), which is not (0, 0); of (x, 0) with x < 0, half a turn, back if `is_back`.
 FUNC AngleSum with_angle(AngleSum sum, double x, double y, bool is_back)
 {
     if (is_back && y == double(0.0f) && x < double(0.0f)) sum.revolutions -= 1;
@@ -36,8 +36,8 @@ FUNC AngleSum with_angle(AngleSum sum, double x, double y, bool is_back)
     return sum;
 }
 
-// (1 - x, y, z) of a unit vector without cancellation; of +x, as the line is moved, along -y, in units of what it is
-// moved by.
+// Returns (1 - x, y, z) of a unit vector without cancellation; of +x, as the line is moved, along -y, in units of the
+// line's move.
 FUNC dvec3 beside_line(dvec3 unit)
 {
     double y2z2 = unit.y * unit.y + unit.z * unit.z;
@@ -46,15 +46,15 @@ FUNC dvec3 beside_line(dvec3 unit)
     return dvec3(y2z2 / (double(1.0f) + unit.x), unit.y, unit.z);
 }
 
-// And half of the solid angle, seen from the point, of what the edge sweeps (van Oosterom and Strackee 1983). None for
-// a point on the edge, whose winding number is either side's.
+// Adds half of the solid angle, seen from the point, of the area that the edge sweeps (van Oosterom and Strackee 1983).
+// Adds nothing for a point on the edge, whose winding number is either side's.
 FUNC AngleSum with_edge(AngleSum sum, dvec3 point, OpenEdge edge)
 {
     dvec3 a = edge.a - point;
     dvec3 b = edge.b - point;
     double length_a = sqrt(dot(a, a));
     double length_b = sqrt(dot(b, b));
-    int side = moved_side(edge.a, edge.b, point); // exact: on it depends to which side half a sphere counts
+    int side = moved_side(edge.a, edge.b, point); // exact: it decides to which side half a sphere counts
     if (length_a == double(0.0f) || length_b == double(0.0f) || side == 0) return sum;
     a = beside_line(a / length_a);
     b = beside_line(b / length_b);

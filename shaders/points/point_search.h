@@ -58,7 +58,7 @@ struct OpenEdge
 {
     dvec3 a;
     dvec3 b;
-    int passes; // how much oftener triangles go from a to b than back; of a mirrored instance the other way round
+    int passes; // how much oftener triangles go from a to b than back; in a mirrored instance, from b to a
     uint reserved;
 };
 BUFFER_OF(OpenEdge, 8);
@@ -93,8 +93,8 @@ struct TrianglePoint
 
 FUNC double squared_length(dvec3 v) { return dot(v, v); }
 
-// The closest point of the segment from `from` to `to`, which is at uv_from and uv_to. From either end, and of all
-// triangles that have the edge or the vertex, it is the same bits.
+// Returns the closest point of the segment from `from` to `to`, which is at uv_from and uv_to. From either end, and of
+// all triangles that have the edge or the vertex, it is the same bits.
 FUNC TrianglePoint closest_on_edge(dvec3 p, dvec3 from, dvec3 to, dvec2 uv_from, dvec2 uv_to)
 {
     bool is_turned = is_before(to, from);
@@ -124,11 +124,11 @@ FUNC bool is_within_triangle(dvec2 uv)
 
 const uint MOST_CORRECTIONS = 8u;
 
-// The closest of the edges' points and, where it lies within, the foot of the perpendicular. Barycentric coordinates of
-// a needle's are off by 2^-53 over its height, for sides of about 1; they are solved for again in what is left within
-// the plane, which gains as many digits each time. A foot within that of an edge, or in a triangle so thin that nothing
-// is gained, is as near to that edge as float64 can tell. So the distance is off by at most some 2^-50 of the largest
-// of the triangle's sides and the distance, whatever its shape.
+// Returns the closest of the edges' points and, where it lies within, the foot of the perpendicular. Barycentric
+// coordinates of a needle's are off by 2^-53 over its height, for sides of about 1; they are solved for again in what
+// is left within the plane, which gains as many digits each time. A foot within that of an edge, or in a triangle so
+// thin that nothing is gained, is as near to that edge as float64 can tell. So the distance is off by at most some
+// 2^-50 of the largest of the triangle's sides and the distance, whatever its shape.
 FUNC TrianglePoint closest_on_triangle(dvec3 p, WorldTriangle t)
 {
     const double ONE = double(1.0f);
@@ -174,7 +174,7 @@ FUNC PointBox box_around(dvec3 p)
     return box;
 }
 
-// In units of 1 / scale, a power of two.
+// Returns the box in units of 1 / scale, a power of two.
 FUNC PointBox scaled(PointBox box, float scale)
 {
     PRECISE vec3 low = box.min * scale;
@@ -184,7 +184,7 @@ FUNC PointBox scaled(PointBox box, float scale)
     return box;
 }
 
-// Empty for a point that is not finite.
+// Returns the box of a point; empty if the point is not finite.
 FUNC TreeBox tree_box_of(dvec3 p, uint item)
 {
     TreeBox box = empty_tree_box();
@@ -195,9 +195,9 @@ FUNC TreeBox tree_box_of(dvec3 p, uint item)
     return box;
 }
 
-// Not above the squared distance of any point of the box from the query, which is scaled, in units of 1 / scale.
-// Scaling comes first, so that no difference overflows, and compilers are kept from taking the factor out; what it
-// flushes is below what counts. Each rounding is below 2^-24 of what it rounds. The largest float stands for all above.
+// Bounds the squared distance of the box's points from the query, which is scaled, from below, in units of 1 / scale.
+// Scaling comes first, so that no difference overflows, and compilers are kept from taking the factor out; flushed
+// numbers are too small to count. Each rounding is below 2^-24 of its operand. The largest float stands for all above.
 FUNC float squared_distance_below(PointBox p, TreeBox box, float scale)
 {
     PRECISE vec3 low = box.min * scale;
@@ -208,7 +208,7 @@ FUNC float squared_distance_below(PointBox p, TreeBox box, float scale)
     return min(dot(gap, gap), 3.402823466e38f) * 0.9999995f;
 }
 
-// The same of a squared distance in world units, but not below it, nor denormal.
+// Does the same for a squared distance in world units, but not below it, nor denormal.
 FUNC float squared_distance_above(double squared, float scale)
 {
     double scaled = squared * double(scale) * double(scale);

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// How a closed surface winds around a point: the signed number of triangles that the line from the point along +x
-// crosses, those counted up of which the front is met last. The line is moved infinitesimally, by e in y and e^2 in z,
-// so that it meets no edge and no vertex ("Simulation of Simplicity", Edelsbrunner and Muecke 1990): nothing is counted
-// twice or lost. Whoever includes this has declared volume_sign and area_sign: see triangle_pair.h.
+// Counts how a closed surface winds around a point: the signed number of triangles that the line from the point along
+// +x crosses; those whose front is met last count up. The line is moved infinitesimally, by e in y and e^2 in z, so
+// that it meets no edge and no vertex ("Simulation of Simplicity", Edelsbrunner and Muecke 1990): nothing is counted
+// twice or lost. The including file declares volume_sign and area_sign: see triangle_pair.h.
 #ifndef TWINRAY_POINTS_POINT_WINDING_H
 #define TWINRAY_POINTS_POINT_WINDING_H
 #include "shaders/collide/orient.h"
 #include "shaders/collide/pair_class.h"
 
-// On which side of the edge from a to b, seen against +x, the moved line passes: 1: left. 0: the edge is seen as a
-// point.
+// Returns on which side of the edge from a to b, seen against +x, the moved line passes: 1: left. 0: the edge is seen
+// as a point.
 FUNC int moved_side(dvec3 a, dvec3 b, dvec3 p)
 {
     int side = area_sign(a, b, p, 0u);
@@ -19,7 +19,7 @@ FUNC int moved_side(dvec3 a, dvec3 b, dvec3 p)
     return 0;
 }
 
-// 1 or -1 where the moved line crosses the triangle, else 0, or UNKNOWN_SIGN. 0 for a point on the triangle.
+// Returns 1 or -1 if the moved line crosses the triangle, else 0, or UNKNOWN_SIGN. 0 for a point on the triangle.
 FUNC int crossing_of(dvec3 p, WorldTriangle t)
 {
     int ab = moved_side(t.a, t.b, p);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How often the scene winds around each point; crossings that float64 cannot decide are listed for the host.
+// Counts how often the scene winds around each point; crossings that float64 cannot decide are listed for the host.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_explicit_arithmetic_types_float64 : require

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// All triangles that are not farther from each point than the limit.
+// Finds all triangles that are not farther from each point than the limit.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_explicit_arithmetic_types_float64 : require

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One ray by a ray query, as programs that show a driver's fault trace it: see report/reproducer/reproducer.c.
+// Traces one ray by a ray query, as programs that show a driver's fault do: see report/reproducer/reproducer.c.
 #version 460
 #extension GL_EXT_ray_query : require
 #extension GL_EXT_buffer_reference : require

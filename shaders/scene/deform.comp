@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One invocation a vertex: morph targets, then linear blend skinning.
+// Moves one vertex per invocation: morph targets, then linear blend skinning.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"
@@ -55,7 +55,7 @@ vec3 unit_or_zero(vec3 v)
     return largest > 0.0 && is_finite(v) ? normalize(v / largest) : vec3(0.0);
 }
 
-// The linear part in units of its largest entry, for directions: products of its entries then stay within float.
+// Returns the linear part in units of its largest entry, for directions: products of entries then stay within float.
 Rows scaled(Rows m)
 {
     float unit = power_of_two_below(max(max(largest_of(m.r0.xyz), largest_of(m.r1.xyz)), largest_of(m.r2.xyz)));

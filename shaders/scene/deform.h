@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the kernel that moves vertices takes. deformed() in twinray/scene.h says what it computes.
+// The arguments of the kernel that moves vertices. deformed() in twinray/scene.h says what it computes.
 #ifndef TWINRAY_SCENE_DEFORM_H
 #define TWINRAY_SCENE_DEFORM_H
 

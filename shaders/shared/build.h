@@ -154,7 +154,7 @@ FUNC LeafBox empty_box()
     return box;
 }
 
-// The middle without overflow, which (lo + hi) / 2 has above 1.7e38.
+// Returns the middle without overflow, which (lo + hi) / 2 has above 1.7e38.
 FUNC vec3 center_of(LeafBox box)
 {
     PRECISE vec3 half_lo = box.lo * 0.5f;

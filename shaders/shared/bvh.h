@@ -167,8 +167,8 @@ FUNC uint subtree_info(uint leaves, uint height) { return leaves | height << 25u
 FUNC uint leaves_in(uint subtree) { return subtree & 0x1ffffffu; }
 FUNC uint height_in(uint subtree) { return subtree >> 25u; }
 
-// A child of a node of layout bvh2, given by the node above it and its side. A built tree stores the edges of its inner
-// nodes, as a way up to the root, whose edge is 0.
+// Makes an edge: it names a child of a node of layout bvh2 by the node above it and its side. A built tree stores the
+// edges of its inner nodes, as a way up to the root, whose edge is 0.
 FUNC uint make_edge(uint node, uint side) { return (node + 1u) << 1u | side; }
 FUNC uint parent_of_edge(uint edge) { return (edge >> 1u) - 1u; }
 FUNC uint edge_of(REF(BvhNode) nodes, uint node) { return AT(nodes, node).subtree0; }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Level certified: which triangle a ray meets, and in which order, is what float64 says of the ray, the vertices and
-// the transform as they were given. float32 only leaves out what it can prove to be no hit, within the bounds of its
-// errors:
+// Level certified: float64 decides from the ray, the vertices and the transform as they were given which triangle a ray
+// meets, and in which order. float32 only leaves out what it can prove to be no hit, within the bounds of its errors:
 //  - Boxes are padded by what transforming the ray may move it, so that no box of a hit is passed by.
 //  - A triangle is refused where two edges see the ray on opposite sides by more than their error bounds (a
 //    floating-point filter: Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric
@@ -59,8 +58,8 @@ FUNC CertifiedRay certified_ray(RefineInstance instance, Ray ray, bool is_moved)
     return mapped;
 }
 
-// 1 or -1 where the edge function of two sheared vertices, each off by at most `error` in x and y, has that sign for
-// certain, else 0.
+// Returns 1 or -1 if the edge function of two sheared vertices, each off by at most `error` in x and y, has that sign
+// for certain, else 0.
 FUNC int certain_side(vec3 a, vec3 b, float error)
 {
     const float ROUNDINGS = 2.384185791015625e-07f; // 4 of 2^-24
@@ -73,7 +72,7 @@ FUNC int certain_side(vec3 a, vec3 b, float error)
     return area > bound ? 1 : (area < -bound ? -1 : 0);
 }
 
-// exact_side and accurate_edge_function of intersect.h in float64.
+// Does the work of exact_side and accurate_edge_function of intersect.h in float64.
 FUNC double exact_edge_function_double(dvec3 a, dvec3 b, INOUT(int) side)
 {
     PRECISE double p = a.x * b.y;
@@ -92,7 +91,7 @@ FUNC dvec3 dominant_last_double(dvec3 v, uint axis)
     return axis == 0u ? dvec3(v.y, v.z, v.x) : (axis == 1u ? dvec3(v.z, v.x, v.y) : v);
 }
 
-// A vertex, relative to the ray's origin, seen along the direction d, whose dominant axis is the last.
+// Returns a vertex, relative to the ray's origin, seen along the direction d, whose dominant axis is the last.
 FUNC dvec3 sheared_double(dvec3 vertex, dvec3 d, uint axis)
 {
     dvec3 p = dominant_last_double(vertex, axis);
@@ -101,7 +100,7 @@ FUNC dvec3 sheared_double(dvec3 vertex, dvec3 d, uint axis)
     return dvec3(x, y, p.z);
 }
 
-// may_begin_in_plane() of intersect.h.
+// Does the work of may_begin_in_plane() of intersect.h in float64.
 FUNC bool may_begin_in_plane_double(dvec3 a, dvec3 b, dvec3 c, double mean)
 {
     const double ROUNDINGS = double(7.1054273576010019e-15f); // 64 u = 2^-47

@@ -34,7 +34,7 @@ struct CollapseLevel
 };
 BUFFER_OF(CollapseLevel, 4);
 
-// A node of the binary tree, and how many nodes of records are above the one that it becomes.
+// Packs a node of the binary tree, and how many nodes of records are above the one that it becomes.
 FUNC uint pack_node(uint node, uint level) { return node | level << 25u; }
 FUNC uint node_in(uint node_and_level) { return node_and_level & 0x1ffffffu; }
 FUNC uint level_in(uint node_and_level) { return node_and_level >> 25u; }
@@ -60,8 +60,8 @@ struct CollapseArgs
     uint subtree_leaves;             // a subtree has at most
 };
 
-// The queue of a subtree has room for its nodes, half as many as it has records below it at most. This is the start of
-// a subtree's queue: `before` is the first record below it, less the second half of the root, if that has one. With the
+// Returns the start of a subtree's queue. The queue has room for the subtree's nodes, half as many as it has records
+// below it at most. `before` is the first record below it, less the second half of the root, if that has one. With the
 // number of leaves and 0 it is the end of all.
 FUNC uint queue_begin(uint tree_first, uint before)
 {
@@ -89,11 +89,11 @@ FUNC void open_child(REF(BvhNode) nodes, uint node, uint i, INOUT(NodeChildren) 
     children.count = children.count + 1u;
 }
 
-// The number of levels of the binary tree that may be below the children of a node.
+// Returns the number of levels of the binary tree that may be below the children of a node.
 FUNC uint tallest_below(uint level) { return 2u * (DEEPEST_RECORDS - 1u - level); }
 
-// The priority of a child: the one with the most is opened next; below 0: it has no children of its own. It is never
-// NaN, so that a node with room has only leaves, on which the bounds of record_count rest. Among eight children,
+// Returns the priority of a child: the one with the most is opened next; below 0: it has no children of its own. It is
+// never NaN, so that a node with room has only leaves, on which the bounds of record_count rest. Among eight children,
 // subtrees of two or three leaves go first, so that a full node has at most two of them left.
 FUNC float priority_of(NodeChildren children, uint i, float unit, uint tallest, uint width)
 {
@@ -136,8 +136,8 @@ FUNC NodeChildren no_children()
     return children;
 }
 
-// The children of the node that a binary node becomes. It has two levels more than its children may have at most, so
-// that none is too tall once two are opened.
+// Returns the children of the node that a binary node becomes. It has two levels more than its children may have at
+// most, so that none is too tall once two are opened.
 FUNC NodeChildren children_of(REF(BvhNode) nodes, uint node_and_level, uint width)
 {
     NodeChildren children = no_children();
@@ -165,7 +165,7 @@ FUNC CollapseStep no_step()
 
 FUNC bool is_inner(uint child) { return (child & LEAF_BIT) == 0u; }
 
-// Below child i, if that becomes an item, else 0.
+// Returns the leaves below child i, if that becomes an item, else 0.
 FUNC uint leaves_of_item(NodeChildren children, uint i)
 {
     return is_inner(children.child[i]) ? leaves_in(children.subtree[i]) : 0u;
@@ -211,7 +211,7 @@ FUNC CollapseStep write_node(BuildTree tree, Uints leaf_indices, CollapseItem it
     return step;
 }
 
-// The item of a tree's root, if that is an inner node.
+// Returns the item of a tree's root, if that is an inner node.
 FUNC CollapseStep begin_collapse(BuildTree tree, Uints leaf_indices, uint index, uint width)
 {
     CollapseStep step = no_step();
@@ -229,7 +229,7 @@ FUNC CollapseStep begin_collapse(BuildTree tree, Uints leaf_indices, uint index,
     return step;
 }
 
-// The record of a leaf of a tree.
+// Returns the record of a leaf of a tree.
 FUNC CompressedRecord encode_leaf(BuildTree tree, uint leaf)
 {
     if (has_instances(tree)) return encode_instance(leaf);

@@ -13,7 +13,7 @@
 
 const uint MOST_RECORDS = 1u << 26u; // a tree may have: what an entry on the stack can name; 40 million leaves
 
-// The number of records of a node, by the most children that it may have.
+// Returns the number of records of a node, by the most children that it may have.
 FUNC uint records_of_node(uint width) { return width == 8u ? 2u : 1u; }
 
 // Records that a tree of so many leaves needs at most; those that it does not use are `none`.
@@ -94,14 +94,14 @@ FUNC uint child_index(ChildSlots slots, uint slot)
 }
 FUNC uint children_end(ChildSlots slots) { return slots.first + uint(bitCount(slots.mask)); }
 
-// The second half of a node of layout compressed8; of others any record.
+// Returns the second half of a node of layout compressed8; of others any record.
 FUNC CompressedRecord second_half_of(REF(CompressedRecord) records, uint index, CompressedRecord node)
 {
     return load_record(records, is_wide_node(node) ? index + 1u : index);
 }
 
-// The slot of a node that the record `target` is in or below. Records below different children do not mix, so that it
-// is the child whose own children begin last of those that begin no later.
+// Returns the slot of a node that the record `target` is in or below. Records below different children do not mix, so
+// that it is the child whose own children begin last of those that begin no later.
 FUNC uint slot_towards(REF(CompressedRecord) records, ChildSlots slots, uint target)
 {
     uint found = 0u;
@@ -130,7 +130,7 @@ FUNC vec3 grid_cell(CompressedRecord node)
     return vec3(cell_size(node.a.x), cell_size(node.a.y), cell_size(node.a.z));
 }
 
-// The box of a node's child as rays meet it.
+// Returns the box of a node's child as rays meet it.
 FUNC LeafBox box_in_planes(CompressedRecord node, CompressedRecord second_half, uint slot)
 {
     bool is_second = slot > 3u;
@@ -146,7 +146,7 @@ FUNC LeafBox box_in_planes(CompressedRecord node, CompressedRecord second_half, 
     return box;
 }
 
-// Half the areas of the boxes of a node's children, as rays meet them; 0 of other records.
+// Returns half the areas of the boxes of a node's children, as rays meet them; 0 of other records.
 FUNC float areas_in(REF(CompressedRecord) records, uint index, float unit)
 {
     CompressedRecord node = load_record(records, index);
@@ -163,7 +163,7 @@ FUNC float areas_in(REF(CompressedRecord) records, uint index, float unit)
     return sum;
 }
 
-// The primitive of a leaf of one.
+// Returns the primitive of a leaf of one.
 FUNC BvhTriangle primitive_of(CompressedRecord record)
 {
     BvhTriangle t;

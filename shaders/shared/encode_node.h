@@ -9,9 +9,9 @@
 #define TWINRAY_SHARED_ENCODE_NODE_H
 #include "shaders/shared/compressed.h"
 
-// The exponent of the smallest power of two by which lo..hi is 252 cells long at most, with what origin_below may lie
-// farther off, and a cell some roundings of the coordinates: then what lies a cell below lo, rounded, is 1/2 to 3/2 of
-// a cell below.
+// Returns the exponent of the smallest power of two by which lo..hi is 252 cells long at most, with what origin_below
+// may lie farther off, and a cell some roundings of the coordinates: then what lies a cell below lo, rounded, is 1/2 to
+// 3/2 of a cell below.
 FUNC uint cell_exponent(float lo, float hi)
 {
     const float LONGEST = 0.003968253968f;              // 1 / 252
@@ -24,8 +24,8 @@ FUNC uint cell_exponent(float lo, float hi)
 }
 FUNC float cells_per_unit(uint exponent) { return uintBitsToFloat((254u - exponent) << 23u); }
 
-// The largest number that is not above `limit` and whose last 9 bits are an exponent: 2^-14 of it lower at most. The
-// first of them is 0, so that a shift leaves nothing but the exponent.
+// Returns the largest number that is not above `limit` and whose last 9 bits are an exponent: 2^-14 of it lower at
+// most. The first of them is 0, so that a shift leaves nothing but the exponent.
 FUNC float origin_below(float limit, uint exponent)
 {
     uint bits = floatBitsToUint(limit);
@@ -43,8 +43,8 @@ FUNC float cell_within(float cells)
     return from_zero < 255.0f ? from_zero : 255.0f;
 }
 
-// A plane in cells from the origin, moved outwards by a 256th of a cell at least: a traversal that computes with a
-// plane's distance from the ray in float32 is off by less than 2^-10 cells near it, and by its own padding far from it.
+// Returns a plane in cells from the origin, moved outwards by a 256th of a cell at least: a traversal that computes its
+// distance from the ray in float32 is off by less than 2^-10 cells near it, and by its own padding far from it.
 FUNC uint cell_below(float plane, float origin, float per_unit)
 {
     PRECISE float cells = (plane - origin) * per_unit - 0.00390625f;
@@ -73,7 +73,7 @@ struct NodeOrder
     uint axes;   // see axes_by_length
 };
 
-// Each child in the slot of its number.
+// Puts each child in the slot of its number.
 FUNC NodeOrder given_order(uint mask, uint axes)
 {
     NodeOrder order;
@@ -96,7 +96,7 @@ FUNC LeafBox box_around(NodeChildren children, uint width)
     return around;
 }
 
-// The planes of one axis: x, y those below and above the first four slots, z, w those of the others.
+// Returns the planes of one axis: x, y those below and above the first four slots, z, w those of the others.
 FUNC uvec4 encode_axis(NodeChildren children, NodeOrder order, uint axis, float origin, float per_unit, uint width)
 {
     uvec4 planes = uvec4(0u, 0u, 0u, 0u);
@@ -173,7 +173,7 @@ FUNC uint corner_of(uvec3 triangle, uint corner)
     return number == 0u ? triangle.x : (number == 1u ? triangle.y : triangle.z);
 }
 
-// The corners across an edge that two triangles share, in either direction.
+// Returns the corners across an edge that two triangles share, in either direction.
 FUNC uvec2 lone_corners(uvec3 first, uvec3 second)
 {
     DONT_UNROLL for (uint i = 0u; i < 9u; i = i + 1u)
@@ -210,7 +210,7 @@ FUNC CompressedRecord encode_boxed_leaf(BuildTree tree, Leaf leaf, BoxedLeaf box
     return encode_primitive(boxed.last);
 }
 
-// The leaf that encode_boxed_leaf made a record from.
+// Returns the leaf that encode_boxed_leaf made a record from.
 FUNC Leaf leaf_of(CompressedRecord record)
 {
     return make_leaf(index_in(record), is_pair(record) ? second_index_in(record) : index_in(record));
@@ -232,7 +232,7 @@ FUNC CompressedRecord encode_instance(uint index)
     return record;
 }
 
-// Three axes, from bit 0 on two bits each, the longest first.
+// Returns three axes, from bit 0 on two bits each, the longest first.
 FUNC uint axes_by_length(LeafBox around)
 {
     vec3 size = is_active(around) ? around.hi - around.lo : vec3(0.0f);
@@ -244,14 +244,14 @@ FUNC uint axes_by_length(LeafBox around)
 }
 FUNC uint axis_at(uint axes, uint level) { return axes >> 2u * level & 3u; }
 
-// The octant of a direction whose negative entries have their bits set: bit 2 of the first axis.
+// Returns the octant of a direction whose negative entries have their bits set: bit 2 of the first axis.
 FUNC uint octant_of(uint negative, uint axes)
 {
     return (negative >> axis_at(axes, 0u) & 1u) << 2u | (negative >> axis_at(axes, 1u) & 1u) << 1u |
            (negative >> axis_at(axes, 2u) & 1u);
 }
 
-// A bit for each slot, moved to that of slot ^ octant.
+// Returns a bit for each slot, moved to that of slot ^ octant.
 FUNC uint in_order_of_octant(uint slots, uint octant)
 {
     uint moved = (octant & 1u) != 0u ? (slots & 0x55u) << 1u | (slots >> 1u & 0x55u) : slots;

@@ -63,7 +63,7 @@ FUNC uint key_of(ChildKeys keys, uint child)
     return child < 2u ? low : high;
 }
 
-// `child` first, and then those that come after it, as in a traversal that continued to it.
+// Returns the key that puts `child` first, and then those that come after it, as in a traversal that continued to it.
 FUNC uint key_from(uint key, uint first, uint number, uint child)
 {
     return number == child ? child : (key > first ? key : NO_ENTRY);
@@ -118,8 +118,8 @@ FUNC float distance_along(uint planes, uint shift, float scale, float base)
     return FMA(float(planes >> shift & 0xffu), scale, base);
 }
 
-// The interval in which the ray crosses the box of child `shift / 8`, between t_min and t_max in t * ray.t_scale, like
-// cross_box of ray_space.h.
+// Returns the interval in which the ray crosses the box of child `shift / 8`, between t_min and t_max in t *
+// ray.t_scale, like cross_box of ray_space.h.
 FUNC vec2 cross_planes(SeenGrid grid, uint shift, float t_min, float t_max)
 {
     float near_x = distance_along(grid.near_planes.x, shift, grid.scale.x, grid.near_base.x);
@@ -141,7 +141,7 @@ FUNC uint enter_planes(SeenGrid grid, uint shift, float t_min, float t_max, bool
     return visit_order(crossing.x, crossing.y, is_there, query);
 }
 
-// The children of a node of layout compressed4, by where the ray enters them.
+// Returns the children of a node of layout compressed4, by where the ray enters them.
 FUNC ChildKeys enter_compressed(CompressedRecord node, BoxRay ray, float t_min, float t_max, uint query)
 {
     SeenGrid grid = grid_of(node, ray);
@@ -185,7 +185,7 @@ FUNC uint octant_at(CompressedRecord second_half, BoxRay ray)
     return octant_of(negative, second_half.a.x >> 16u);
 }
 
-// The slots of a half of the node that the ray crosses, from bit 0 on.
+// Returns the slots of a half of the node that the ray crosses, from bit 0 on.
 FUNC uint slots_crossed(SeenGrid grid, float first, float last)
 {
     uint slots = 0u;
@@ -194,7 +194,7 @@ FUNC uint slots_crossed(SeenGrid grid, float first, float last)
     return slots;
 }
 
-// The children that the ray enters, as visits; 0: none.
+// Returns the children that the ray enters, as visits; 0: none.
 FUNC uint enter_wide(CompressedRecord node, CompressedRecord second_half, BoxRay ray, float t_min, float t_max)
 {
     PRECISE float first = t_min * ray.t_scale;
@@ -209,7 +209,7 @@ FUNC uint enter_wide(CompressedRecord node, CompressedRecord second_half, BoxRay
     return make_visits(in_order_of_octant(crossed & slots, octant), slots, octant);
 }
 
-// The child in `slot`, and those that come after it, as in a traversal that continued to it.
+// Returns the child in `slot`, and those that come after it, as in a traversal that continued to it.
 FUNC uint visits_from(uint visits, uint slot)
 {
     uint bit = 1u << (slot ^ octant_in(visits));

@@ -31,7 +31,7 @@ FUNC dvec3 cross_product(dvec3 a, dvec3 b)
     return dvec3(x, y, z);
 }
 
-// The rounding error of a product in float64, as product_error in exact.h.
+// Returns the rounding error of a product in float64, as product_error in exact.h.
 FUNC double product_error_double(double a, double b, double p)
 {
     const double SPLITTER = double(134217729u); // 2^27 + 1

@@ -23,7 +23,7 @@ struct ExactHitsArgs
     uint reserved;
 };
 
-// The float64 result for the triangle that a hit names; the hit's own if the triangle's plane contains the ray.
+// Returns the float64 result for the triangle that a hit names; the hit's own if the triangle's plane contains the ray.
 FUNC HitDouble exact_hit(REF(RefineInstance) instances, Ray64 ray, Hit hit)
 {
     HitDouble exact;

@@ -26,7 +26,7 @@ struct GatherMeshArgs
     float factor; // of positions
 };
 
-// bits / 32767 as a signed number, at least -1, rounded once: 1 / 32767 is 2^-15 + 2^-30 + 2^-45 and less.
+// Returns bits / 32767 as a signed number, at least -1, rounded once: 1 / 32767 is 2^-15 + 2^-30 + 2^-45 and less.
 FUNC float float_of_snorm16(uint bits)
 {
     float value = float(int(bits << 16u) >> 16);

@@ -6,8 +6,8 @@
 #include "twinray/glsl/word64.h"
 #include "shaders/shared/ray_space.h"
 
-// A vertex seen along the ray: x, y sheared so that the ray is the point (0, 0), z along the dominant axis. It depends
-// only on the vertex and the ray, so that all triangles that share the vertex see the same point.
+// Returns a vertex seen along the ray: x, y sheared so that the ray is the point (0, 0), z along the dominant axis. It
+// depends only on the vertex and the ray, so that all triangles that share the vertex see the same point.
 FUNC vec3 sheared(vec3 vertex, RaySpace space)
 {
     PRECISE vec3 relative = vertex - space.origin;
@@ -19,7 +19,7 @@ FUNC vec3 sheared(vec3 vertex, RaySpace space)
     return vec3(x, y, p.z);
 }
 
-// Twice the signed area of (0, a, b). Rounding is monotone: a nonzero result has the right sign.
+// Returns twice the signed area of (0, a, b). Rounding is monotone: a nonzero result has the right sign.
 FUNC float edge_function(vec3 a, vec3 b)
 {
     PRECISE float p = a.x * b.y;
@@ -43,8 +43,8 @@ FUNC float accurate_edge_function(vec3 a, vec3 b)
     return area;
 }
 
-// The power of two by which x and y of two sheared vertices may be multiplied, exactly and without overflow of a
-// product. If a ray passes a vertex by a denormal distance, the products that decide would underflow, some to 0, and
+// Returns the power of two by which x and y of two sheared vertices may be multiplied, exactly and without overflow of
+// a product. If a ray passes a vertex by a denormal distance, the products that decide would underflow, some to 0, and
 // triangles around the vertex would disagree. It depends only on the edge, so that both of its triangles see the same.
 FUNC float room_above(vec3 a, vec3 b)
 {
@@ -62,9 +62,9 @@ FUNC vec3 scaled_across(vec3 v, float scale)
     return vec3(x, y, v.z);
 }
 
-// The sign of the exact edge function; if that is 0, the sign after moving the ray by (e, e^2) for a vanishing e > 0
-// (simulation of simplicity), so that exactly one of the triangles around an edge or a vertex is hit, for any winding.
-// 0 only for a collapsed edge.
+// Returns the sign of the exact edge function; if that is 0, the sign after moving the ray by (e, e^2) for a vanishing
+// e > 0 (simulation of simplicity), so that exactly one of the triangles around an edge or a vertex is hit, for any
+// winding. 0 only for a collapsed edge.
 FUNC int exact_side(vec3 vertex_a, vec3 vertex_b)
 {
     float scale = room_above(vertex_a, vertex_b);
@@ -88,7 +88,7 @@ struct TriangleHit
     bool along; // the normal (v1 - v0) x (v2 - v0) points along the ray, not against it
 };
 
-// t, u, v where the ray crosses the plane of the sheared vertices.
+// Returns t, u, v where the ray crosses the plane of the sheared vertices.
 FUNC TriangleHit crossing(vec3 a, vec3 b, vec3 c, float shear_z)
 {
     float area_a = accurate_edge_function(b, c);
@@ -174,7 +174,7 @@ FUNC bool is_around_ray(INOUT(SeenTriangle) seen)
 
 // ---- The side of a triangle's plane on which a point lies, exact for floats, however near to it
 
-// The exponent of the lowest bit that is set; NONE of 0 and of denormals, which count as 0.
+// Returns the exponent of the lowest bit that is set; NONE of 0 and of denormals, which count as 0.
 FUNC int lowest_exponent(float x)
 {
     const int NONE = 1000;
@@ -183,7 +183,7 @@ FUNC int lowest_exponent(float x)
     return field == 0u ? NONE : int(field) - 150 + int(findLSB((bits & 0x7fffffu) | 0x800000u));
 }
 
-// (x - from) / unit for two whole multiples of it; some number below 2^31 where they are none.
+// Returns (x - from) / unit for two whole multiples of it; some number below 2^31 if they are none.
 FUNC int whole_difference(float x, float from, float inverse_unit)
 {
     PRECISE float difference = x - from;
@@ -206,10 +206,10 @@ FUNC uvec3 plus_product(uvec3 sum, int a, int b, int c)
     return uvec3(first.x, second.x, sum.z + (high.y ^ flips) + second.y);
 }
 
-// The sign of det(v0 - from, v1 - from, v2 - from), 0 in the plane, in whole numbers. Returns false if these have more
-// than 30 bits: if coordinates of an axis differ by more than 2^30 of their lowest bit, or that is below 2^-126. It is
-// rarely called: loops turn the axes, as is_exactly_around() turns vertices. The whole numbers take the places of the
-// coordinates, and none a register of its own.
+// Finds the sign of det(v0 - from, v1 - from, v2 - from), 0 in the plane, in whole numbers. Returns false if these have
+// more than 30 bits: if coordinates of an axis differ by more than 2^30 of their lowest bit, or that is below 2^-126.
+// It is rarely called: loops turn the axes, as is_exactly_around() turns vertices. The whole numbers take the places of
+// the coordinates, and none a register of its own.
 FUNC bool plane_side(vec3 v0, vec3 v1, vec3 v2, vec3 from, INOUT(int) side)
 {
     const float MOST = 1073741824.0f; // 2^30

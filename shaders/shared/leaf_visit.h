@@ -76,7 +76,7 @@ FUNC bool may_be_around_ray(float area_a, float area_b, float area_c)
     return is_met || is_any_zero(area_a, area_b, area_c);
 }
 
-// Which triangles the ray's line may meet, as bits 0 and 1.
+// Returns the triangles that the ray's line may meet, as bits 0 and 1.
 FUNC uint triangles_around_ray(SeenLeaf leaf)
 {
     bool is_first = may_be_around_ray(leaf.shared_area, leaf.to_third[0], leaf.from_third[0]);

@@ -14,7 +14,7 @@ FUNC uint spread_bits(uint x)
     return x;
 }
 
-// The cell of a coordinate in [lo, hi] cut into 2^20; 0 if the interval has no length.
+// Returns the cell of a coordinate in [lo, hi] cut into 2^20; 0 if the interval has no length.
 FUNC uint cell_of(float x, float lo, float hi)
 {
     PRECISE float extent = hi - lo;
@@ -31,7 +31,7 @@ FUNC uvec3 cells_of(vec3 point, vec3 lo, vec3 hi)
     return uvec3(cell_of(point.x, lo.x, hi.x), cell_of(point.y, lo.y, hi.y), cell_of(point.z, lo.z, hi.z));
 }
 
-// The code of cells of 10 bits an axis.
+// Returns the code of cells of 10 bits an axis.
 FUNC uint interleaved(uint x, uint y, uint z)
 {
     return (spread_bits(x) << 2u) | (spread_bits(y) << 1u) | spread_bits(z);
@@ -49,7 +49,7 @@ FUNC uint morton_code_low(vec3 point, vec3 lo, vec3 hi)
     return interleaved(cells.x & 1023u, cells.y & 1023u, cells.z & 1023u);
 }
 
-// A map from floats (NaN excepted) to uints that keeps order, for atomic min and max.
+// Maps floats (NaN excepted) to uints and keeps their order, for atomic min and max.
 FUNC uint ordered_bits(float x)
 {
     uint bits = floatBitsToUint(x);

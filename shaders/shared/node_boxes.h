@@ -36,7 +36,7 @@ FUNC uint child_in(SwGeometry geometry, AnyNode node, uint slot)
     return child_index(node.slots, slot);
 }
 
-// The box of a child as rays meet it.
+// Returns the box of a child as rays meet it.
 FUNC LeafBox box_in(SwGeometry geometry, AnyNode node, uint slot)
 {
     if (!is_absent(geometry.records)) return box_in_planes(node.record, node.second_half, slot);

@@ -35,7 +35,7 @@ FUNC void put_child(BvhChildren nodes, uint node, uint side, NodeChild half_node
     AT(nodes, node * 2u + side) = stored;
 }
 
-// `node` with these two children, as a child.
+// Returns `node` with these two children, as a child.
 FUNC NodeChild joined_child(NodeChild a, NodeChild b, uint node)
 {
     NodeChild both;
@@ -54,7 +54,7 @@ FUNC uint height_of(BvhChildren nodes, uint node)
 
 FUNC bool is_inner(NodeChild half_node) { return (half_node.child & LEAF_BIT) == 0u; }
 
-// Half the area of a box, with lengths times `scale`.
+// Returns half the area of a box, with lengths times `scale`.
 FUNC float area_of(LeafBox box, float scale)
 {
     if (!is_active(box)) return 0.0f;

@@ -20,7 +20,7 @@ FUNC uint cut_levels(SwGeometry geometry)
     return is_wide_node(load_record(geometry.records, geometry.bvh.root)) ? WIDE_CUT_LEVELS : CUT_LEVELS;
 }
 
-// A box around `box` under the map, but for rounding.
+// Returns a box around `box` under the map, but for rounding.
 FUNC LeafBox box_under(Rows map, LeafBox box)
 {
     LeafBox under;
@@ -62,8 +62,8 @@ FUNC bool is_within(LeafBox box, LeafBox outer)
            box.hi.y <= outer.hi.y && box.hi.z <= outer.hi.z;
 }
 
-// A box around the geometry under the map, but for rounding: around its boxes CUT_LEVELS below the root, and the leaves
-// above.
+// Returns a box around the geometry under the map, but for rounding: around its boxes CUT_LEVELS below the root, and
+// the leaves above.
 FUNC LeafBox box_of_cut(SwGeometry geometry, Rows to_world)
 {
     uint lowest = cut_levels(geometry);
@@ -98,7 +98,8 @@ FUNC LeafBox box_of_cut(SwGeometry geometry, Rows to_world)
     return around;
 }
 
-// A box around the geometry under the map, widened by rounding; a tight one if `is_tight`. Empty if the geometry's is.
+// Returns a box around the geometry under the map, widened by rounding; tight if `is_tight`, empty if the geometry's
+// is.
 //
 // It and place_instance() return at one place: they are inlined, and a kernel has no code that its constants rule out.
 FUNC LeafBox box_of_instance(SwGeometry geometry, Rows to_world, Rows to_object, bool is_tight)

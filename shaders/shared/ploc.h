@@ -34,7 +34,7 @@ struct Nearest
     uint rank;  // of the pair, among those of equal area
 };
 
-// Among pairs of equal area, that pair comes first whose clusters are closer in order, then the one that begins at an
+// Ranks pairs of equal area: the pair whose clusters are closer in order comes first, then the one that begins at an
 // even position: clusters that are all alike are joined two by two. Because no two pairs are equal, the first of all
 // pairs is chosen by both, and each round has one.
 FUNC uint pair_rank(uint i, uint j)
@@ -75,12 +75,12 @@ FUNC Cluster joined_cluster(Cluster a, Cluster b)
     return both;
 }
 
-// The number of levels that a tree of `count` leaves needs.
+// Returns the number of levels that a tree of `count` leaves needs.
 FUNC uint levels_for(uint count) { return count < 2u ? 0u : uint(findMSB(count - 1u)) + 1u; }
 
-// The greatest height that the tree of a range with this split may get. Because no two splits on a way down are the
-// same, there are enough levels above it. Positions have 25 bits; the bits that a smaller tree does not need are left
-// for its clusters.
+// Returns the greatest height that the tree of a range with this split may get. Because no two splits on a way down are
+// the same, there are enough levels above it. Positions have 25 bits; the bits that a smaller tree does not need are
+// left for its clusters.
 FUNC uint height_limit(uvec2 split, uint leaf_count)
 {
     bool is_of_positions = split.y == 0u && split.x >> 25u == 0u;

@@ -22,7 +22,7 @@ struct RayOrderArgs
     uint group_count; // of the kernel that finds the box
 };
 
-// The octant by the negative components: x in the highest bit.
+// Returns the octant by the negative components: x in the highest bit.
 FUNC uint octant_of(vec3 direction)
 {
     return (direction.x < 0.0f ? 4u : 0u) | (direction.y < 0.0f ? 2u : 0u) | (direction.z < 0.0f ? 1u : 0u);

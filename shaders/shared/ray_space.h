@@ -55,7 +55,7 @@ FUNC vec3 dominant_last(vec3 v, uint axis)
     return axis == 0u ? vec3(v.y, v.z, v.x) : (axis == 1u ? vec3(v.z, v.x, v.y) : v);
 }
 
-// x, or the nearest of -limit and limit.
+// Returns x, or the nearest of -limit and limit.
 FUNC float within(float x, float limit)
 {
     return min_no_nan(max_no_nan(x, -limit), limit);
@@ -63,7 +63,7 @@ FUNC float within(float x, float limit)
 
 FUNC BoxRay box_ray(RaySpace space)
 {
-#ifdef TWINRAY_NO_PADDING // a negative control: shows what the padding is for
+#ifdef TWINRAY_NO_PADDING // a negative control: shows why the padding is needed
     const float NEAR_FACTOR = 1.0f;
     const float FAR_FACTOR = 1.0f;
 #else
@@ -88,8 +88,8 @@ FUNC BoxRay box_ray(RaySpace space)
     return ray;
 }
 
-// 1, or the power of two that brings the largest t at which a ray may meet something between 2^-40 and 2^80. That is
-// 2^38 pads at most times the reciprocal of the direction's dominant entry.
+// Returns 1, or the power of two that brings the largest t at which a ray may meet something between 2^-40 and 2^80.
+// That is 2^38 pads at most times the reciprocal of the direction's dominant entry.
 FUNC float scale_of_reach(float pad, float along)
 {
     const int LOWEST = -40 - 38;
@@ -127,13 +127,13 @@ FUNC RaySpace make_ray_space(vec3 origin, vec3 direction, float pad)
     return space;
 }
 
-// How far aside of a ray a vertex may be sheared, rounded: 8 of 2^-24 of its distance along an axis. A triangle is hit
-// where its sheared vertices say so, and its box must be, too, however near to the ray's origin that is.
+// Returns how far aside of a ray a vertex may be sheared, rounded: 8 of 2^-24 of its distance along an axis. A triangle
+// is hit if its sheared vertices say so, and its box must be, too, however near to the ray's origin that is.
 // 2^-20
 FUNC float vertex_pad(vec3 origin, float extent) { return (largest_entry(origin) + extent) * 9.5367431640625e-07f; }
 
-// The interval in which a ray is inside of all three slabs, begun with its own, which a NaN (of products out of range)
-// leaves as it was.
+// Returns the interval in which a ray is inside of all three slabs, begun with its own, which a NaN (of products out of
+// range) leaves as it was.
 FUNC float latest_of(float enter, float near_x, float near_y, float near_z)
 {
     return max_no_nan(near_z, max_no_nan(near_y, max_no_nan(near_x, enter)));
@@ -143,8 +143,8 @@ FUNC float earliest_of(float leave, float far_x, float far_y, float far_z)
     return min_no_nan(far_z, min_no_nan(far_y, min_no_nan(far_x, leave)));
 }
 
-// The interval in which the ray is inside the box within [t_min, t_max], in t * ray.t_scale: the first is greater if it
-// does not meet the box.
+// Returns the interval in which the ray is inside the box within [t_min, t_max], in t * ray.t_scale: the first is
+// greater if it does not meet the box.
 FUNC vec2 cross_box(vec3 lo, vec3 hi, BoxRay ray, float t_min, float t_max)
 {
     bool flip_x = ray.near_inverse.x < 0.0f;

@@ -10,7 +10,7 @@
 #include "shaders/shared/refine_scene.h"
 #include "shaders/shared/trace.h"
 
-// The t at which the line o + t d enters the slab between lo and hi; d is not 0.
+// Returns the t at which the line o + t d enters the slab between lo and hi; d is not 0.
 FUNC double slab_entry(float o, float d, float lo, float hi)
 {
     double near = d > 0.0f ? double(lo) : double(hi);
@@ -52,8 +52,8 @@ FUNC Ray advanced(Ray ray, vec3 lo, vec3 hi, INOUT(double) advance)
     return near;
 }
 
-// The ray to trace for options.given: advanced(), with a margin at both ends, since float64 tells what lies between
-// them. Filters see hits before float64 does, so that their rays have none below certified.
+// Returns the ray to trace for options.given: advanced(), with a margin at both ends, since float64 tells what lies
+// between them. Filters see hits before float64 does, so that their rays have none below certified.
 FUNC Ray searched_ray(vec3 lo, vec3 hi, INOUT(TraceOptions) options)
 {
     const float MARGIN = 3.814697265625e-06f; // 2^-18
@@ -66,7 +66,7 @@ FUNC Ray searched_ray(vec3 lo, vec3 hi, INOUT(TraceOptions) options)
     return ray;
 }
 
-// A vertex in world space, seen from the origin.
+// Returns a vertex in world space, seen from the origin.
 FUNC dvec3 vertex_from(dvec3 origin, InstancedMesh placed, uint vertex)
 {
     Floats positions = placed.mesh.positions;
@@ -81,7 +81,7 @@ FUNC dvec3 vertex_from(dvec3 origin, InstancedMesh placed, uint vertex)
     return dvec3(x, y, z);
 }
 
-// t in float32, within the interval that the hit was accepted in.
+// Returns t in float32, within the interval that the hit was accepted in.
 FUNC float rounded_within(double t, Ray ray)
 {
     float rounded = float(t);
@@ -91,8 +91,8 @@ FUNC float rounded_within(double t, Ray ray)
     return rounded;
 }
 
-// Whether a hit at t, which is off by up to `rounding`, lies between the ends of a ray. A surface so near to an end
-// is at the end, which does not count. Signs of t have been decided, so the origin is no end.
+// Returns whether a hit at t, which is off by up to `rounding`, lies between the ends of a ray. A surface so near to an
+// end is at the end, which does not count. Signs of t have been decided, so the origin is no end.
 FUNC bool is_between_ends(double t, double rounding, Ray ray)
 {
     PRECISE double after_begin = double(ray.t_min) + rounding;
@@ -101,8 +101,8 @@ FUNC bool is_between_ends(double t, double rounding, Ray ray)
     return !is_behind && !(t >= before_end);
 }
 
-// The point nearest to 0. Of a triangle's vertices, it is the one from which the distance of its plane cancels least:
-// in a mesh with coordinates of 1e-6 and 1e6, another one cost 20 units in the last place of t.
+// Returns the point nearest to 0. Of a triangle's vertices, it is the one from which the distance of its plane cancels
+// least: in a mesh with coordinates of 1e-6 and 1e6, another one cost 20 units in the last place of t.
 FUNC dvec3 nearest_of(dvec3 a, dvec3 b, dvec3 c)
 {
     dvec3 nearest = a;

@@ -32,8 +32,8 @@ struct RefineGatherArgs
     uint reserved;
 };
 
-// The data of an instance that refining needs; its record is in built units. `absent` is the address that replaces that
-// of a missing mesh.
+// Returns the data of an instance that refining needs; its record is in built units. `absent` is the address that
+// replaces that of a missing mesh.
 FUNC RefineInstance refine_instance(InstanceRecord record, Address absent)
 {
     const float UP = 1.00000095367431640625f; // 1 + 2^-20: more than rounding to float32 takes

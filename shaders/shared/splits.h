@@ -14,9 +14,9 @@ FUNC LeafBox bounds_of(CentroidBounds bits)
     return bounds;
 }
 
-// The split between neighbours in sorted order, larger = higher up: the highest bit in which their codes differ, for
-// equal codes the highest in which low codes do, and if these are equal too, the highest in which their positions do.
-// Only the highest bit counts, and that of two neighbours of a range of leaves is never the same.
+// Returns the split between neighbours in sorted order, larger = higher up: the highest bit in which their codes
+// differ, for equal codes the highest in which low codes do, and if these are equal too, the highest in which their
+// positions do. Only the highest bit counts, and that of two neighbours of a range of leaves is never the same.
 FUNC uvec2 make_split(uint of_code, uint of_low_code, uint position)
 {
     uint of_position = position ^ (position + 1u); // 25 bits

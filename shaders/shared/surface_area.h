@@ -56,7 +56,7 @@ FUNC float area_of_sides(vec3 sides)
     return area;
 }
 
-// Half the area of a box in squares of `unit`, which keeps it in range. Neither too small nor infinite: else 0.
+// Returns half the area of a box in squares of `unit`, which keeps it in range. Neither too small nor infinite: else 0.
 FUNC float half_area(vec3 lo, vec3 hi, float unit)
 {
     const float LARGEST_FLOAT = uintBitsToFloat(0x7f7fffffu);

@@ -24,14 +24,14 @@ struct TraceOptions
     uint features; // FEATURE_*
     Address user_data;
 #ifdef TWINRAY_REFINED
-    // From LEVEL_REFINED on: the given ray; the traced one begins `advance` ahead of it.
+    // The given ray, at LEVEL_REFINED and above; the traced one begins `advance` ahead of it.
     Ray given;
     double advance;
     REF(RefineInstance) instances;
 #endif
 };
 
-// t of the given ray for one of the traced ray.
+// Returns t of the given ray for t of the traced ray.
 FUNC float t_of_given(float t, TraceOptions options)
 {
 #ifdef TWINRAY_REFINED
@@ -45,10 +45,10 @@ struct TraceArgs
     Address scene; // AccelView::scene
     REF(Ray) rays;
     REF(Hit) hits;
-    Uints indirect_count; // absent, or where a smaller count may stand
+    Uints indirect_count; // absent, or the address of a count that may be smaller
     Address user_data;
-    Uints order; // absent, or which ray each invocation traces
-    uint count; // where the rays of this launch end
+    Uints order; // absent, or the ray that each invocation traces
+    uint count; // the end of the rays of this launch
     uint mask;
     uint flags;
     uint first; // ray that the launch begins with

@@ -33,7 +33,7 @@ FUNC RowsDouble absolute(RowsDouble m)
 
 FUNC float largest_entry_double(dvec3 v) { return float(max(abs(v.x), max(abs(v.y), abs(v.z)))); }
 
-// The inverse of an invertible map of float32 entries: cofactors, whose products are exact, over the determinant.
+// Returns the inverse of an invertible map of float32 entries: cofactors, with exact products, over the determinant.
 FUNC RowsDouble inverse_double(Rows m)
 {
     dvec3 a0 = linear_double(m.r0);
@@ -57,14 +57,14 @@ FUNC RowsDouble inverse_double(Rows m)
     return inverse;
 }
 
-// The sum of a row of |W m - 1|, where `row` is that of W and `unit` of 1.
+// Returns the sum of a row of |W m - 1|, where `row` is that of W and `unit` of 1.
 FUNC double residual_row(dvec4 row, dvec3 unit, Rows m)
 {
     dvec3 product = row.x * linear_double(m.r0) + row.y * linear_double(m.r1) + row.z * linear_double(m.r2) - unit;
     return abs(product.x) + abs(product.y) + abs(product.z);
 }
 
-// The largest row sum of |inverse m - 1|: the relative error of vectors that the inverse maps.
+// Returns the largest row sum of |inverse m - 1|: the relative error of vectors that the inverse maps.
 FUNC double residual_of(RowsDouble inverse, Rows m)
 {
     return max(residual_row(inverse.r0, dvec3(1.0f, 0.0f, 0.0f), m),

@@ -220,10 +220,10 @@ FUNC bool comes_after(TriangleHit hit, float t_min, TraceOptions options)
 
 const uint NO_ENTRY = 0x7f800000u; // infinity, and what is larger: no hit is reported there
 
-// The rank among its siblings of a box that the ray crosses from `enter` to `leave`, the least first; the last two bits
-// are free. The nearest is first; if any hit will do, that in which the ray is longest, as most may be hit there.
-// (Larger boxes first, for rays unknown: Nah, Manocha, "SATO: Surface Area Traversal Order for Shadow Ray Tracing",
-// 2014.)
+// Returns the rank among its siblings of a box that the ray crosses from `enter` to `leave`, the least first; the last
+// two bits are free. The nearest is first; if any hit will do, that in which the ray is longest, as most may be hit
+// there. (Larger boxes first, for rays unknown: Nah, Manocha, "SATO: Surface Area Traversal Order for Shadow Ray
+// Tracing", 2014.)
 FUNC uint visit_order(float enter, float leave, bool is_there, uint query)
 {
     uint longest_first = 0x7f000000u - min(floatBitsToUint(leave - enter), 0x7e000000u);
@@ -248,7 +248,7 @@ FUNC Hit hit_of(Search search, SwTlasHeader scene, TraceOptions options)
     return hit;
 }
 
-// The order of hits: by t, then by (instance, primitive).
+// Returns whether the hit comes first in the order of hits: by t, then by (instance, primitive).
 FUNC bool comes_before(TriangleHit hit, uint instance_index, uint primitive_index, Search search, TraceOptions options)
 {
     bool is_lower = primitive_index < search.primitive_index;

@@ -14,7 +14,7 @@ const uint NODE_WIDTH_CONSTANT = 2u;
 // invocations would take turns between barriers, and leave threads without a group.
 const uint CPU_GROUP = 8u;
 
-// The group whose work is done by group `index` of `count`. If each thread gets one stretch of a dispatch
+// Returns the group whose work is done by group `index` of `count`. If each thread gets one stretch of a dispatch
 // (KernelTuning::threads), some stretches of a picture take longer than others; so groups are dealt out to as many
 // threads, one after the other. The rest stays where it is, and all with fewer than two threads.
 FUNC uint interleaved_group(uint index, uint count, uint threads)

@@ -44,8 +44,8 @@ struct WorldBoundArgs
     uint group_count;
 };
 
-// The float next to x towards minus infinity. Zero and denormals go to the least normal float below: devices may flush
-// the numbers in between.
+// Returns the float next to x towards minus infinity. Zero and denormals go to the least normal float below: devices
+// may flush the numbers in between.
 FUNC float next_below(float x)
 {
     const float LEAST_NORMAL = 1.17549435082e-38f;
@@ -54,7 +54,7 @@ FUNC float next_below(float x)
     return uintBitsToFloat(x > 0.0f ? bits - 1u : bits + 1u);
 }
 
-// A float not above a.x b.x + a.y b.y + a.z b.z + c, and the largest such one for all but the rarest operands.
+// Returns a float not above a.x b.x + a.y b.y + a.z b.z + c, and the largest such one for all but the rarest operands.
 FUNC float dot_below(vec3 a, vec3 b, float c)
 {
     float missing = 0.0f;
@@ -67,14 +67,14 @@ FUNC float dot_below(vec3 a, vec3 b, float c)
     return sum_error(sum, lowest, result) < 0.0f ? next_below(result) : result;
 }
 
-// The least coordinate of the box (lo, hi) under `row`, rounded down.
+// Returns the least coordinate of the box (lo, hi) under `row`, rounded down.
 FUNC float reach_below(vec4 row, vec3 lo, vec3 hi)
 {
     vec3 corner = vec3(row.x > 0.0f ? lo.x : hi.x, row.y > 0.0f ? lo.y : hi.y, row.z > 0.0f ? lo.z : hi.z);
     return dot_below(vec3(row.x, row.y, row.z), corner, row.w);
 }
 
-// A box around `box` under `m`.
+// Returns a box around `box` under `m`.
 FUNC GeometryBox box_in_world(GeometryBox box, Rows m)
 {
     GeometryBox world;
@@ -87,7 +87,7 @@ FUNC GeometryBox box_in_world(GeometryBox box, Rows m)
     return world;
 }
 
-// The box of an instance in world space; lo > hi if nothing of it can be hit. `is_unusable`: because of its transform.
+// Returns an instance's world box; lo > hi if nothing of it can be hit. `is_unusable`: because of its transform.
 FUNC GeometryBox instance_box(InstanceRecord given, INOUT(bool) is_unusable)
 {
     const float infinity = uintBitsToFloat(0x7f800000u);

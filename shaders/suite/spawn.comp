@@ -7,7 +7,8 @@
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { SpawnArgs args; };
 
-// 256 units in the last place along the normal where the coordinate is large, a length near 0, where units are small.
+// Moves by 256 units in the last place along the normal for large coordinates, by a length near 0, where units are
+// small.
 float moved(float coordinate, float normal)
 {
     if (abs(coordinate) < 1.0 / 32.0) return coordinate + normal / 65536.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The areas of the child boxes of AREA_GROUP nodes. Each invocation adds up its share of them without waiting for
+// Sums the areas of the child boxes of AREA_GROUP nodes. Each invocation adds up its share of them without waiting for
 // others, in the order in which more invocations would.
 #version 460
 #extension GL_GOOGLE_include_directive : require

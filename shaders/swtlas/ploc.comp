@@ -84,7 +84,7 @@ NodeChild load_top(BuildTree tree, BvhChildren nodes, uint child)
     return top;
 }
 
-// The destination of the i-th of those before a round.
+// Returns the destination of the i-th of those before a round.
 uint index_after(uint i) { return i - bitCount(gone & ((1u << i) - 1u)); }
 bool is_gone(uint i) { return (gone & 1u << i) != 0u; }
 void begin_round()
@@ -99,7 +99,7 @@ void store_cluster(uint index, Cluster cluster)
     atomicMax(tallest, height_in(cluster.top.subtree));
 }
 
-// The i-th index of the lists of both parts.
+// Returns the i-th index of the lists of both parts.
 uint list_index(Range range, uint i)
 {
     return i < KEPT_CLUSTERS ? range.first + i : range.split + 1u + i - KEPT_CLUSTERS;
@@ -154,7 +154,7 @@ uint lowest_but(uint other, uint begin, uint count)
     return lowest;
 }
 
-// The partner if only the two lowest choose each other.
+// Returns the partner if only the two lowest choose each other.
 uint partner_by_height(uint i, uint begin, uint count)
 {
     uint lowest = lowest_but(NOTHING, begin, count);

@@ -25,7 +25,7 @@ uvec2 split_before(BuildTree tree, uint position)
     return position == tree.first ? TREE_END : split_after(tree, position - 1u);
 }
 
-// The tree is whole.
+// Finishes the tree, which is whole.
 void finish(BuildTree tree, NodeChild root)
 {
     AT(tree.bvh, 0).root = root.child;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Linux, and what it shares with other systems of POSIX.
+// Linux, and the parts that it shares with other systems of POSIX.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <netdb.h>
@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Null-terminated, as the system takes words.
+// Returns a null-terminated list, the form in which the system takes words.
 std::vector<char*> pointers_to(std::vector<std::string>& words) {
     std::vector<char*> pointers;
     for (std::string& word : words) pointers.push_back(word.data());

@@ -43,7 +43,7 @@ std::string narrow(std::wstring_view text) {
     return result;
 }
 
-// The word as a program's start takes it apart again: a backslash stands for itself but before a quote.
+// Escapes the word for a program's start, which takes it apart: a backslash means itself unless it is before a quote.
 std::wstring escaped(std::wstring_view word) {
     if (!word.empty() && word.find_first_of(L" \t\n\v\"") == word.npos) return std::wstring(word);
     std::wstring result = L"\"";
@@ -93,7 +93,7 @@ struct Closer {
 };
 using Handle = std::unique_ptr<HANDLE, Closer>;
 
-// A file that takes all and keeps nothing, which children inherit.
+// Opens a file that takes everything and keeps nothing; children inherit it.
 Handle null_file() {
     SECURITY_ATTRIBUTES inherited{sizeof inherited, nullptr, TRUE};
     return Handle(
@@ -111,7 +111,7 @@ std::string words_of_exception(DWORD code) {
     }
 }
 
-// Nothing where the variable is not there or empty.
+// Returns nothing if the variable does not exist or is empty.
 std::optional<std::wstring> variable(const wchar_t* name) {
     std::wstring value(GetEnvironmentVariableW(name, nullptr, 0), 0);
     value.resize(GetEnvironmentVariableW(name, value.data(), static_cast<DWORD>(value.size())));

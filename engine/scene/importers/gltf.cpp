@@ -48,7 +48,7 @@ class ShapeReader {
         }
     }
 
-    // The scene's index of the mesh, or EMPTY.
+    // Returns the scene's index of the mesh, or EMPTY.
     uint mesh_of(const GltfInstance& found) {
         Shape shape{found.instance.mesh, found.skin};
         shape.weights = rig_.nodes[found.node].weights;

@@ -7,9 +7,9 @@
 
 namespace twinray {
 
-// All elements as floats, `components` per element. Normalised integers become [-1, 1] or [0, 1], others keep their
-// value (KHR_mesh_quantization). 16 components are a matrix, column by column. `object` names the reader in errors:
-// "mesh 2 'wheel' primitive 0 POSITION".
+// Reads all elements as floats, `components` per element. Normalised integers become [-1, 1] or [0, 1], others keep
+// their value (KHR_mesh_quantization). 16 components are a matrix, column by column. `object` names the reader in
+// errors: "mesh 2 'wheel' primitive 0 POSITION".
 std::vector<float> read_floats(const GltfFile& file, int accessor, int components, const std::string& object);
 
 // The same as vectors of N floats.
@@ -21,7 +21,7 @@ std::vector<Vec<N, float>> read_vectors(const GltfFile& file, int accessor, cons
     return vectors;
 }
 
-// Unsigned scalars of 8, 16 or 32 bits.
+// Reads unsigned scalars of 8, 16 or 32 bits.
 std::vector<uint> read_indices(const GltfFile& file, int accessor, const std::string& object);
 
 }  // namespace twinray

@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-// Read with a library that this twinray was built with.
+// Returns whether this twinray was built with the library that reads the extension.
 bool is_decoded(const std::string& extension) {
     if (extension == "EXT_texture_webp") return has_library(Codec::webp);
     if (extension == "EXT_texture_avif") return has_library(Codec::avif);
@@ -45,8 +45,8 @@ bool is_supported(const std::string& extension) {
     return supported.contains(extension) || is_decoded(extension);
 }
 
-// These say how a surface looks, what shines on it, what a file means or what may happen, not where its triangles are:
-// the scene is shown without them.
+// Returns whether the extension says how a surface looks, what shines on it, what a file means or what may happen, not
+// where its triangles are: the scene is shown without it.
 bool is_optional_by_nature(const std::string& extension) {
     static const std::string_view families[] = {"KHR_materials_",
                                                 "EXT_materials_",
@@ -120,7 +120,7 @@ const json& list_of(const json& object, const char* key) {
     return list != object.end() && list->is_array() ? *list : empty;
 }
 
-// Some exporters list Draco as merely used, yet leave no uncompressed data to fall back to.
+// Returns whether there is no uncompressed data to fall back to: some exporters list Draco as merely used all the same.
 bool lacks_draco_fallback(const json& root) {
     const json& accessors = list_of(root, "accessors");
     for (const json& mesh : list_of(root, "meshes"))
@@ -134,7 +134,7 @@ bool lacks_draco_fallback(const json& root) {
     return false;
 }
 
-// A meshopt fallback buffer without a URI holds nothing.
+// Returns whether a fallback buffer of meshopt has no URI, so that it holds nothing.
 bool lacks_meshopt_fallback(const json& root, const char* name) {
     for (const json& buffer : list_of(root, "buffers"))
         if (has_extension(buffer, name) && !buffer.contains("uri")) return true;

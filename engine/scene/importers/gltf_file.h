@@ -35,7 +35,7 @@ struct GltfFile {
         throw Error(text("'", path.string(), "': ", parts...));
     }
 
-    // The text of an error of fail(), without the file's name, which begins it.
+    // Returns the text of an error of fail(), without the file's name, which begins it.
     std::string fault_of(const Error& error) const {
         const std::string message = error.what(), prefix = text("'", path.string(), "': ");
         return message.starts_with(prefix) ? message.substr(prefix.size()) : message;

@@ -62,7 +62,7 @@ struct Driven {
     bool is_scaled = false, is_turned = false;
 };
 
-// One for each node.
+// Returns the effects for each node.
 std::vector<Driven> driven_nodes(const Rig& rig) {
     std::vector<Driven> driven(rig.nodes.size());
     for (const Animation& animation : rig.animations)

@@ -76,7 +76,7 @@ void check_version(const GltfFile& file, const json& root) {
     file.fail("is glTF ", version.empty() ? "1.0" : version, "; only glTF 2.0 is supported, ", old_version_remedy);
 }
 
-// The two lists that are read before check_types sees the rest.
+// Checks the two lists that are read before check_types sees the rest.
 void check_lists(const GltfFile& file, const json& root) {
     for (const char* key : {"buffers", "images"}) {
         const auto list = root.find(key);

@@ -23,25 +23,25 @@ void check_extensions(GltfFile& file, const nlohmann::json& root);
 // Throws Error naming the JSON path of the first member that is not of the type that glTF gives it.
 void check_types(const GltfFile& file, const nlohmann::json& root);
 
-// Whether a buffer holds nothing but stands for what views with a meshopt extension decode to.
+// Returns whether a buffer holds nothing and only stands for the data that views with a meshopt extension decode to.
 bool is_meshopt_placeholder(const nlohmann::json& buffer);
 
-// Gives each buffer view that is compressed by meshopt, and has no data beside that, a buffer of what it decodes to.
+// Gives each buffer view that is compressed by meshopt, and has no data beside that, a buffer of its decoded data.
 // Throws Error naming the view.
 void decode_meshopt_views(const GltfFile& file, nlohmann::json& root, std::vector<tinygltf::Buffer>& buffers);
 
-// The same with what KHR_draco_mesh_compression holds of primitives. Throws Error naming the primitive.
+// Does the same with the data of primitives in KHR_draco_mesh_compression. Throws Error naming the primitive.
 void decode_draco_primitives(const GltfFile& file, nlohmann::json& root, std::vector<tinygltf::Buffer>& buffers);
 
-// The bytes that an object with buffer, byteOffset and byteLength names; throws Error naming `object` where the buffer
-// has fewer.
+// Returns the bytes that an object with buffer, byteOffset and byteLength names; throws Error naming `object` where the
+// buffer has fewer.
 std::span<const std::uint8_t> stream_bytes(const GltfFile& file, const nlohmann::json& range,
                                            const std::vector<tinygltf::Buffer>& buffers, const std::string& object);
 
-// Whether an object has the extension.
+// Returns whether an object has the extension.
 bool has_extension(const nlohmann::json& object, const char* name);
 
-// A string or a non-negative integer of an object, or the fallback where it is absent or of another type.
+// Return a string or a non-negative integer of an object, or the fallback if it is absent or of another type.
 std::string json_string(const nlohmann::json& object, const char* key);
 std::optional<std::uint64_t> json_count(const nlohmann::json& object, const char* key);
 

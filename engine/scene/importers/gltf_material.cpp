@@ -64,11 +64,11 @@ class GltfTextures {
     // Reads a reference inside an extension: member `key` of `parent`; no texture if it is absent.
     Texture read(const tinygltf::Value& parent, const std::string& key, const std::string& object);
 
-    // By what the alpha of a picture says of glossiness: a picture of roughness for metallic_roughness_texture, whose
-    // factors are 1; none where all alpha is 1.
+    // Returns a picture of roughness, from the glossiness in the alpha of a picture, for metallic_roughness_texture,
+    // whose factors are 1; nothing if all alpha is 1.
     std::optional<Texture> roughness_of(const Texture& glossiness, float factor);
 
-    // Whether its image could not be decoded.
+    // Returns whether the texture's image could not be decoded.
     bool is_placeholder(const Texture& texture) const {
         return texture.image >= 0 && images_[std::size_t(texture.image)].is_placeholder;
     }
@@ -217,8 +217,8 @@ void read_specular(const Reader& from, Material& material) {
     material.specular_color_texture = from.texture("specularColorTexture");
 }
 
-// As KHR_materials_specular says it, which can say all of it: an index of refraction of 0 reflects everything times the
-// specular colour.
+// Reads the material in terms of KHR_materials_specular, which can express all of it: an index of refraction of 0
+// reflects everything times the specular colour.
 void read_specular_glossiness(const Reader& from, Material& material) {
     material.base_color = color_factor<4>(numbers_of(from.extension, "diffuseFactor"), vec4(1));
     material.base_color_texture = from.texture("diffuseTexture");

@@ -51,7 +51,7 @@ std::vector<vec4> read_colors(GltfFile& file, const Primitive& primitive, std::s
     return colors;
 }
 
-// All accessors that the vertices are made from.
+// Returns all accessors that the vertices are made from.
 std::vector<int> accessors_of(const Primitive& primitive) {
     std::vector<int> accessors;
     for (const char* name : {"POSITION", "NORMAL", "TANGENT", "TEXCOORD_0", "TEXCOORD_1", "COLOR_0"})
@@ -63,7 +63,7 @@ std::vector<int> accessors_of(const Primitive& primitive) {
     return accessors;
 }
 
-// is_skinned: whether a node with a skin shows the mesh.
+// Returns the arrays that the mesh has. is_skinned: whether a node with a skin shows the mesh.
 VertexLayout vertex_layout(const GltfFile& file, const std::vector<const Primitive*>& primitives,
                            const std::string& object, bool is_skinned) {
     VertexLayout layout;
@@ -83,8 +83,8 @@ VertexLayout vertex_layout(const GltfFile& file, const std::vector<const Primiti
     return layout;
 }
 
-// The vertices of one primitive: their attributes and motion data. Missing parts of the layout are 0, missing colours
-// white, and missing second texture coordinates equal the first.
+// Returns the vertices of one primitive: their attributes and motion data. Missing parts of the layout are 0, missing
+// colours white, and missing second texture coordinates equal the first.
 GltfVertices read_gltf_vertices(GltfFile& file, const Primitive& primitive, const VertexLayout& layout,
                                 const std::string& object) {
     GltfVertices v;

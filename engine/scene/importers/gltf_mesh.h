@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Meshes of glTF, their materials with variants, and what moves their vertices: morph targets and skins.
+// Meshes of glTF, their materials with variants, and the data that move their vertices: morph targets and skins.
 #pragma once
 
 #include <map>
@@ -68,7 +68,7 @@ void append(std::vector<T>& all, const std::vector<T>& part) {
 }
 void append(VertexMotion& all, const VertexMotion& part);
 
-// The motion data of some vertices, with `width` values each.
+// Returns the motion data of some vertices, with `width` values each.
 template <class T>
 std::vector<T> picked(const std::vector<T>& values, std::size_t width, const std::vector<uint>& vertices) {
     std::vector<T> result;
@@ -89,9 +89,9 @@ struct GltfMesh {
     std::vector<std::vector<uint>> variants;  // by variant of KHR_materials_variants, like Mesh::materials; or none
 };
 
-// One glTF mesh as one Mesh: the triangles of all its primitives in file order. Primitives without a material get the
-// index after the last of `materials`, which are those of the file. Points and lines are skipped with a warning; the
-// result may be empty. is_skinned: whether a node with a skin shows it.
+// Returns one glTF mesh as one Mesh: the triangles of all its primitives in file order. Primitives without a material
+// get the index after the last of `materials`, which are those of the file. Points and lines are skipped with a
+// warning; the result may be empty. is_skinned: whether a node with a skin shows it.
 GltfMesh read_gltf_mesh(GltfFile& file, std::size_t index, const std::vector<Material>& materials, bool is_skinned);
 
 }  // namespace twinray

@@ -70,7 +70,7 @@ void undo_meshopt_filter(const MeshoptStream& stream, Bytes& bytes) {
 
 constexpr const char* meshopt_remedy = "undo the compression with `gltfpack -noq -kn -km -i in.glb -o out.glb`";
 
-// 0: done.
+// Returns 0 if it has decoded the stream.
 int decode_meshopt_into(const MeshoptStream& stream, Bytes& bytes) {
     const auto* data = stream.bytes.data();
     const std::size_t size = stream.bytes.size();

@@ -15,8 +15,8 @@ std::string node_name(const GltfFile& file, std::size_t index) {
     return gltf_name("node", index, file.model.nodes[index].name);
 }
 
-// Every node's parent or -1. A node that is a child of two stays with the first; the other loses it, with a warning.
-// Throws when a child does not exist.
+// Returns every node's parent or -1. A node that is a child of two stays with the first; the other loses it, with a
+// warning. Throws Error when a child does not exist.
 std::vector<int> find_parents(GltfFile& file) {
     auto& nodes = file.model.nodes;
     std::vector<int> parents(nodes.size(), -1);
@@ -38,7 +38,7 @@ std::vector<int> find_parents(GltfFile& file) {
     return parents;
 }
 
-// With one parent each, a node that no root leads to is on a cycle or below one.
+// Checks that no node is on a cycle or below one: with one parent each, no root leads to such a node.
 void check_tree(const GltfFile& file, const std::vector<int>& parents) {
     std::vector<int> depths(parents.size(), 0);  // 0 = not known yet
     for (std::size_t i = 0; i < parents.size(); ++i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The node hierarchy of a glTF file, flattened, the objects that it carries and what moves it: morph weights, skins,
-// animations.
+// The node hierarchy of a glTF file, flattened, with the objects that it carries and the data that move it: morph
+// weights, skins, animations.
 #pragma once
 
 #include <span>
@@ -24,9 +24,9 @@ struct GltfNode {
     bool is_visible = true;  // by KHR_node_visibility, its own and that of all nodes above
 };
 
-// The nodes of the default scene, else of the first one, or where there are no scenes all root nodes, with their
-// descendants; parents come first. Warns where a scene had to be chosen, and of a node with two parents, which stays
-// with the first. Throws Error naming the node on: a missing child, a cycle, over 1000 levels, a transform that is not
+// Returns the nodes of the default scene, else of the first one, or if there are no scenes all root nodes, with their
+// descendants; parents come first. Warns if a scene had to be chosen, and of a node with two parents, which stays with
+// the first. Throws Error naming the node on: a missing child, a cycle, over 1000 levels, a transform that is not
 // finite, not affine or has the wrong number of entries.
 std::vector<GltfNode> flatten_nodes(GltfFile& file);
 
@@ -58,9 +58,9 @@ struct GltfInstance {
     // or turns what is flat.
     std::optional<dvec3> lost;
 };
-// One for each placement of a mesh by a visible node, EXT_mesh_gpu_instancing included. Those that leave no area are
-// hidden where an animation of the rig scales their node or one above, else skipped with a warning.
-// Nodes do not move what a skin carries: it is in world space already.
+// Returns one for each placement of a mesh by a visible node, EXT_mesh_gpu_instancing included. Placements that leave
+// no area are hidden if an animation of the rig scales their node or one above, else skipped with a warning.
+// Nodes do not move a skinned mesh: it is in world space already.
 std::vector<GltfInstance> read_gltf_instances(GltfFile& file, const std::vector<GltfNode>& nodes, const Rig& rig);
 
 // Reads cameras of all nodes and KHR_lights_punctual of visible ones, and the nodes that carry them.

@@ -9,16 +9,16 @@
 
 namespace twinray {
 
-// .gltf and .glb, by tinygltf; told apart by their content.
+// Imports .gltf and .glb, by tinygltf; told apart by their content.
 Scene import_gltf(const std::filesystem::path& file, const std::optional<dvec3>& origin);
 
-// .ply.
+// Imports .ply.
 Scene import_ply(const std::filesystem::path& file, const std::optional<dvec3>& origin);
 
-// .obj, with the .mtl files and images that it names.
+// Imports .obj, with the .mtl files and images that it names.
 Scene import_obj(const std::filesystem::path& file, const std::optional<dvec3>& origin);
 
-// .stl, text and binary; told apart by their content.
+// Imports .stl, text and binary; told apart by their content.
 Scene import_stl(const std::filesystem::path& file, const std::optional<dvec3>& origin);
 
 }  // namespace twinray

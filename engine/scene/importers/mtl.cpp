@@ -22,7 +22,7 @@ bool is_of_no_use(std::string_view keyword) {
     return std::ranges::find(words, keyword) != words.end();
 }
 
-// Many files come from Windows.
+// Replaces backslashes: many files come from Windows.
 std::string with_slashes(std::string_view path) {
     std::string changed(path);
     std::ranges::replace(changed, '\\', '/');

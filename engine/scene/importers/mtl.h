@@ -14,7 +14,7 @@
 
 namespace twinray {
 
-// The material of a surface of no stated colour: grey, no metal.
+// Returns the material of a surface of no stated colour: grey, no metal.
 Material plain_material(std::string name);
 
 // The materials of .mtl files, put at the end of Scene::materials in the order of the files. Missing and unused parts

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// .obj files.
+// Reads .obj files.
 #include <twinray/scene.h>
 
 #include <algorithm>
@@ -51,7 +51,7 @@ struct ObjFile {
     // The names from `o`, or from `g` if no `o` is in force; empty before either.
     std::vector<std::string> part_names;
     std::vector<MaterialName> materials;
-    std::vector<std::string> libraries;  // what each `mtllib` says
+    std::vector<std::string> libraries;  // the text of each `mtllib`
     std::vector<std::string> warnings;
 };
 
@@ -161,7 +161,7 @@ class ObjParser {
         file_.faces.push_back({lines_.line(), first, file_.face_vertices.size() - first, part_, material_});
     }
 
-    // "5", "5/2", "5//3", "5/2/3"; and "5/", "5//", "5/2/", which some programs write.
+    // Parses "5", "5/2", "5//3", "5/2/3"; and "5/", "5//", "5/2/", which some programs write.
     ObjFile::FaceVertex vertex_of(std::string_view word) const {
         const std::string_view whole = word;
         ObjFile::FaceVertex vertex{.position = cut_index(word, file_.positions.size(), whole)};

@@ -8,7 +8,7 @@
 namespace twinray {
 namespace {
 
-// A comment begins at a #, but not in a number of Microsoft's C library.
+// Returns where a comment begins: at a #, unless the # is in a number of Microsoft's C library.
 std::size_t comment_begin(std::string_view line) {
     const auto is_in_number = [&](std::size_t at) {
         const std::string_view after = line.substr(at + 1);

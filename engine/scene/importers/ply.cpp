@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// .ply files, text and binary, with faces or strips of triangles. One file of more than 400 lines, since it is one
-// reader whose steps share what the header says.
+// Reads .ply files, text and binary, with faces or strips of triangles. One file of more than 400 lines, since it is
+// one reader whose steps all use the header.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -39,7 +39,7 @@ class PlyValues {
 
     double next(PlyType type) { return format_ == PlyHeader::Format::ascii ? next_word() : next_binary(type); }
 
-    // The length of a list that the rest of the file may hold.
+    // Returns the length of a list that the rest of the file may hold.
     std::size_t next_count(PlyType type) {
         const double count = next(type);
         if (!(count >= 0) || count > static_cast<double>(bytes_.size() - position_) || count != std::floor(count))
@@ -103,7 +103,7 @@ bool is_any_of(const std::string& name, std::initializer_list<const char*> names
     return std::ranges::find(names, name) != names.end();
 }
 
-// Where a vertex property goes: 0-2 position, 3-5 normal, 6-7 texture coordinates, 8-11 colour, 12 nowhere.
+// Vertex properties go to these slots: 0-2 position, 3-5 normal, 6-7 texture coordinates, 8-11 colour, 12 nowhere.
 constexpr std::size_t nowhere = 12;
 
 std::size_t slot_of(const PlyProperty& property) {
@@ -133,17 +133,17 @@ bool holds_corners(const PlyElement& element, const PlyProperty& property) {
 
 bool is_color(const PlyProperty& property) { return !property.count_type && slot_of(property) / 4 == 2; }
 
-// Two coordinates for each corner of a polygon.
+// Returns whether the property holds two coordinates for each corner of a polygon.
 bool holds_uvs(const PlyElement& element, const PlyProperty& property) {
     return element.name == "face" && property.count_type && property.name == "texcoord";
 }
 
-// Which of the header's pictures a face shows.
+// Returns whether the property tells which of the header's pictures a face shows.
 bool holds_texture(const PlyElement& element, const PlyProperty& property) {
     return element.name == "face" && !property.count_type && property.name == "texnumber";
 }
 
-// Integers are shares of the largest, and all are sRGB.
+// Converts a colour to [0, 1]: integers are shares of the largest, and all are sRGB.
 float color_of(double value, PlyType type) {
     const double most = type == PlyType::u8 ? 255 : type == PlyType::u16 ? 65535 : 1;
     return static_cast<float>(std::clamp(value / most, 0.0, 1.0));
@@ -254,7 +254,7 @@ class PlyReader {
         return values;
     }
 
-    // For the corners read since; a face may have none, or another number than it has corners.
+    // Adds coordinates of the corners read since; a face may have none, or another number than it has corners.
     void add_corner_uvs(const std::vector<double>& uvs) {
         const std::size_t first = corner_uvs_.size();
         const bool fits = uvs.size() == 2 * (indices_.size() - first);
@@ -268,7 +268,7 @@ class PlyReader {
         vertex_counts_.push_back(count);
     }
 
-    // -1 begins a new one. Every second triangle of a strip is turned, so that all face one way.
+    // Reads strips; -1 begins a new one. Every second triangle of a strip is turned, so that all face one way.
     void read_strips(const PlyProperty& property) {
         std::vector<double> strip;
         for (std::size_t left = values_.next_count(*property.count_type); left > 0; --left) {
@@ -322,13 +322,13 @@ class PlyReader {
         }
     }
 
-    // Without a picture, or with one that the header does not name, the first.
+    // Returns the picture of a face; the first one if the face has none, or one that the header does not name.
     uint texture_of(std::size_t face) const {
         const double number = textures_of_faces_[face];
         return number > 0 && number < static_cast<double>(header_.textures.size()) ? static_cast<uint>(number) : 0;
     }
 
-    // A vertex for each position and texture coordinates that meet in a corner.
+    // Makes a vertex for each position and texture coordinates that meet in a corner.
     void split_vertices() {
         std::map<std::tuple<uint, float, float>, uint> vertices;
         std::vector<uint> sources;
@@ -366,7 +366,7 @@ class PlyReader {
     LoopInterruption interruption_;
 };
 
-// The pictures that a file names, each as a material.
+// Adds the pictures that a file names, each as a material.
 void add_textures(Scene& scene, const std::vector<std::string>& names, const std::filesystem::path& folder) {
     for (const std::string& name : names) {
         Material material{.name = name, .metallic = 0};

@@ -68,7 +68,7 @@ bool read_line(const std::string& line, std::size_t number, PlyHeader& header) {
     return header.elements.empty() || keyword == "comment" || keyword == "obj_info";
 }
 
-// After this no count makes anyone reserve more memory than the file vouches for.
+// Checks that no count makes anyone reserve more memory than the file vouches for.
 void check_counts(const PlyHeader& header, std::size_t body_size, const std::string& object) {
     for (const PlyElement& element : header.elements) {
         std::size_t least = element.properties.empty() ? 1 : 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the header of a .ply file declares.
+// The declarations in the header of a .ply file.
 #pragma once
 
 #include <cstddef>
@@ -36,7 +36,7 @@ struct PlyHeader {
     std::size_t size = 0;               // where the body starts
 };
 
-// By its name in headers, those that writers of NumPy arrays use among them; none for a name that is no type.
+// Returns the type of a name in headers, also for names from writers of NumPy arrays; nothing if the name is no type.
 std::optional<PlyType> ply_type_of(std::string_view name);
 std::size_t size_of(PlyType type);  // in a binary file, in bytes
 

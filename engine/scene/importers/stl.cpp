@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// .stl files, binary and text. A facet's normal follows from its vertices and is not read, whatever it is.
+// Reads .stl files, binary and text. A facet's normal follows from its vertices and is not read, whatever it is.
 #include <algorithm>
 #include <cstring>
 

@@ -11,8 +11,8 @@ namespace twinray {
 // Triangles keep their order and number, including those that are or become degenerate.
 Mesh weld_equal_vertices(const Mesh& mesh);
 
-// The same for vertices of which each three are a triangle; those of `mesh` are ignored. Throws Error naming the mesh
-// if there are over 2^32 vertices.
+// The same for a mesh in which each three vertices are a triangle; the triangles of `mesh` are ignored. Throws Error
+// naming the mesh if there are over 2^32 vertices.
 Mesh weld_unindexed(Mesh mesh);
 
 }  // namespace twinray

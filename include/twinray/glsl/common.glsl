@@ -10,19 +10,19 @@
 
 #extension GL_EXT_spirv_intrinsics : require
 
-// NMin: the lesser of two numbers; if one is NaN, the other.
+// Returns NMin: the lesser of two numbers; if one is NaN, the other.
 spirv_instruction(set = "GLSL.std.450", id = 79) float n_min(float a, float b);
-// NMax: the greater of two numbers; if one is NaN, the other.
+// Returns NMax: the greater of two numbers; if one is NaN, the other.
 spirv_instruction(set = "GLSL.std.450", id = 80) float n_max(float a, float b);
-// Whether min_no_nan() and max_no_nan() use comparisons, if that costs less than NMin and NMax
+// True if min_no_nan() and max_no_nan() use comparisons, because that costs less than NMin and NMax
 // (KernelTuning::compares_numbers).
 layout(constant_id = 106) const bool COMPARES_NUMBERS = false;
-// The lesser of two numbers; b if a is NaN, which min() leaves open. It may be either of two zeros.
+// Returns the lesser of two numbers; b if a is NaN, which min() leaves open. It may be either of two zeros.
 float min_no_nan(float a, float b) { return COMPARES_NUMBERS ? (a < b ? a : b) : n_min(a, b); }
-// The greater of two numbers; b if a is NaN, which max() leaves open. It may be either of two zeros.
+// Returns the greater of two numbers; b if a is NaN, which max() leaves open. It may be either of two zeros.
 float max_no_nan(float a, float b) { return COMPARES_NUMBERS ? (a > b ? a : b) : n_max(a, b); }
 
-// Whether fma() rounds once. Set for every kernel that the library makes (KernelTuning::has_fused_fma).
+// True if fma() rounds once. It is set for every kernel that the library makes (KernelTuning::has_fused_fma).
 layout(constant_id = 105) const bool FUSED_FMA = false;
 // a * b + c, rounded once if FUSED_FMA is true.
 #define FUSED(a, b, c) fma(a, b, c)
@@ -30,7 +30,7 @@ layout(constant_id = 105) const bool FUSED_FMA = false;
 #define FUNC
 // The type of a parameter that the function reads and writes; in C++ a reference.
 #define INOUT(T) inout T
-// Before a variable: its expression is computed as written, not fused or reordered.
+// Put before a variable: its expression is computed as written, not fused or reordered.
 #define PRECISE precise
 
 // An address in device memory, and other 64-bit integers that kernels pass on. It consists of two words, the low one
@@ -42,16 +42,16 @@ const Address NULL_ADDRESS = Address(0u);
 // Kernels get no unreadable address, because a driver may read through it before it knows that the branch around the
 // read is not taken. Absent data has an odd address (Context::absent); all other addresses are multiples of 4.
 bool is_absent(Address address) { return (address.x & 1u) != 0u; }
-// The address of something absent, derived from that of anything present.
+// Returns the address of something absent, derived from that of anything present.
 Address absent_near(Address present) { return Address(present.x | 1u, present.y); }
-// The address `bytes` bytes after `base`.
+// Returns the address `bytes` bytes after `base`.
 Address address_after(Address base, uint bytes)
 {
     uint carry;
     uint low = uaddCarry(base.x, bytes, carry);
     return Address(low, base.y + carry);
 }
-// The address of item `index` in an array of items of `stride` bytes.
+// Returns the address of item `index` in an array of items of `stride` bytes.
 Address address_at(Address base, uint index, uint stride)
 {
     uint high, low;
@@ -79,9 +79,9 @@ Address address_at(Address base, uint index, uint stride)
 #define FMA(a, b, c) fma(a, b, c)
 // Counts work of a traversal in its CPU reference; does nothing in kernels.
 #define COUNT_STEPS(what, count)
-// Before `for`: unrolls the loop.
+// Put before `for`: unrolls the loop.
 #define UNROLL [[unroll]]
-// Before `for`: keeps the loop if its body is long.
+// Put before `for`: keeps the loop if its body is long.
 #define DONT_UNROLL [[dont_unroll]]
 
 REFERENCE(Floats, , float items[], 4)

@@ -10,8 +10,8 @@ const float HALF_ULP = 5.9604644775390625e-08f;  // u = 2^-24, the unit roundoff
 // parts are exact.
 FUNC float high_part(float x) { return uintBitsToFloat(floatBitsToUint(x) & 0xfffff000u); }
 
-// The rounding error of the product p = fl(a b): a b = p + error, exactly, barring over- and underflow. Dekker, "A
-// floating-point technique for extending the available precision", 1971, but numbers are split by cutting, not by
+// Returns the rounding error of the product p = fl(a b): a b = p + error, exactly, barring over- and underflow. Dekker,
+// "A floating-point technique for extending the available precision", 1971, but numbers are split by cutting, not by
 // rounding.
 FUNC float product_error(float a, float b, float p) {
     PRECISE float error = 0.0f;
@@ -34,7 +34,7 @@ FUNC float product_error(float a, float b, float p) {
     return error;
 }
 
-// The rounding error of the sum s = fl(a + b): a + b = s + error, exactly (Knuth's TwoSum).
+// Returns the rounding error of the sum s = fl(a + b): a + b = s + error, exactly (Knuth's TwoSum).
 FUNC float sum_error(float a, float b, float s) {
     PRECISE float b_virtual = s - a;
     PRECISE float a_virtual = s - b_virtual;
@@ -44,7 +44,7 @@ FUNC float sum_error(float a, float b, float s) {
     return error;
 }
 
-// p - q in doubled precision for the products p = a b and q = c d: returns the difference; `missing` is its error.
+// Computes p - q in doubled precision for products p = a b and q = c d: returns the difference; `missing` is its error.
 FUNC float doubled_difference(float a, float b, float c, float d, INOUT(float) missing) {
     PRECISE float p = a * b;
     PRECISE float q = c * d;
@@ -55,9 +55,9 @@ FUNC float doubled_difference(float a, float b, float c, float d, INOUT(float) m
     return difference;
 }
 
-// a.x b.x + a.y b.y + a.z b.z + c in doubled precision (Ogita, Rump, Oishi, "Accurate sum and dot product", 2005):
-// returns the sum rounded to float32. `missing` is the rest, and `missing_size` the sum of the magnitudes of its terms:
-// the rest is off by five roundings of that.
+// Computes a.x b.x + a.y b.y + a.z b.z + c in doubled precision (Ogita, Rump, Oishi, "Accurate sum and dot product",
+// 2005): returns the sum rounded to float32. `missing` is the rest, and `missing_size` the sum of the magnitudes of its
+// terms: the rest is off by five roundings of that.
 FUNC float doubled_dot(vec3 a, vec3 b, float c, INOUT(float) missing, INOUT(float) missing_size) {
     PRECISE float p0 = a.x * b.x;
     PRECISE float p1 = a.y * b.y;

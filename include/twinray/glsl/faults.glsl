@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// In kernels compiled with TWINRAY_DEBUG: reports to the host a key or an index that names nothing.
+// Reports to the host a key or an index that names nothing, in kernels compiled with TWINRAY_DEBUG.
 #ifndef TWINRAY_FAULTS_GLSL
 #define TWINRAY_FAULTS_GLSL
 #include "twinray/glsl/common.glsl"

@@ -54,7 +54,7 @@ const uint INSTANCE_NON_OPAQUE = 8u;  // not opaque: the trace program decides a
 const uint GEOMETRY_TRIANGLES = 0u;
 const uint GEOMETRY_BOXES = 1u;
 
-// The bits of VkGeometryInstanceFlagBitsKHR.
+// Returns the bits of VkGeometryInstanceFlagBitsKHR.
 FUNC uint flags_of(InstanceRecord instance) { return instance.sbt_offset_flags >> 24u; }
 FUNC uint custom_index_of(InstanceRecord instance) { return instance.custom_index_mask & 0xffffffu; }  // 24 bits
 FUNC uint mask_of(InstanceRecord instance) { return instance.custom_index_mask >> 24u; }               // 8 bits
@@ -62,12 +62,12 @@ FUNC uint mask_of(InstanceRecord instance) { return instance.custom_index_mask >
 // Returns whether the instance has a geometry: kernels that write instances may remove it.
 FUNC bool has_geometry(InstanceRecord instance) { return instance.geometry != NULL_ADDRESS; }
 
-// The map from object space.
+// Returns the map from object space to world space.
 FUNC Rows to_world_of(InstanceRecord instance) { return instance.object_to_world; }
 
-// The row with its linear part in units of `scale`.
+// Returns the row with its linear part in units of `scale`.
 FUNC vec4 scaled_row(vec4 row, float scale) { return vec4(row.x * scale, row.y * scale, row.z * scale, row.w); }
-// The map of points in units of `scale`.
+// Returns the map of points in units of `scale`.
 FUNC Rows scaled_map(Rows m, float scale) {
     m.r0 = scaled_row(m.r0, scale);
     m.r1 = scaled_row(m.r1, scale);
@@ -75,7 +75,7 @@ FUNC Rows scaled_map(Rows m, float scale) {
     return m;
 }
 
-// The instance in the units of the built geometry instead of the given ones.
+// Returns the instance in the units of the built geometry instead of the given ones.
 FUNC InstanceRecord in_built_units(InstanceRecord instance) {
     if (has_geometry(instance)) {
         float scale = AT(REF(GeometrySource)(address_after(instance.geometry, GEOMETRY_SOURCE_OFFSET)), 0).scale;

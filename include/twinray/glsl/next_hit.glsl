@@ -8,7 +8,6 @@
 // driver may choose among these and skip some. It finds triangles only, at levels fast and watertight; kernels with a
 // program of their own (twinray/glsl/program.h) cannot use it. Each call is a traversal from the ray's origin on:
 // AllHits is faster for all hits of many rays.
-// many rays AllHits is faster.
 #ifndef TWINRAY_NEXT_HIT_GLSL
 #define TWINRAY_NEXT_HIT_GLSL
 #define TWINRAY_PROGRAM
@@ -16,7 +15,7 @@
 
 Hit twinray_passed; // by the current traversal
 
-// The value before the first hit.
+// Returns the value to begin with, before the first hit.
 Hit no_hit() { return miss(); }
 
 bool intersect_primitive(Candidate candidate, Ray ray_local, inout float t, inout vec2 uv) { return false; }

@@ -21,8 +21,8 @@ FUNC uvec4 random_words(uvec4 key) {
     return v ^ (v >> 16u);
 }
 
-// A random permutation in which each bit is flipped depending on the lower bits: Owen's scrambling of a number in
-// reversed bit order (Laine and Karras 2011, constants of Burley 2020).
+// Returns a random permutation in which each bit is flipped depending on the lower bits: Owen's scrambling of a number
+// in reversed bit order (Laine and Karras 2011, constants of Burley 2020).
 FUNC uint scrambled(uint x, uint seed) {
     x += seed;
     x ^= x * 0x6c50b47cu;
@@ -32,8 +32,8 @@ FUNC uint scrambled(uint x, uint seed) {
     return x;
 }
 
-// The second dimension of the Sobol sequence in reversed bit order; the first is the index itself. The matrix is
-// Pascal's triangle modulo 2, which consists of four copies of its half: five steps instead of 32.
+// Returns the second dimension of the Sobol sequence in reversed bit order; the first is the index itself. The matrix
+// is Pascal's triangle modulo 2, which consists of four copies of its half: five steps instead of 32.
 FUNC uint sobol_second(uint index) {
     index ^= index >> 16u;
     index ^= (index & 0xff00ff00u) >> 8u;
@@ -43,8 +43,8 @@ FUNC uint sobol_second(uint index) {
     return index;
 }
 
-// Point `sample_index` of an Owen-scrambled, shuffled Sobol sequence in two dimensions, as 32-bit fractions. Each
-// (pixel, dimension, seed) has a sequence of its own (Burley, "Practical Hash-based Owen Scrambling", 2020): any
+// Returns point `sample_index` of an Owen-scrambled, shuffled Sobol sequence in two dimensions, as 32-bit fractions.
+// Each (pixel, dimension, seed) has a sequence of its own (Burley, "Practical Hash-based Owen Scrambling", 2020): any
 // aligned 2^k samples are stratified, and the error of the mean falls faster than with independent numbers.
 FUNC uvec2 sample_pair(uint pixel, uint sample_index, uint dimension, uint seed) {
     uvec4 seeds = random_words(uvec4(pixel, dimension, seed, 0u));
@@ -52,8 +52,8 @@ FUNC uvec2 sample_pair(uint pixel, uint sample_index, uint dimension, uint seed)
     return uvec2(bitfieldReverse(scrambled(index, seeds.y)), bitfieldReverse(scrambled(sobol_second(index), seeds.z)));
 }
 
-// A number in [0, 1), a multiple of 2^-24.
+// Returns a number in [0, 1), a multiple of 2^-24.
 FUNC float unit_float(uint word) { return float(word >> 8u) * 5.9604644775390625e-08f; }
-// Two numbers in [0, 1), multiples of 2^-24.
+// Returns two numbers in [0, 1), multiples of 2^-24.
 FUNC vec2 unit_floats(uvec2 words) { return vec2(unit_float(words.x), unit_float(words.y)); }
 #endif

@@ -12,7 +12,7 @@ FUNC uint ray_count(uint count, Uints indirect_count) {
     return written < count ? written : count;
 }
 
-// The result of a ray that hits nothing.
+// Returns the result of a ray that hits nothing.
 FUNC Hit miss() {
     Hit hit;
     hit.hit = 0u;

@@ -5,8 +5,8 @@
 
 const float PI = 3.14159265358979f;
 
-// (cos, sin) of `turns` whole turns, for |turns| below 2^20. Vulkan promises only 11 bits of its own sin and cos;
-// these Taylor polynomials on an eighth of a turn are good to 23.
+// Returns (cos, sin) of `turns` whole turns, for |turns| below 2^20. Vulkan promises only 11 bits of its own sin and
+// cos; these Taylor polynomials on an eighth of a turn are good to 23.
 FUNC vec2 unit_circle(float turns) {
     float quarters = floor(turns * 4.0f + 0.5f);
     float x = (turns - quarters * 0.25f) * (2.0f * PI);
@@ -19,7 +19,7 @@ FUNC vec2 unit_circle(float turns) {
     return quadrant < 2 ? even : -even;
 }
 
-// The density is cos / pi.
+// Samples with the density cos / pi.
 FUNC vec3 sample_cosine_hemisphere(vec2 u) {
     vec2 circle = unit_circle(u.y) * sqrt(u.x);
     return vec3(circle.x, circle.y, sqrt(1.0f - u.x));

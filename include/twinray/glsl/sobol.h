@@ -4,9 +4,9 @@
 #define TWINRAY_SOBOL_H
 #include "twinray/glsl/random.h"
 
-// Dimensions three and four of the Sobol sequence as 32-bit fractions, with the direction numbers of Joe and Kuo,
-// "Constructing Sobol sequences with better two-dimensional projections", 2008: polynomials x^2 + x + 1 from 1, 3, and
-// x^3 + x + 1 from 1, 3, 1. Each direction number follows from the two or three before it.
+// Returns dimensions three and four of the Sobol sequence as 32-bit fractions, with the direction numbers of Joe and
+// Kuo, "Constructing Sobol sequences with better two-dimensional projections", 2008: polynomials x^2 + x + 1 from 1, 3,
+// and x^3 + x + 1 from 1, 3, 1. Each direction number follows from the two or three before it.
 FUNC uvec2 sobol_third_and_fourth(uint index) {
     uvec2 point = uvec2(0u, 0u);
     uint third = 0x80000000u;
@@ -27,9 +27,9 @@ FUNC uvec2 sobol_third_and_fourth(uint index) {
     return point;
 }
 
-// Point `index` of the sequence of `key`, as 32-bit fractions: Owen-scrambled with a seed of its own for each dimension
-// and key (Burley, "Practical Hash-based Owen Scrambling", 2020). Keys give independent, unbiased estimates; within
-// one, the first 2^k points are stratified.
+// Returns point `index` of the sequence of `key`, as 32-bit fractions: Owen-scrambled with a seed of its own for each
+// dimension and key (Burley, "Practical Hash-based Owen Scrambling", 2020). Keys give independent, unbiased estimates;
+// within one, the first 2^k points are stratified.
 FUNC uvec4 sobol_point(uvec4 key, uint index) {
     uvec4 seeds = random_words(key);
     uvec2 rest = sobol_third_and_fourth(index);

@@ -66,16 +66,16 @@ FUNC vec3 xyz(vec4 v) { return vec3(v.x, v.y, v.z); }
 // Returns the image of the origin: the map's fourth column.
 FUNC vec3 offset_of(Rows m) { return vec3(m.r0.w, m.r1.w, m.r2.w); }
 
-// |m| |v|, without m's offset: the scale of the rounding errors of the product.
+// Returns |m| |v|, without m's offset: the scale of the rounding errors of the product.
 FUNC vec3 magnitude(Rows m, vec3 v) {
     return vec3(dot(abs(xyz(m.r0)), abs(v)), dot(abs(xyz(m.r1)), abs(v)), dot(abs(xyz(m.r2)), abs(v)));
 }
 
-// The transpose of m's linear part times v: with a map's inverse, it transforms normals as the map transforms points.
+// Returns m's linear part, transposed, times v: with a map's inverse it transforms normals as the map does points.
 FUNC vec3 transposed_times(Rows m, vec3 v) { return xyz(m.r0) * v.x + xyz(m.r1) * v.y + xyz(m.r2) * v.z; }
 
-// Bound of the error that an accelerator's own inverse and the product with it add to a vector of this size in world
-// space.
+// Returns a bound of the error that an accelerator's own inverse and the product with it add to a vector of this size
+// in world space.
 FUNC vec3 inverse_error(Placement placement, vec3 size) {
     vec3 back = magnitude(placement.to_object, size);
     return magnitude(placement.to_object, magnitude(placement.to_world, back)) * INVERSE_ERROR;

@@ -8,7 +8,7 @@
 
 uint twinray_stack_registers[REGISTER_STACK_SIZE];
 
-// An entry in registers; `slot` is below REGISTER_STACK_SIZE. It is selected, because registers have no index.
+// Returns an entry in registers; `slot` is below REGISTER_STACK_SIZE. It is selected, because registers have no index.
 uint entry_of_registers(uint slot)
 {
     uint entry = twinray_stack_registers[0];
@@ -34,9 +34,9 @@ void store_entry(uint slot, uint entry) { set_entry_of_registers(slot, entry); }
 layout(constant_id = STACK_CONSTANT) const uint STACK = STACK_SHARED;
 shared uint twinray_stack[STACK_SIZE * TWINRAY_INVOCATIONS];
 
-// The number of entries that an invocation has.
+// Returns the number of entries that an invocation has.
 uint stack_size() { return STACK == STACK_REGISTERS ? REGISTER_STACK_SIZE : STACK_SIZE; }
-// The entry at `slot`, which is below stack_size().
+// Returns the entry at `slot`, which is below stack_size().
 uint load_entry(uint slot)
 {
     if (STACK == STACK_REGISTERS) return entry_of_registers(slot);

@@ -18,14 +18,14 @@
 #include "twinray/glsl/accel_header.h"
 #include "twinray/glsl/surface_at.h"
 
-// The table of an accelerator with AccelOptions::keeps_surfaces or keeps_metadata; others have none.
+// Returns the table of an accelerator with AccelOptions::keeps_surfaces or keeps_metadata; others have none.
 SurfaceTable surfaces_of(Address accel)
 {
     return AT(REF(SurfaceTable)(AT(REF(AccelHeader)(accel), 0).surfaces), 0);
 }
 
-// The triangle of a hit for which has_surface() is true, and the point where the ray hits it, for normal_at() and
-// others.
+// Returns the triangle of a hit for which has_surface() is true, and the point where the ray hits it, for normal_at()
+// and others.
 SurfacePlace surface_place(Address accel, Ray ray, Hit hit) { return surface_place(surfaces_of(accel), ray, hit); }
 
 // Returns whether the hit is on a triangle of a mesh that is kept: functions down to surface_color() need that. Misses,
@@ -42,28 +42,28 @@ Surface surface_at(Address accel, Ray ray, Hit hit)
     return surface_at(surface_place(accel, ray, hit), hit.instance_index);
 }
 
-// The hit point in world space.
+// Returns the hit point in world space.
 vec3 surface_position(Address accel, Ray ray, Hit hit) { return point_at(surface_place(accel, ray, hit)).position; }
-// Shading normal, like normal_at(): unit, world space, on the side of the geometric one.
+// Returns the shading normal, like normal_at(): unit, world space, on the side of the geometric one.
 vec3 surface_normal(Address accel, Ray ray, Hit hit)
 {
     SurfacePlace place = surface_place(accel, ray, hit);
     return normal_at(place, point_at(place));
 }
-// The first texture coordinates; (0, 0) if the mesh has none.
+// Returns the first texture coordinates; (0, 0) if the mesh has none.
 vec2 surface_uv(Address accel, Ray ray, Hit hit) { return uv0_at(surface_place(accel, ray, hit)); }
-// The colour of the vertices; (1, 1, 1, 1) if the mesh has none.
+// Returns the colour of the vertices; (1, 1, 1, 1) if the mesh has none.
 vec4 surface_color(Address accel, Ray ray, Hit hit) { return color_at(surface_place(accel, ray, hit)); }
 
-// AccelHandle::id of the hit instance, as AbstractAccel::handle_of() returns it.
+// Returns AccelHandle::id of the hit instance, as AbstractAccel::handle_of() does.
 Uint64 handle_of(Address accel, Hit hit) { return surface_geometry(surfaces_of(accel), hit.instance_index).handle; }
-// The index of the hit instance in its handle, from 0, as AbstractAccel::index_in_handle() returns it.
+// Returns the index of the hit instance in its handle, from 0, as AbstractAccel::index_in_handle() returns it.
 uint index_in_handle(Address accel, Hit hit)
 {
     return hit.instance_index - surface_geometry(surfaces_of(accel), hit.instance_index).first_instance;
 }
 
-// The instance's custom index if it is not 0, else the face's MeshView::face_metadata, else 0.
+// Returns the instance's custom index if it is not 0, else the face's MeshView::face_metadata, else 0.
 uint face_metadata(Address accel, Hit hit)
 {
     SurfaceTable table = surfaces_of(accel);
@@ -71,7 +71,7 @@ uint face_metadata(Address accel, Hit hit)
     Uints of_faces = surface_geometry(table, hit.instance_index).face_metadata;
     return custom_index != 0u || is_absent(of_faces) ? custom_index : AT(of_faces, hit.primitive_index);
 }
-// The address of MeshView::metadata: AT(REF(T)(geometry_metadata(accel, hit)), 0); absent if there is none.
+// Returns the address of MeshView::metadata: AT(REF(T)(geometry_metadata(accel, hit)), 0); absent if there is none.
 Address geometry_metadata(Address accel, Hit hit)
 {
     return surface_geometry(surfaces_of(accel), hit.instance_index).metadata;

@@ -109,7 +109,7 @@ FUNC vec4 load_attribute(SurfaceAttribute array, uint components, uint item) {
     return value;
 }
 
-// (1-u-v) a + u b + v c, by component; off by at most 4 roundings of the sum of the three magnitudes.
+// Returns (1-u-v) a + u b + v c, by component; off by at most 4 roundings of the sum of the three magnitudes.
 FUNC vec4 interpolated(vec4 a, vec4 b, vec4 c, vec2 uv) {
     PRECISE float weight = 1.0f - uv.x;
     weight = weight - uv.y;
@@ -156,9 +156,9 @@ FUNC vec2 uv_at(SurfacePlace place, uint number) {
     vec4 uv = interpolated_attribute(array, 2u, place);
     return vec2(uv.x, uv.y);
 }
-// The first set.
+// Returns the first set of texture coordinates.
 FUNC vec2 uv0_at(SurfacePlace place) { return uv_at(place, ATTRIBUTE_UV0); }
-// The second set.
+// Returns the second set of texture coordinates.
 FUNC vec2 uv1_at(SurfacePlace place) { return uv_at(place, ATTRIBUTE_UV1); }
 
 // Returns the colour of the vertices, interpolated, as it was pushed; (1, 1, 1, 1) if the mesh has none.
@@ -210,21 +210,21 @@ FUNC vec4 tangent_at(SurfacePlace place, SurfacePoint point, vec3 normal) {
     vec4 tangent = interpolated_attribute(tangents, 4u, place);
     vec3 world = unit_or(transform_vector(place.placement.to_world, xyz(tangent)), xyz(none));
     if (world == xyz(none)) return none;
-    // Whether the map, or the choice of the normal's side, has flipped the frame.
+    // The map, or the choice of the normal's side, may have flipped the frame.
     vec3 given = object_normal(place, point.normal_object);
     vec3 bitangent = transform_vector(place.placement.to_world, cross(given, xyz(tangent)));
     bool is_same = dot(cross(normal, world), bitangent) >= 0.0f;
     return vec4(world, is_same == (tangent.w >= 0.0f) ? 1.0f : -1.0f);
 }
 
-// The instance's custom index if it is not 0, else the face's own, else 0.
+// Returns the instance's custom index if it is not 0, else the face's own, else 0.
 FUNC uint face_metadata_at(SurfacePlace place) {
     if (place.custom_index != 0u) return place.custom_index;
     if (is_absent(place.geometry.face_metadata)) return 0u;
     return AT(place.geometry.face_metadata, place.primitive_index);
 }
 
-// The surface of a miss.
+// Returns the surface of a miss.
 FUNC Surface no_surface() {
     vec3 zero = vec3(0.0f, 0.0f, 0.0f);
     Surface surface;

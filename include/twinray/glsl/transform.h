@@ -11,8 +11,8 @@ struct Rows {
     vec4 r2;
 };
 
-// One coordinate of the image of a vector, which has no position: the row without its offset. Products and sums round
-// in this order on every device.
+// Returns one coordinate of the image of a vector, which has no position: the row without its offset. Products and sums
+// round in this order on every device.
 FUNC float row_vector(vec4 row, vec3 v) {
     PRECISE float x = row.x * v.x;
     PRECISE float y = row.y * v.y;
@@ -36,10 +36,10 @@ FUNC vec3 transform_vector(Rows m, vec3 v) {
 // Returns the image of a point.
 FUNC vec3 transform_point(Rows m, vec3 p) { return vec3(row_point(m.r0, p), row_point(m.r1, p), row_point(m.r2, p)); }
 
-// The largest power of two that is not above a positive float (0 for denormals).
+// Returns the largest power of two that is not above a positive float (0 for denormals).
 FUNC float power_of_two_below(float largest) { return uintBitsToFloat(floatBitsToUint(largest) & 0x7f800000u); }
 
-// a x b, whose products and differences each round once on every device.
+// Returns a x b, whose products and differences each round once on every device.
 FUNC vec3 cross_precise(vec3 a, vec3 b) {
     PRECISE float xp = a.y * b.z;
     PRECISE float xq = a.z * b.y;
@@ -51,7 +51,7 @@ FUNC vec3 cross_precise(vec3 a, vec3 b) {
     return result;
 }
 
-// a x b in doubled precision.
+// Returns a x b in doubled precision.
 FUNC vec3 doubled_cross(vec3 a, vec3 b, INOUT(vec3) missing) {
     float x_low = 0.0f;
     float y_low = 0.0f;
@@ -65,16 +65,16 @@ FUNC vec3 doubled_cross(vec3 a, vec3 b, INOUT(vec3) missing) {
 
 // Returns b if either is NaN, for which max() promises nothing; drivers on CPUs would be slower with max().
 FUNC float max_by_comparison(float a, float b) { return a > b ? a : b; }
-// The largest magnitude of the components, none of which is NaN.
+// Returns the largest magnitude of the components, none of which is NaN.
 FUNC float largest_entry(vec3 v) { return max_by_comparison(abs(v.x), max_by_comparison(abs(v.y), abs(v.z))); }
-// The largest magnitude of a coordinate of a box.
+// Returns the largest magnitude of a coordinate of a box.
 FUNC float largest_coordinate(vec3 lo, vec3 hi) { return max_by_comparison(largest_entry(lo), largest_entry(hi)); }
 
-// The inverse of an invertible map: cofactors over the determinant, both in doubled precision, so that each entry of
-// the linear part is right to a few roundings of itself for condition numbers up to about 10^7. Columns and rows are
-// scaled by powers of two first, which is exact, so that products neither overflow nor vanish: scales along axes, of
-// any size, may come before a rotation, and after one (then entries are right to 2^-15 of the largest in their column).
-// The result is not finite if a column or row is 0 or denormal.
+// Returns the inverse of an invertible map: cofactors over the determinant, both in doubled precision, so that each
+// entry of the linear part is right to a few roundings of itself for condition numbers up to about 10^7. Columns and
+// rows are scaled by powers of two first, which is exact, so that products neither overflow nor vanish: scales along
+// axes, of any size, may come before a rotation, and after one (then entries are right to 2^-15 of the largest in their
+// column). The result is not finite if a column or row is 0 or denormal.
 FUNC Rows inverse_of(Rows m) {
     vec3 a0 = vec3(m.r0.x, m.r0.y, m.r0.z);
     vec3 a1 = vec3(m.r1.x, m.r1.y, m.r1.z);

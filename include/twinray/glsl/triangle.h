@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which triangles can be hit at all: those with finite vertices that span an area. The decision is exact: three
+// Decides which triangles can be hit at all: those with finite vertices that span an area. The decision is exact: three
 // distinct vertices on a line would otherwise be hit now and then, because a sheared image of them is not quite on a
 // line.
 #ifndef TWINRAY_TRIANGLE_H
@@ -62,7 +62,7 @@ FUNC bool is_surely_not_zero(float p, float q) {
 // Returns whether no coordinate is infinite or NaN.
 FUNC bool is_finite_triangle(vec3 a, vec3 b, vec3 c) { return is_finite(a) && is_finite(b) && is_finite(c); }
 
-// 0 for a denormal coordinate, decided by its bits, so that devices which flush denormals and those which do not agree.
+// Returns 0 for a denormal coordinate, decided by its bits, so that devices agree whether or not they flush denormals.
 FUNC float flushed(float x) { return (floatBitsToUint(x) & 0x7f800000u) == 0u ? 0.0f : x; }
 // The same for each coordinate.
 FUNC vec3 flushed_point(vec3 p) { return vec3(flushed(p.x), flushed(p.y), flushed(p.z)); }

@@ -3,7 +3,7 @@
 #ifndef TWINRAY_WORD64_H
 #define TWINRAY_WORD64_H
 
-// a + b modulo 2^64.
+// Returns a + b modulo 2^64.
 FUNC uvec2 add64(uvec2 a, uvec2 b) {
     uint low = a.x + b.x;
     return uvec2(low, a.y + b.y + (low < a.x ? 1u : 0u));
@@ -11,12 +11,12 @@ FUNC uvec2 add64(uvec2 a, uvec2 b) {
 // Returns -a in two's complement.
 FUNC uvec2 negate64(uvec2 a) { return add64(uvec2(~a.x, ~a.y), uvec2(1u, 0u)); }
 
-// a * 2^bits modulo 2^64; bits is below 64.
+// Returns a * 2^bits modulo 2^64; bits is below 64.
 FUNC uvec2 shift_up64(uvec2 a, uint bits) {
     if (bits == 0u) return a;
     return bits < 32u ? uvec2(a.x << bits, a.y << bits | a.x >> (32u - bits)) : uvec2(0u, a.x << (bits - 32u));
 }
-// a / 2^bits, rounded down; bits is below 64.
+// Returns a / 2^bits, rounded down; bits is below 64.
 FUNC uvec2 shift_down64(uvec2 a, uint bits) {
     if (bits == 0u) return a;
     return bits < 32u ? uvec2(a.x >> bits | a.y << (32u - bits), a.y >> bits) : uvec2(a.y >> (bits - 32u), 0u);
