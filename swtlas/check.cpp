@@ -9,7 +9,7 @@ namespace twinray {
 namespace {
 
 constexpr std::size_t max_violations = 20;
-constexpr double least_margin = 1.0 / 512;  // of a cell: half of what is added, the rest may round
+constexpr double least_margin = 1.0 / 512;  // of a cell: half of the added margin, the rest may round
 
 double half_area(dvec3 lo, dvec3 hi) {
     const dvec3 size = hi - lo;

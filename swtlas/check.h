@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Checks on the host what traversal and refits rely on in a built tree.
+// Checks on the host the properties of a built tree that traversal and refits rely on.
 #pragma once
 
 #include <span>
@@ -18,14 +18,14 @@ struct TreeCheck {
 };
 
 // Checks a tree of layout bvh2: every leaf and every inner node is reached exactly once, every child's box is the union
-// of what is below it (so it contains that, exactly), nodes know their edges, and the depth is within what a
-// traversal's stack is made for. leaf_boxes[i] is the box of the leaf that reference LEAF_BIT | i names.
+// of the boxes below it (so it contains those, exactly), nodes know their edges, and the depth is within the limit of a
+// traversal's stack. leaf_boxes[i] is the box of the leaf that reference LEAF_BIT | i names.
 TreeCheck check_tree(const Bvh& bvh, std::span<const BvhNode> nodes, std::span<const LeafBox> leaf_boxes);
 
 // Checks a tree of any other layout, from records[0]: `bvh` has the box of all leaves, every leaf is reached exactly
 // once, no record twice, unreached records are none, nodes have two children at least and are all of the width of the
-// root, the planes of a child are outside of what is below it by more than traversal's rounding, and the depth is
-// within what its stack is made for. leaf_boxes[i] is the box of primitive or instance i; an empty one may be anywhere.
+// root, the planes of a child are outside of everything below it by more than traversal's rounding, and the depth is
+// within the limit of its stack. leaf_boxes[i] is the box of primitive or instance i; an empty one may be anywhere.
 TreeCheck check_tree(const Bvh& bvh, std::span<const CompressedRecord> records, std::span<const LeafBox> leaf_boxes);
 
 }  // namespace twinray

@@ -94,7 +94,7 @@ SavedHeader read_header(Reader& reader, std::size_t file_bytes) {
     return header;
 }
 
-// Checks what traversal relies on: it follows indices without checking them.
+// Checks the data that traversal relies on: it follows indices without checking them.
 void check_bvh2(const SavedGeometry& geometry) {
     const std::size_t primitives = geometry.mesh.primitive_count();
     if (geometry.leaves.size() != primitives)

@@ -144,7 +144,7 @@ class AccelBackend {
     };
     // Returns whether a build asked the GPU how small it can be.
     virtual bool has_compaction(const BuiltGeometry&) const { return false; }
-    // Tells whether geometries built by `done` can be smaller, or the GPU has not told yet; it must not wait.
+    // Tells whether geometries built by `done` can be smaller, or the GPU's answer is not there yet; it must not wait.
     enum class Compaction : std::uint8_t { none, untold, possible };
     virtual Compaction compaction_of(const BuiltGeometry&, SyncPoint) const { return Compaction::none; }
     // Moves each `current` that can be smaller into less memory.
@@ -192,7 +192,7 @@ class AccelBackend {
     virtual BuildBytes scene_bytes(std::size_t count, std::size_t capacity) const = 0;
     // Measures `current` as it was built last.
     virtual void measure_tlas(Commands& commands, const TlasInput& input, const BuiltTlas& current) const = 0;
-    // Adapts `current`, built with will_move, to instances of which only transforms changed.
+    // Adapts `current`, built with will_move, to instances that differ only in their transforms.
     virtual void refit_tlas(Commands& commands, const TlasInput& input, const BuiltTlas& current) = 0;
     // Returns the implementation's geometry; throws Error on a dead handle or pending edits.
     const BuiltGeometry& built_geometry(AccelHandle handle) const;
@@ -321,7 +321,7 @@ class AccelBackend {
     std::unique_ptr<WorldBoundKernel> bound_;
     mutable SyncPoint bound_at_;           // when the last sync's bound is there; null: it was not requested
     mutable bool computes_bound_ = false;  // in each sync: it was requested, or transforms may be unusable
-    mutable CostLog scene_costs_;          // the first question measures a top level of which nothing has moved
+    mutable CostLog scene_costs_;          // the first query measures a top level in which nothing has moved
     double rebuild_ratio_ = default_rebuild_ratio;
     std::uint64_t scratch_budget_ = 64 << 20;
     std::map<std::uint64_t, PushedGeometry> pushed_;  // in push order: ids only grow

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The features of shaders/shared/features.h that a trace needs: a pure function of what is known when it is recorded.
+// The features of shaders/shared/features.h that a trace needs: a pure function of the data known when it is recorded.
 #pragma once
 
 #include <cstddef>

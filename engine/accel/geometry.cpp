@@ -89,7 +89,7 @@ int Geometry::size_exponent(std::span<const vec3> positions) {
 }
 
 float Geometry::near_unit(std::span<const vec3> positions) {
-    // Neither it nor its reciprocal may leave the range of normal floats.
+    // The unit and its reciprocal must stay in the range of normal floats.
     return std::ldexp(1.0f, std::clamp(size_exponent(positions), -100, 100));
 }
 

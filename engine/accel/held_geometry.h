@@ -31,8 +31,8 @@ struct AccelBackend::Staged {
     SurfaceTables::Staged surfaces;
     std::vector<HeldGeometry*> building;
     std::vector<std::unique_ptr<BuiltGeometry>> built;      // by `building`
-    std::vector<std::shared_ptr<HeldGeometry>> geometries;  // that it looked at
-    std::vector<std::weak_ptr<HeldGeometry>> uncompacted;   // of which the GPU has not told yet
+    std::vector<std::shared_ptr<HeldGeometry>> geometries;  // those that it examined
+    std::vector<std::weak_ptr<HeldGeometry>> uncompacted;   // their compacted sizes are not known yet
     std::vector<InstanceSlice*> slices;                     // those that were edited, or all
     InstanceArray::Staged instances;
     std::unique_ptr<BuiltTlas> scene;

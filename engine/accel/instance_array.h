@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The records of all instances on the device, and what the host edited of them.
+// The records of all instances on the device, and the host's edits of them.
 #pragma once
 
 #include <optional>
@@ -31,7 +31,7 @@ struct InstanceSlice {
     // between two of them may be newer on the device.
     std::set<std::size_t> edited;
     bool all_edited = false;
-    // Records of which the host changed everything but the transform, which may be newer on the device.
+    // Records in which the host changed everything but the transform, which may be newer on the device.
     std::set<std::size_t> options_edited;
 
     void edit(std::size_t index, const InstanceRecord& record);
@@ -41,7 +41,7 @@ struct InstanceSlice {
     void append(std::span<const InstanceRecord> more);
 };
 
-// The records of all instances on the device: one array in push order, that keeps what kernels wrote into it.
+// The records of all instances on the device: one array in push order that keeps the writes of kernels.
 class InstanceArray {
   public:
     explicit InstanceArray(Context& context);

@@ -155,7 +155,7 @@ MeshOnDevice MeshStore::lend(Commands& commands, const Geometry& geometry, Store
 void MeshStore::download(Geometry& geometry, const StoredMesh& stored) const {
     if (!geometry.device && !stored.device_wrote) return;
     MeshOnDevice from = stored.copy;
-    if (!from) {  // the caller's memory has the only one
+    if (!from) {  // only the caller's memory has it
         from = make_copy(geometry);
         Commands commands(context_, "read mesh");
         const MeshGather::Item item = gather_item(geometry, from.mesh);

@@ -21,7 +21,7 @@ namespace twinray {
 // A mesh in device memory, which exists as long as somebody holds this. Syncs write moved vertices into the copy of an
 // accelerator.
 struct MeshOnDevice {
-    std::shared_ptr<Buffer> buffer;  // may hold other meshes, too
+    std::shared_ptr<Buffer> buffer;  // may also hold other meshes
     PackedMesh mesh;
     float scale = 1;  // the unit of the positions
 

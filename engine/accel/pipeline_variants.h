@@ -46,8 +46,8 @@ class PipelineVariants {
     };
     enum class State : std::uint8_t { missing, queued, ready, failed };
     struct Background {
-        int process = platform::process_id();  // the only one that has the worker
-        std::mutex mutex;                      // of what follows
+        int process = platform::process_id();  // the only process that has the worker
+        std::mutex mutex;                      // for the members below
         std::condition_variable changed;
         std::map<Job, State> states;
         std::deque<Job> queue;  // the first one is being compiled

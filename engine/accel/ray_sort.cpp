@@ -13,7 +13,7 @@ RaySort::RaySort(Context& context)
       keys_(context, lazy_kernel("engine_ray_keys", engine_ray_keys_spirv, WORLD_BOUND_GROUP)),
       sort_(context) {}
 
-// The box comes first.
+// The scratch memory begins with the box.
 std::uint64_t RaySort::scratch_bytes(std::uint64_t count, const KernelTuning& tuning) {
     return sizeof(WorldBoundBits) + RadixSort::Scratch{0, count}.bytes(tuning);
 }

@@ -34,7 +34,7 @@ class CostLog {
     CostTarget target() const;
     void commit(bool is_build, SyncPoint done);
     void forget() { points_ = {}; }  // the tree was built and not measured
-    // Returns the latest measurement since the last build that the GPU has finished; nullopt if there is none.
+    // Returns the latest measurement since the last build that the GPU has finished; nullopt without one.
     std::optional<TreeCost> newest(const Context& context) const;
     SyncPoint last_point() const { return last_; }
     std::uint64_t bytes() const { return costs_.bytes(); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// TraceArgs, the features and the levels for C++, and what kernels get from a TraceDesc.
+// TraceArgs, the features and the levels for C++, and the data of a TraceDesc for kernels.
 #pragma once
 
 #include <twinray/trace.h>

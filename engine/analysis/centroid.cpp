@@ -25,7 +25,7 @@ struct Sums {
     dvec3 points = dvec3(0);
     dvec3 squares = dvec3(0);   // of differences of points within pairs
     dvec3 products = dvec3(0);  // of these and differences of hits
-    double odd = 0;             // pairs of which one ray hits
+    double odd = 0;             // pairs in which one ray hits
 
     void add_pair(const std::optional<dvec3>& first, const std::optional<dvec3>& second) {
         const dvec3 a = first.value_or(dvec3(0)), b = second.value_or(dvec3(0));

@@ -116,7 +116,7 @@ class Contours {
     };
 
     struct Rules {
-        Sum sum;        // what is left of the error is that of the rule with fewer points
+        Sum sum;        // the remaining error is that of the rule with fewer points
         bool do_agree;  // to a rounding: then the one with more points is better by far
     };
     Rules rules_on(const Piece& piece) const {

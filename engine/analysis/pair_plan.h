@@ -36,7 +36,7 @@ struct SampledPair {
     bool may_be_blocked;
 };
 
-// The exchange of groups i and j, i <= j: A_i F_ij, of which contours give `contour` and areas the rest.
+// The exchange of groups i and j, i <= j: A_i F_ij, the sum of `contour` from contours and the rest from areas.
 struct PlannedPair {
     uint i, j;
     ContourExchange contour;
@@ -51,7 +51,7 @@ struct PairPlan {
 struct PairPlanOptions {
     PairEstimator estimator = PairEstimator::automatic;
     Sides sides = Sides::front;
-    std::uint64_t rays = 1 << 14;  // of a row: what areas may take in `automatic`
+    std::uint64_t rays = 1 << 14;  // of a row: the most that areas may take in `automatic`
 };
 
 // Areas have less variance than hits if the gap is at least this part of the longest edge: at 0.2 both have as much,

@@ -12,11 +12,11 @@
 namespace twinray {
 namespace {
 
-// The exchange of i and j, i <= j: at first A_i F_ij and A_j F_ji, 0 without rays.
+// The exchange of i and j, i <= j: at first A_i F_ij and A_j F_ji; 0 without rays.
 struct Exchange {
     uint i, j;
     double of_i = 0, of_j = 0;
-    double known_deviation = 0;  // of what is known otherwise: both directions are then the same estimate
+    double known_deviation = 0;  // of an exchange known otherwise: both directions are then the same estimate
 };
 
 // A 95 % interval is about two standard deviations long either way.
@@ -154,7 +154,7 @@ class Projection {
         Joint both;
     };
 
-    // A row all of whose rays were lost may still exchange what others saw: its variance is that of the remainder.
+    // A row whose rays were all lost may still exchange what others saw: its variance is that of the remainder.
     Joint joint_of(const ViewFactorRow& row, const Estimate& lost, double left) const {
         if (row.rays == 0) return {};
         const double area = areas_[row.group], flow = lost.value * area;

@@ -78,7 +78,7 @@ struct RowFile::State {
     std::string configuration;
     std::size_t first_row;
     std::ofstream out;
-    std::optional<std::uint64_t> end;  // of what was loaded
+    std::optional<std::uint64_t> end;  // of the loaded rows
 
     void open_at(std::uint64_t bytes) {
         out.open(file, std::ios::binary | std::ios::app);

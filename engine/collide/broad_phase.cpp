@@ -51,7 +51,7 @@ struct BroadPhase::State {
     BoxTree tree;
     PairSearch search;
     Buffer queries;
-    uint largest_item = 0;  // of what was prepared last
+    uint largest_item = 0;  // of the last preparation
 
   private:
     void check(const AbstractAccel& accel, const char* action) const;

@@ -11,7 +11,7 @@
 namespace twinray {
 namespace {
 
-constexpr std::uint64_t chunk = 1 << 20;  // pairs of which the results are downloaded at once: 16 MiB
+constexpr std::uint64_t chunk = 1 << 20;  // pairs whose results are downloaded at once: 16 MiB
 
 void check(const WorldTriangle& t, std::size_t pair) {
     for (const dvec3& vertex : {t.a, t.b, t.c})

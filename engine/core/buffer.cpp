@@ -74,7 +74,7 @@ void free_external(const Context::State& state, const ExternalBuffer& buffer) {
     state.vk().vkFreeMemory(state.device(), buffer.memory.memory, nullptr);
 }
 
-// Makes memory to be exported or, with a handle, imports what another has exported. Throws Error naming the buffer.
+// Makes memory to be exported or, with a handle, imports another's export. Throws Error naming the buffer.
 ExternalBuffer make_external(Context& context, const BufferDesc& desc, VkBufferUsageFlags usage,
                              const ExportedMemory& imported) try {
     const Context::State& state = context.state();

@@ -50,7 +50,7 @@ struct Context::State {
     VkDescriptorSetLayout image_array_layout();
     std::uint32_t queue_family() const { return queue_family_; }
     const KernelWatch& watch() const { return watch_; }                 // ContextDesc::watch_kernels
-    const DeviceProperties& properties() const { return properties_; }  // what is enabled, not merely supported
+    const DeviceProperties& properties() const { return properties_; }  // enabled, not merely supported
     const KernelTuning& tuning() const { return tuning_; }
     float timestamp_period_ns() const { return timestamp_period_ns_; }   // 0: the queue has no timestamps
     bool is_validating() const { return messenger_ != VK_NULL_HANDLE; }  // ContextDesc::validation
@@ -83,8 +83,8 @@ struct Context::State {
     // Runs `destroy` when everything submitted or announced so far is done.
     void retire(std::function<void()> destroy);
 
-    // A device does not outlive a fork: a child process must leave it alone. Its threads are the parent's, and the
-    // memory that a driver frees may be the parent's, too. Any thread.
+    // A device does not outlive a fork: a child process must leave it alone. Its threads are the parent's, and so may
+    // be the memory that a driver frees. Any thread.
     bool is_of_this_process() const noexcept;
     // Throws Error unless it is.
     void check_process() const;

@@ -52,7 +52,7 @@ VkInstance new_instance(const VulkanTable& vk, const std::string& name, bool val
     application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
     application.pApplicationName = name.c_str();
     application.pEngineName = "twinray";
-    application.apiVersion = VK_API_VERSION_1_3;  // device-level 1.2 is enough; 1.3 is what the validation layer knows
+    application.apiVersion = VK_API_VERSION_1_3;  // device-level 1.2 is enough; the validation layer knows 1.3
 
     const VkValidationFeatureEnableEXT synchronisation = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
     VkValidationFeaturesEXT validation_features{};

@@ -27,7 +27,7 @@ class DeviceList {
         Ref<ListTotal> total;
         uint capacity;
     };
-    // Appends what `record(commands, list, first, count)` finds for some of `items` items.
+    // Called as record(commands, list, first, count): appends the elements found for some of `items` items.
     using Record = std::function<void(Commands&, const View&, std::uint64_t, std::uint64_t)>;
     // Calls `record` to append for all items, submits and waits; if there was too little room, does so again with
     // enough. Returns the number of elements. If it exceeds the limit, throws Error, beginning with `action`, that

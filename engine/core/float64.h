@@ -9,7 +9,7 @@
 
 namespace twinray {
 
-// Returns the context. Throws Error, beginning with `what` needs it, if the device has no float64.
+// Returns the context. Throws Error, beginning with `what`, which needs it, if the device has no float64.
 inline Context& with_float64(Context& context, std::string_view what) {
     if (!context.properties().shader_float64)
         fail(what, " need float64 (shaderFloat64), which device '", context.properties().name, "' has not enabled");

@@ -74,7 +74,7 @@ class ImageArray {
     static constexpr std::uint32_t max_images = 65536;
 
     ImageArray() = default;
-    // Throws Error if there are none or too many. The images must outlive all work that uses the array.
+    // Throws Error for no images or too many. The images must outlive all work that uses the array.
     ImageArray(Context& context, std::span<const VkDescriptorImageInfo> images);
     ~ImageArray();
     ImageArray(ImageArray&& other) noexcept;

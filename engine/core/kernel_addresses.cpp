@@ -57,7 +57,7 @@ class Declarations {
         }
     }
 
-    // REFERENCE of twinray/glsl/common.glsl declares such structs.
+    // Such structs are declared by REFERENCE of twinray/glsl/common.glsl.
     static bool is_ref(const std::map<std::uint32_t, Member>& members) {
         return members.size() == 1 && members.begin()->second.name == "address";
     }

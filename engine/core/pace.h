@@ -24,7 +24,7 @@ std::uint64_t first_items(double most_seconds);
 std::uint64_t next_items(std::uint64_t allowed, const MeasuredWork& last, double most_seconds);
 
 // Returns the number of groups of passes that nobody measures, of little work per invocation, that may share a
-// submission: a quarter of what takes `most_seconds` at 2^17 groups per second. No limit if that is 0.
+// submission: a quarter of the groups that take `most_seconds` at 2^17 per second. No limit if that is 0.
 std::uint64_t most_groups(double most_seconds);
 
 }  // namespace twinray

@@ -64,13 +64,13 @@ class PipelineTable {
   private:
     struct Entry {
         std::shared_ptr<CompiledKernel> kernel;
-        std::uint64_t given_back = 0;  // how many were before it
+        std::uint64_t given_back = 0;  // how many were given back before it
     };
     std::shared_ptr<CompiledKernel> find(const std::string& key) const;
     std::shared_ptr<CompiledKernel> take_oldest_unused();
 
     mutable std::mutex mutex_;
-    std::map<std::string, Entry> entries_;  // by the bytes of what is compiled
+    std::map<std::string, Entry> entries_;  // by the bytes of all that a pipeline is compiled from
     std::uint64_t given_back_ = 0;
 };
 

@@ -17,7 +17,7 @@
 
 namespace twinray::platform {
 
-// Libraries. open_library returns null if there is none of that name; symbol_of, if it lacks the symbol.
+// Libraries. open_library returns null if no library has that name; symbol_of, if the library lacks the symbol.
 void* open_library(const char* name) noexcept;
 void close_library(void* library) noexcept;
 void* symbol_of(void* library, const char* name) noexcept;
@@ -36,7 +36,7 @@ struct Program {
     std::filesystem::path file;  // without a folder, it is looked up in the search path; empty: this program
     std::vector<std::string> arguments = {};
     std::map<std::string, std::string> environment = {};  // changes of this process's
-    bool is_silent = false;                               // what it prints is dropped
+    bool is_silent = false;                               // its output is dropped
 };
 struct ProgramEnd {
     int status = 0;
@@ -80,7 +80,7 @@ constexpr std::intptr_t no_handle = -1;
 // Returns no_handle if that is none.
 std::intptr_t copy_handle(std::intptr_t handle) noexcept;
 void close_handle(std::intptr_t handle) noexcept;
-// `get_handle` is the device's function of that name. Returns VK_SUCCESS and a new handle, or what the function says.
+// `get_handle` is the device's function of that name. Returns VK_SUCCESS and a new handle, or the function's result.
 VkResult export_memory(PFN_vkVoidFunction get_handle, VkDevice device, VkDeviceMemory memory, std::intptr_t& handle);
 // Allocates with `info`, to whose chain it adds the import of the handle.
 VkResult import_memory(PFN_vkAllocateMemory allocate, VkDevice device, VkMemoryAllocateInfo info, std::intptr_t handle,

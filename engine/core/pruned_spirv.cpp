@@ -26,7 +26,7 @@ struct Block {
 };
 
 struct Function {
-    std::size_t begin, body, end;  // its OpFunction, its first OpLabel, what follows its OpFunctionEnd
+    std::size_t begin, body, end;  // its OpFunction, its first OpLabel, the position after its OpFunctionEnd
     std::vector<Block> blocks = {};
     bool is_live = false;
 };
@@ -335,7 +335,7 @@ class Pruner {
     std::vector<bool> is_type_, is_gone_;    // by id
     std::vector<bool> is_vector_, is_word_;  // by id of a type; a word: a boolean or a whole number of 32 bits
     std::vector<std::optional<std::uint32_t>> known_;  // by id of a word
-    std::vector<Id> same_;                             // the value that an id stands for
+    std::vector<Id> same_;                             // the value in place of an id
     std::vector<std::size_t> composite_;               // by id: the place where its parts are put together, or none
     std::vector<std::size_t> index_;                   // of a function, and of a block in its function, by id
     std::vector<Id> entries_;

@@ -9,9 +9,9 @@ namespace twinray {
 
 // The most that any kernel takes. A kernel that may take more on a better device (KernelTuning) queries the limits.
 struct KernelLimits {
-    static constexpr std::uint32_t shared_bytes = 16384;  // what Vulkan guarantees
+    static constexpr std::uint32_t shared_bytes = 16384;  // guaranteed by Vulkan
     static constexpr std::uint32_t group_invocations = 256;
-    static constexpr std::uint32_t push_constant_bytes = 128;  // what Vulkan guarantees
+    static constexpr std::uint32_t push_constant_bytes = 128;  // guaranteed by Vulkan
 };
 
 // One device feature that twinray uses.
@@ -40,7 +40,7 @@ struct Requirement {
     std::vector<std::string> spirv_extensions = {};
 
     // Says "twinray needs timelineSemaphore because ...", then "; this device has it" or "; this device lacks it", and
-    // in that case what works without.
+    // in that case which parts work without.
     std::string sentence() const;
 };
 // Returns all of them, those of one part together.

@@ -7,7 +7,7 @@
 
 #include <span>
 
-// No device knows these: volk has them only among its globals.
+// volk has these only among its globals: no device knows them.
 #define TWINRAY_INSTANCE_FUNCTIONS(F)           \
     F(vkDestroyInstance)                        \
     F(vkEnumeratePhysicalDevices)               \
@@ -38,7 +38,7 @@ struct VulkanTable : VolkDeviceTable {
 
     VulkanTable() : VolkDeviceTable{} {}
 
-    // get_instance_proc_addr null: opens the system's Vulkan loader. Throws Error if there is none.
+    // Loads the functions; null opens the system's Vulkan loader. Throws Error if the system has none.
     void load_global(PFN_vkGetInstanceProcAddr get_instance_proc_addr);
     // Leaves out debug labels if an installed validation layer would crash by them: see labels_are_safe.
     void load_instance(VkInstance instance);
@@ -46,7 +46,7 @@ struct VulkanTable : VolkDeviceTable {
 };
 
 // Opens the system's Vulkan loader, for the life of the process: drivers and layers do not survive being unloaded.
-// Throws Error if there is none.
+// Throws Error if the system has none.
 PFN_vkGetInstanceProcAddr open_system_loader();
 
 // Returns false if one of the layers is a Khronos validation layer older than 1.3.243. It forgets the labels of a

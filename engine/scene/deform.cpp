@@ -19,7 +19,7 @@ Blend blend_of(const VertexMotion& motion, std::size_t vertex, std::span<const T
     Blend blend{dmat3(0), dvec3(0)};
     for (std::size_t i = vertex * motion.influences; i < (vertex + 1) * motion.influences; ++i) {
         const double weight = motion.weights[i];
-        if (weight == 0) continue;  // of joints that do not count, which may be infinite
+        if (weight == 0) continue;  // of unused joints, which may be infinite
         for (int row = 0; row < 3; ++row) {
             const vec4& entries = joints[motion.joints[i]].rows[static_cast<std::size_t>(row)];
             for (int column = 0; column < 3; ++column)

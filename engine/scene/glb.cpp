@@ -27,8 +27,8 @@ ChannelTable linear_table() {
     return table;
 }
 
-// Checks what glTF needs of nodes: a rotation and scales along the axes, so columns that are perpendicular, but for
-// rounding.
+// Returns whether glTF nodes can express it: a rotation and scales along the axes, so columns that are perpendicular,
+// apart from rounding.
 bool is_decomposable(const Transform& transform) {
     const auto column = [&](int i) { return dvec3(transform.rows[0][i], transform.rows[1][i], transform.rows[2][i]); };
     const auto perpendicular = [&](int i, int j) {

@@ -38,8 +38,8 @@ std::uint64_t word_at(std::span<const std::uint8_t> bytes, std::size_t first, st
     return word;
 }
 
-// ITU T.81, B.2.4.2: the table's class, 16 counts of codes by length, then the codes' values. A table of class 0 codes
-// the bits that a difference of two averages takes, 0 to 16; one of class 1 codes bytes.
+// Finds faults by ITU T.81, B.2.4.2: the table's class, 16 counts of codes by length, then the codes' values. A table
+// of class 0 codes the bits that a difference of two averages takes, 0 to 16; one of class 1 codes bytes.
 std::string fault_of_huffman_tables(std::span<const std::uint8_t> segment) {
     constexpr std::size_t counts_end = 17;
     while (segment.size() >= counts_end) {
@@ -76,7 +76,7 @@ dvec3 radiance_factors(std::span<const std::uint8_t> bytes) {
         dvec3 factor(1);
         for (int i = 0; i < wanted; ++i) {
             const std::optional<double> number = parse_number(cut_word(numbers));
-            if (!number || !(*number > 0) || !std::isfinite(*number)) return;  // as Radiance, which takes what is right
+            if (!number || !(*number > 0) || !std::isfinite(*number)) return;  // like Radiance, which uses valid ones
             if (wanted == 1) factor = dvec3(*number);
             factor[i] = *number;
         }

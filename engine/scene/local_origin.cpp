@@ -33,7 +33,7 @@ double Bounds64::reach() const { return is_empty() ? 0 : largest_entry(max(abs(l
 
 dvec3 choose_local_origin(const Bounds64& bounds) {
     const double reach = bounds.reach();
-    constexpr double smallest = std::numeric_limits<float>::min();  // below it float32 has no steps to speak of
+    constexpr double smallest = std::numeric_limits<float>::min();  // below it, float32 has hardly any steps
     if (reach < smallest || !is_far(reach, bounds.extent())) return dvec3(0);
     // A point may be the rounded rest of something smaller than a step of float32.
     const double step = round_step(bounds.extent() > 0 ? bounds.extent() : reach * 0x1p-23);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Arrays of elements on the device, of which only those that the host changed are uploaded.
+// Arrays of elements on the device. Only the elements that the host changed are uploaded.
 #pragma once
 
 #include <optional>

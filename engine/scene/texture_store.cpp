@@ -94,9 +94,9 @@ struct TextureStore::State {
     void check_faults() const;
 
     struct Texture {
-        std::string name;  // of the image that it was pushed as
+        std::string name;  // the name of the image that was pushed
         TextureOptions options;
-        Texels form;         // on the device, without numbers; of width 0: not there yet
+        Texels form;         // on the device, without numbers; its width is 0 if it is not there yet
         SampledImage image;  // one of the two
         Buffer texels;
     };
@@ -129,7 +129,7 @@ struct TextureStore::State {
     uint longest_side_;  // that an image may have
     std::vector<Texture> textures_;
     Samplers samplers_;
-    std::map<std::size_t, Texels> pending_;  // by index of the texture: what the next sync uploads
+    std::map<std::size_t, Texels> pending_;  // by index of the texture: the texels that the next sync uploads
     ImageArray array_;
     std::vector<TextureRecord> record_values_;  // of textures in buffers; those of pending ones do not count
     SetUploads records_;

@@ -26,7 +26,7 @@ struct InstanceRange {
     std::size_t count = 0;
 };
 
-// The contract that both accelerators fulfil. Edits only note what changes; sync() is the only call that builds, and it
+// The contract that both accelerators fulfil. Edits only note changes; sync() is the only call that builds, and it
 // never waits for the GPU. Wrong use throws Error naming the object, the value and the limit, and leaves the
 // accelerator unchanged.
 class AbstractAccel {

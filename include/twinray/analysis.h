@@ -255,7 +255,7 @@ class RowFile {
 };
 
 // Diffuse light or heat between groups: B = E + rho F B, where B leaves a group per area, E is emitted and rho is the
-// reflected fraction of what arrives.
+// reflected fraction of the arriving light or heat.
 struct Radiosity {
     std::vector<double> values;    // B, in the unit of emission
     std::vector<double> incident;  // F B: arrives per area
@@ -307,7 +307,7 @@ struct LitArea {
 
     // Returns the lit fraction of the area that is turned to the light; 0 if there is none.
     double fraction() const { return unobstructed > 0 ? area / unobstructed : 0; }
-    // Returns the mean over the faces, in units of what a plane across the light receives.
+    // Returns the mean over the faces, in units of the light that a plane across it receives.
     double irradiance() const { return surface > 0 ? area / surface : 0; }
 };
 
@@ -375,7 +375,7 @@ std::vector<SkyPatch> sky_patches(std::string_view name);
 // A raster of heights, of at most 2^20 columns and rows. With c for a column and r for a row, its surface is the
 // triangles (c, r), (c + 1, r), (c + 1, r + 1) and (c, r), (c + 1, r + 1), (c, r + 1) between the middles of cells.
 struct HeightRaster {
-    std::span<const float> heights;  // row by row; NaN where there is none
+    std::span<const float> heights;  // row by row; NaN where the raster has no height
     uint columns = 0, rows = 0;      // at least 2 each; fewer than 2^30 cells
 };
 // The answers of horizon() for a cell: slope, the horizon's height over its distance, one a way, at least 0; or one

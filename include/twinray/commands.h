@@ -98,7 +98,7 @@ struct CallerCommands {
     // A value of a timeline semaphore of the caller that the submission will signal. Until it is reached, twinray keeps
     // the resources; so it must be reached, from the host or by a later value, even if the commands are dropped.
     SyncPoint done;
-    // The caller's earlier work whose writes twinray must see, and the later work that uses what twinray writes.
+    // The caller's earlier work whose writes twinray must see, and the later work that uses twinray's writes.
     VkPipelineStageFlags producer_stages = VK_PIPELINE_STAGE_ALL_COMMANDS_BIT;
     VkAccessFlags producer_access = VK_ACCESS_MEMORY_WRITE_BIT;
     VkPipelineStageFlags consumer_stages = VK_PIPELINE_STAGE_ALL_COMMANDS_BIT;
@@ -132,7 +132,7 @@ class Commands {
     };
     [[nodiscard]] Pass pass(const std::string& name) { return Pass(*this, name); }  // begins one
     bool in_pass() const;                                                           // whether one is open
-    // Within a pass: later commands see what earlier ones wrote, as from one pass to the next.
+    // Makes later commands of a pass see the writes of earlier ones, as from one pass to the next.
     void barrier();
 
     // Copies into `target` through a staging buffer that lives until the GPU has read it.
@@ -214,12 +214,12 @@ struct SpecializationConstant {
 
 // Describes a kernel.
 struct KernelDesc {
-    std::string name = {};                      // folder_stem: the label and the timing have this name, too
+    std::string name = {};                      // folder_stem: also the label and the name of the timing
     std::span<const std::uint32_t> spirv = {};  // embedded at build time
     std::uint32_t group_size = 64;              // local_size_x of the shader
     std::vector<SpecializationConstant> constants = {};
     bool compiles_when_used =
-        false;                // by the first dispatch, which then throws what the constructor would; spirv stays valid
+        false;                // by the first dispatch, which then throws as the constructor would; spirv stays valid
     bool has_images = false;  // it reads an ImageArray, which each dispatch then takes
 };
 

@@ -3,7 +3,7 @@
 //
 //     twinray::Context context;                        // the best device that there is
 //     twinray::Context guest(adopted);                 // an application's: fill AdoptedDevice
-//     twinray::DeviceRequirements needs(properties);   // what such a device should have enabled
+//     twinray::DeviceRequirements needs(properties);   // to enable on such a device
 #pragma once
 
 #include <array>
@@ -123,7 +123,7 @@ class DeviceRequirements {
     struct State;
     std::unique_ptr<State> state_;
 };
-// The kind of memory of a buffer, by who writes and reads it.
+// The kind of memory of a buffer, by its writers and readers.
 enum class Memory : std::uint8_t {
     device,    // fastest for the GPU, not mapped
     upload,    // host writes once, GPU reads
@@ -220,7 +220,7 @@ struct ContextDesc {
     bool validation = false;  // the Khronos layer, with synchronisation validation; messages go to the log and are kept
     bool use_ray_query = true;             // false: leave the extension disabled although the device has it
     bool use_ray_tracing_pipeline = true;  // likewise
-    std::optional<TuningRow> tuning = {};  // none: what TWINRAY_TUNING names, else by device
+    std::optional<TuningRow> tuning = {};  // none: as TWINRAY_TUNING names it, else by device
     // Not set: chosen by device, as KernelTuning has it; 0: no limit.
     std::optional<double> most_submission_seconds = {};
     // A device counts as lost (DeviceLost) if it finishes no submission for this many seconds while twinray waits for
@@ -261,7 +261,7 @@ class Context {
     VkDevice device() const;                     // created here or adopted
     VkPhysicalDevice physical_device() const;    // the one that device() was created on
     std::uint32_t queue_family() const;          // the family of the one queue
-    const DeviceProperties& properties() const;  // what is enabled, not merely supported
+    const DeviceProperties& properties() const;  // the enabled features, not merely supported ones
     std::uint64_t allocated_bytes() const;       // size of the buffers and images made with it
     // Returns the address that kernels get for absent data. It is odd, and there is memory at it, because some drivers
     // read before they know that they need not. Kernels test it with is_absent() of twinray/glsl/common.glsl.

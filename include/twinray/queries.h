@@ -253,7 +253,7 @@ class PointQuery {
     explicit PointQuery(Context& context);
     ~PointQuery();
 
-    // Sets what is searched from now on: builds a tree. The data that the spans refer to must outlive this object.
+    // Sets the scene to search from now on: builds a tree. The data that the spans refer to must outlive this object.
     // Throws Error naming the fault of a mesh or an instance.
     void set(const Scene& scene);
     // Takes what the accelerator holds now: see scene_of(). It may change or end.

@@ -137,7 +137,7 @@ struct Light {
     float outer_cone = 0.7853982f;
 };
 
-struct Rig;  // what moves in a scene: see "Animation" below
+struct Rig;  // the moving parts of a scene: see "Animation" below
 
 // A point of the file is `origin` plus a point of the scene. The origin is 0 except for files whose coordinates float32
 // cannot hold, such as places far away in metres of UTM: see load_scene(). Rays of such a file are made in float64 and
@@ -218,7 +218,7 @@ struct ImagePlane {
     vec3 origin, right, up, forward;  // `forward` has length 1, and the three are perpendicular
     bool is_orthographic;
 };
-// Fits all of the camera's frame into the picture, whatever its aspect, with what is beside it.
+// Fits all of the camera's frame into the picture, whatever its aspect; the picture also shows the parts beside it.
 ImagePlane image_plane(const Camera& camera, float aspect);
 
 // Returns a ray whose `t` is the depth along `forward`.

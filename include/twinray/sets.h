@@ -64,7 +64,7 @@ constexpr bool has_distinct_types = ((number_of<typename Entries::Type, Entries.
 
 // ---- Loops over tuples, unrolled at compile time. Nothing here allocates; all of it works in constant expressions ---
 
-// A functor that captures nothing: it gets what it needs as arguments, as its GLSL counterpart does.
+// A functor that captures nothing: it gets all data as arguments, as its GLSL counterpart does.
 template <class F>
 concept Captureless = std::is_empty_v<F>;
 

@@ -18,7 +18,7 @@ class SwTlas final : public AbstractAccel {
   public:
     explicit SwTlas(Context& context, const AccelOptions& options = {});  // throws Error naming what the device lacks
 
-    // Returns what the software accelerator supports on a device that it runs on.
+    // Returns the software accelerator's support for a feature on a device that it runs on.
     static Capability capability_on(const DeviceProperties& device, Feature feature);
 
     // Writes the built geometries and their instances, without the data of AccelOptions::keeps_surfaces. Throws Error
@@ -50,10 +50,10 @@ enum class BuildOrder : std::uint8_t {
 // ray tracing pipeline. If two triangles are at the same distance, the driver chooses.
 class HwTlas final : public AbstractAccel {
   public:
-    // Throws Error naming the device and what it lacks.
+    // Throws Error naming the device and the features that it lacks.
     explicit HwTlas(Context& context, BuildOrder order = BuildOrder::automatic, const AccelOptions& options = {});
 
-    // Returns what the hardware accelerator supports on a device that it runs on.
+    // Returns the hardware accelerator's support for a feature on a device that it runs on.
     static Capability capability_on(const DeviceProperties& device, Feature feature);
 
     // "ray query" or "ray tracing pipeline".

@@ -256,7 +256,7 @@ Feature feature_of(Level level);       // level_fast, ...
 struct MemoryUsage {
     std::uint64_t geometries = 0;  // bottom levels, with the tables that lead back to the user's primitives
     std::uint64_t scene = 0;       // the top level
-    std::uint64_t instances = 0;   // the records of all instances, and what refining needs of them
+    std::uint64_t instances = 0;   // the records of all instances, and their data for refining
     std::uint64_t blocks = 0;      // the data that the records point at, one block per geometry
     std::uint64_t vertices = 0;    // copies of meshes whose vertices move, or that are refined or have surfaces
     std::uint64_t surfaces = 0;    // the other data that AccelOptions::keeps_surfaces keeps
@@ -288,7 +288,7 @@ struct BoxesView {
 };
 
 // Limits of an accelerator.
-constexpr std::size_t max_instances = (1u << 24) - 1;  // what Vulkan guarantees at least
+constexpr std::size_t max_instances = (1u << 24) - 1;  // the number that Vulkan guarantees at least
 constexpr uint max_custom_index = (1u << 24) - 1;
 
 }  // namespace twinray

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // World coordinates in float64, for scenes that are far larger than float32 resolves, such as maps in metres.
 //
-//     WorldAccel world(accel, dvec3(500000, 5400000, 100));   // what float32 counts from
+//     WorldAccel world(accel, dvec3(500000, 5400000, 100));   // the zero of float32 coordinates
 //     AccelHandle house = world.push(mesh, Transform64::translation({500012.13, 5400003.27, 101.5}));
 //     std::vector<Hit> hits = world.closest_hits(rays);       // of Ray64
 //     world.set_origin(camera);                               // views stay valid: only the top level is refitted

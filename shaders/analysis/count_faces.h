@@ -9,7 +9,7 @@ const uint NO_GROUP = 0xffffffffu; // of a face whose hits do not count, and of 
 struct GroupCount
 {
     uint hits;
-    uint odd; // pairs of rays (2 i, 2 i + 1) of which one is a hit of the group
+    uint odd; // pairs of rays (2 i, 2 i + 1) in which one is a hit of the group
 };
 BUFFER_OF(GroupCount, 4);
 
@@ -18,7 +18,7 @@ struct CountFacesArgs
     FaceTable table;
     REF(Hit) hits;
     Uints groups; // of each face; absent: a face is its own group
-    // There is one more than groups: the last one counts as odd the pairs of which one ray hits any group.
+    // There is one more than groups: the last one counts as odd the pairs in which one ray hits any group.
     REF(GroupCount) counts;
     uint ray_count;
     uint group_count;

@@ -12,7 +12,7 @@ struct PairChunk
     uint a;
     uint b;
     uint first;
-    float distance; // of the faces, about: weights are in units of what they are there
+    float distance; // of the faces, about; weights are in units of their values there
     FacePart part_a;
     FacePart part_b;
 };
@@ -40,7 +40,7 @@ struct PairWeightsArgs
 
 struct PairRay
 {
-    // from a spawn point to the other: it meets what is between; ends before it begins where `weight` is 0
+    // from a spawn point to the other: it meets all that is between; ends before it begins where `weight` is 0
     Ray ray;
     float weight; // cos cos (distance / r)^2; 0 where a side that does not count is seen, half of it where both do
 };

@@ -13,7 +13,7 @@ struct SkyRaysArgs
     FaceTable table;
     REF(Ray) rays; // `samples` of each face; one that leaves a side that does not count ends before it begins
     vec3 towards;  // the zenith or the sun; unit
-    uint to_sun;   // 1: all rays go there; 0: to all of the sky above the horizon, by what it brings to the face
+    uint to_sun;   // 1: all rays go there; 0: to all of the sky above the horizon, by its contribution to the face
     uint front_only;
     uint first_face;
     uint ray_count;

@@ -47,7 +47,7 @@ struct FaceTargetsArgs
     REF(Ray) rays;
     REF(Hit) hits;
     Uints groups;  // by face; absent: each face is its own
-    Uints targets; // written: the group of what each ray meets, or TARGET_*
+    Uints targets; // written: the group that each ray meets, or TARGET_*
     uint count;
     uint is_two_sided;
 };

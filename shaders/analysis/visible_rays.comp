@@ -13,7 +13,7 @@ vec3 row(Floats numbers, uint index)
     return vec3(AT(numbers, 3u * index), AT(numbers, 3u * index + 1u), AT(numbers, 3u * index + 2u));
 }
 
-// Returns a point of a surface, moved off along the normal by what rounding may have moved the surface, as
+// Returns a point of a surface, moved off along the normal as far as rounding may have moved the surface, as
 // SurfacePoint::offset of a triangle that is not known.
 vec3 clear_of_surface(vec3 point, vec3 normal)
 {

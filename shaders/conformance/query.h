@@ -49,7 +49,7 @@ struct Answer
     Columns to_world;
     uint triangles;        // candidates
     uint boxes;
-    uint opaque_boxes;     // of them, those that were called opaque; OPACITY_UNKNOWN where nobody is told
+    uint opaque_boxes;     // those that were reported as opaque; OPACITY_UNKNOWN if nobody knows
     uint outside;          // triangles whose t was not inside the interval that was left
 };
 BUFFER_OF(Answer, 4);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Traces a batch of rays: a kernel like those of users. An invocation has one ray, or on a CPU a run of them
-// (groups_for_rays in engine/accel/trace_program.h): neighbours find in the caches what those before them met.
+// (groups_for_rays in engine/accel/trace_program.h): neighbours find the data of those before them in the caches.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #ifdef TWINRAY_WIDE_LOADS

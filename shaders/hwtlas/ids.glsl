@@ -6,7 +6,7 @@
 #include "shaders/shared/hw_tlas_header.h"
 #include "shaders/shared/trace.h"
 
-// instance_id, primitive_id: what the driver calls InstanceId and PrimitiveId.
+// instance_id, primitive_id: the driver's InstanceId and PrimitiveId.
 Candidate candidate_of(HwTlasHeader scene, uint instance_id, uint primitive_id, uint custom_index, bool is_front,
                        TraceOptions options)
 {

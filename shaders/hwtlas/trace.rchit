@@ -5,7 +5,7 @@
 #include "shaders/hwtlas/pipeline.glsl"
 
 layout(location = 0) rayPayloadInEXT Hit payload;
-hitAttributeEXT vec2 uv; // barycentrics of a triangle, what the intersection gave for a box
+hitAttributeEXT vec2 uv; // barycentrics of a triangle, values from the intersection for a box
 
 void main()
 {

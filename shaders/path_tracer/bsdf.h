@@ -34,7 +34,7 @@ FUNC float base_albedo(Bsdf bsdf, float cosine)
 
 struct LayerChances
 {
-    float coat;  // of sampling it instead of what lies below
+    float coat;  // of sampling it instead of the layers below
     float sheen; // likewise, once it is not the coat
 };
 

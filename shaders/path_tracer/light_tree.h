@@ -6,7 +6,7 @@
 
 const uint LIGHT_LEAF = 0x80000000u;
 const uint LIGHT_TWO_SIDED = 0x40000000u; // shines along its axis and against it
-const uint LIGHT_PAIR = 0x20000000u;      // a leaf of two lights, of which the table chooses: the halves of a square
+const uint LIGHT_PAIR = 0x20000000u;      // a leaf of two lights; the table chooses one: the halves of a square
 const uint LIGHT_INDEX = 0x1fffffffu;
 const uint LIGHT_LEVELS = 32u; // below the root at most: a bit each in the way to a light
 
@@ -30,7 +30,7 @@ struct LightReceiver
 {
     vec3 position;
     vec3 normal; // unit
-    bool has_two_sides; // light from behind counts, too: the surface transmits
+    bool has_two_sides; // light from behind also counts: the surface transmits
 };
 
 // Returns cos and sin of max(a - b, 0), for angles from 0 to pi. Components: x cos, y sin.

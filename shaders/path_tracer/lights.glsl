@@ -141,7 +141,7 @@ LightSample sample_local(SceneData scene, PunctualLight light, float chance, vec
 struct ChosenLight
 {
     uint light;
-    float chance; // but for its chance in its part of the table
+    float chance; // without its chance in its part of the table
 };
 
 // u in [0, 1): between the tree and the lights that are not in it. word: among these.

@@ -34,7 +34,7 @@ const uint STRATEGY_MIS = 0u;    // both of the following, weighted by the power
 const uint STRATEGY_LIGHTS = 1u; // sample lights only
 const uint STRATEGY_BSDF = 2u;   // sample the surface only: punctual lights are never found
 
-// 48 bytes. normal: unit, or 0 for none: that of the triangle stands in. tangent: unit, or 0 for none: derive from uv.
+// 48 bytes. normal: unit, or 0 for none: the triangle's is used. tangent: unit, or 0 for none: derived from uv.
 struct SurfaceVertex
 {
     vec3 position;
@@ -121,7 +121,7 @@ const uint LAYER_SPECULAR = 1u;   // a weight or color of the dielectric reflect
 const uint LAYER_COAT = 2u;
 const uint LAYER_SHEEN = 4u;
 const uint LAYER_ANISOTROPY = 8u;
-const uint LAYER_VOLUME = 16u;    // what transmits is the boundary of a volume, else a thin wall
+const uint LAYER_VOLUME = 16u;    // the transmitting surface bounds a volume, else a thin wall
 
 // Bits of the textures that a LayeredMaterial has.
 const uint LAYERED_SPECULAR = 1u;

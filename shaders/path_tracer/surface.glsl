@@ -122,7 +122,7 @@ vec3 interpolated_normal(TriangleData data, SurfacePoint point, Placement placem
     vec3 normal = vertex_normal(data, point, at);
     if (dot(normal, normal) == 0.0) return point.normal;
     normal = normalize(transposed_times(placement.to_object, normal));
-    // Files with vertex normals against their winding exist; the winding decides what is the front.
+    // Files with vertex normals against their winding exist; the winding decides which side is the front.
     return dot(normal, point.normal) < 0.0 ? -normal : normal;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Appends what a search by radius finds.
+// Appends an item found by a search by radius.
 void append(PointSearchArgs args, uint point, uint item, double distance)
 {
     uint slot = append_to(args.total);

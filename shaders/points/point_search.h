@@ -17,7 +17,7 @@ struct ClosestItem
     dvec3 at;        // on the triangle
     double distance;
     dvec2 uv;        // barycentric coordinates: (1 - u - v) a + u b + v c
-    uint item;       // NO_ITEM: there is none, and all else is undefined
+    uint item;       // NO_ITEM: nothing was found, and all else is undefined
     uint reserved;
 };
 BUFFER_OF(ClosestItem, 8);
@@ -41,7 +41,7 @@ struct PointSearchArgs
     REF(TreeBox) boxes;       // of the points, to be sorted
     Uints order;              // of the points, for neighbours to search together
     REF(ClosestItem) closest;
-    Uints windings;           // by point: the winding number, without what `found` says is undecided
+    Uints windings;           // by point: the winding number, without the undecided crossings in `found`
     REF(PointItem) found;     // near triangles, or undecided crossings; with room for `capacity`
     REF(ListTotal) total;     // of found
     double limit;             // of distance; may be infinite

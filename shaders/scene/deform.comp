@@ -38,7 +38,7 @@ Rows blend_of(uint vertex)
     for (uint i = vertex * args.influences; i < (vertex + 1u) * args.influences; ++i)
     {
         float weight = AT(args.joint_weights, i);
-        if (weight == 0.0) continue; // of joints that do not count, which may be infinite
+        if (weight == 0.0) continue; // of unused joints, which may be infinite
         uint row = 3u * AT(args.joints, i);
         blend.r0 += weight * AT(args.joint_rows, row);
         blend.r1 += weight * AT(args.joint_rows, row + 1u);

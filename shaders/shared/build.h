@@ -37,7 +37,7 @@ struct BuildTree
 };
 BUFFER_OF(BuildTree, 8);
 
-// Leaves of one tree, of which a group does the chunk.
+// A chunk of leaves of one tree, which one group does.
 struct LeafChunk
 {
     uint tree;

@@ -24,7 +24,7 @@ BUFFER_OF(CollapseItem, 8);
 FUNC CollapseItem load_item(REF(CollapseItem) items, uint index) { return AT(items, index); }
 FUNC void store_item(REF(CollapseItem) items, uint index, CollapseItem item) { AT(items, index) = item; }
 
-// How many items a level has; begins with what an indirect dispatch reads.
+// How many items a level has; begins with the data that an indirect dispatch reads.
 struct CollapseLevel
 {
     uint groups_x;

@@ -11,7 +11,7 @@
 #include "shaders/shared/build.h"
 #include "shaders/shared/surface_area.h"
 
-const uint MOST_RECORDS = 1u << 26u; // a tree may have: what an entry on the stack can name; 40 million leaves
+const uint MOST_RECORDS = 1u << 26u; // the limit of a tree: an entry on the stack can name so many; 40 million leaves
 
 // Returns the number of records of a node, by the most children that it may have.
 FUNC uint records_of_node(uint width) { return width == 8u ? 2u : 1u; }

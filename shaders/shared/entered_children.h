@@ -133,7 +133,7 @@ FUNC vec2 cross_planes(SeenGrid grid, uint shift, float t_min, float t_max)
 FUNC bool crosses_planes(SeenGrid grid, uint shift, float t_min, float t_max)
 {
     vec2 crossing = cross_planes(grid, shift, t_min, t_max);
-    return !(crossing.y < crossing.x); // true for NaN, too: then the children are looked at
+    return !(crossing.y < crossing.x); // also true for NaN: then the children are looked at
 }
 FUNC uint enter_planes(SeenGrid grid, uint shift, float t_min, float t_max, bool is_there, uint query)
 {

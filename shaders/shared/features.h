@@ -22,7 +22,7 @@ const uint FEATURES_ALL = 2047u;
 const uint LEVEL_FAST = 0u;       // Moeller-Trumbore: may lose rays at edges
 const uint LEVEL_WATERTIGHT = 1u; // exact signs of edges and of t: no leaks, a single hit at an edge
 const uint LEVEL_REFINED = 2u;    // and float64 for t, u, v of the hit
-const uint LEVEL_CERTIFIED = 3u;  // float64 decides what is hit, and first
+const uint LEVEL_CERTIFIED = 3u;  // float64 decides which hit there is, and which is first
 
 // Ids of the specialisation constants.
 const uint QUERY_CONSTANT = 0u;       // QUERY_* of a batch kernel

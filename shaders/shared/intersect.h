@@ -25,7 +25,7 @@ FUNC float edge_function(vec3 a, vec3 b)
     PRECISE float p = a.x * b.y;
     PRECISE float q = a.y * b.x;
     PRECISE float area = p - q;
-#ifdef TWINRAY_CONTRACTED // a negative control: what fma(a.x, b.y, -q) gives, for drivers that do not contract
+#ifdef TWINRAY_CONTRACTED // a negative control: the result of fma(a.x, b.y, -q), for drivers that do not contract
     PRECISE double fused = double(a.x) * double(b.y) - double(q);
     area = float(fused);
 #endif
@@ -82,7 +82,7 @@ FUNC int exact_side(vec3 vertex_a, vec3 vertex_b)
 struct TriangleHit
 {
     float t;
-    float t_low; // what t was rounded by, at LEVEL_CERTIFIED; else 0
+    float t_low; // the rounding of t, at LEVEL_CERTIFIED; else 0
     float u;
     float v;
     bool along; // the normal (v1 - v0) x (v2 - v0) points along the ray, not against it
@@ -259,18 +259,18 @@ FUNC bool may_begin_in_plane(SeenTriangle seen)
     return is_around && abs(mean) <= ROUNDINGS * along * across * (across + along);
 }
 
-// The sign of t if rounding may hide it, at all levels but fast. It is asked for in one visit of the triangle, told
-// between two, and used in the next: telling it needs many registers, which a visit needs for itself.
-const uint SIGN_UNASKED = 0u;       // nothing is asked; or told: the triangle is not ahead of the ray's origin
+// The sign of t if rounding may hide it, at all levels but fast. It is asked for in one visit of the triangle, computed
+// between two, and used in the next: computing it needs many registers, which a visit needs for itself.
+const uint SIGN_UNASKED = 0u;       // nothing is asked; or answered: the triangle is not ahead of the ray's origin
 const uint SIGN_ASKED_AGAINST = 1u; // asked; TriangleHit::along is false
 const uint SIGN_ASKED_ALONG = 2u;   // asked; it is true
-const uint SIGN_POSITIVE = 3u;      // told
-const uint SIGN_AS_ROUNDED = 4u;    // told: plane_side() cannot tell
+const uint SIGN_POSITIVE = 3u;      // answered
+const uint SIGN_AS_ROUNDED = 4u;    // answered: plane_side() cannot tell
 
 FUNC uint asked_sign(bool along) { return along ? SIGN_ASKED_ALONG : SIGN_ASKED_AGAINST; }
 FUNC bool is_sign_asked(uint sign_of_t) { return sign_of_t == SIGN_ASKED_ALONG || sign_of_t == SIGN_ASKED_AGAINST; }
 
-// Tells the sign that was asked for.
+// Computes the sign that was asked for.
 FUNC uint told_sign(vec3 v0, vec3 v1, vec3 v2, vec3 origin, uint asked)
 {
     int side = 0;
@@ -278,7 +278,7 @@ FUNC uint told_sign(vec3 v0, vec3 v1, vec3 v2, vec3 origin, uint asked)
     return side == (asked == SIGN_ASKED_ALONG ? 1 : -1) ? SIGN_POSITIVE : SIGN_UNASKED;
 }
 
-// Gives t the sign that was told.
+// Gives t the computed sign.
 FUNC float signed_t(float t, uint sign_of_t)
 {
     const float LEAST_NORMAL = uintBitsToFloat(0x00800000u);
@@ -306,8 +306,8 @@ FUNC bool intersect_triangle(vec3 v0, vec3 v1, vec3 v2, RaySpace space, INOUT(ui
     return intersect_seen(seen, space, sign_of_t, hit);
 }
 
-// The same, with the sign of t told at once: for hosts, which have registers enough. Returns false if the told sign is
-// not positive.
+// Does the same with the sign of t computed at once: for hosts, which have registers enough. Returns false if that sign
+// is not positive.
 FUNC bool intersect_triangle_signed(vec3 v0, vec3 v1, vec3 v2, RaySpace space, INOUT(TriangleHit) hit)
 {
     uint sign_of_t = SIGN_UNASKED;

@@ -17,7 +17,7 @@ struct LeafVisit
     uint primitive_index;
     bool is_second;
     bool is_missed;   // the ray surely misses all of the leaf
-    bool is_followed; // the leaf's second triangle is to be visited, too
+    bool is_followed; // the leaf's second triangle must be visited next
 };
 
 // The vertices of a leaf as a ray sees them, and twice the signed areas between the ray and each edge; a shared edge is
@@ -156,7 +156,7 @@ FUNC HitInterval hit_interval(SeenTriangle seen, float shear_z, float t_min, flo
     const float SMALLEST = 8.8817841970012523e-16f;
     const float LARGEST = 1.152921504606846976e+18f;     // 2^60
     const float LEAST_DEPTH = 7.8886090522101181e-31f;   // 2^-100: crossing() takes shares of vertices' z
-    // 2^100, for infinity, which would make the bound infinite, too
+    // 2^100, for infinity, which would also make the bound infinite
     const float FARTHEST = 1.2676506002282294e+30f;
     vec3 t = vec3(seen.a.z, seen.b.z, seen.c.z) * shear_z;
     float det = seen.area_a + seen.area_b + seen.area_c;

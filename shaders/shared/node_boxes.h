@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Views trees of all layouts in one way: a node has slots, some of which have a child.
+// Views trees of all layouts in one way: a node has slots; some slots have a child.
 #ifndef TWINRAY_SHARED_NODE_BOXES_H
 #define TWINRAY_SHARED_NODE_BOXES_H
 #include "shaders/shared/compressed.h"

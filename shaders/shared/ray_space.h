@@ -128,7 +128,7 @@ FUNC RaySpace make_ray_space(vec3 origin, vec3 direction, float pad)
 }
 
 // Returns how far aside of a ray a vertex may be sheared, rounded: 8 of 2^-24 of its distance along an axis. A triangle
-// is hit if its sheared vertices say so, and its box must be, too, however near to the ray's origin that is.
+// is hit if its sheared vertices say so, and its box must also be hit, however near to the ray's origin that is.
 // 2^-20
 FUNC float vertex_pad(vec3 origin, float extent) { return (largest_entry(origin) + extent) * 9.5367431640625e-07f; }
 

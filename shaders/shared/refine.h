@@ -173,8 +173,8 @@ FUNC void leave_out(float t, INOUT(Ray) ray, INOUT(float) step)
     step = next;
 }
 
-// Makes a hit of the traced ray, `near`, one of the given ray: t, u and v are what float64 gives, rounded once.
-// Returns false if it is at an end of that; `near` is then shorter, and to be traced again.
+// Makes a hit of the traced ray, `near`, one of the given ray: t, u and v are those of float64, rounded once. Returns
+// false if it is at an end of that; `near` is then shorter, and to be traced again.
 FUNC bool refine(INOUT(Hit) hit, INOUT(Ray) near, INOUT(float) step, TraceOptions options)
 {
     Ray ray = options.given;

@@ -5,7 +5,7 @@
 #include "shaders/shared/transform_double.h"
 #include "shaders/shared/world_bound.h"
 
-// An instance of what was built.
+// The data of an instance that refining needs.
 struct RefineInstance
 {
     InstancedMesh placed; // as given, in units of a power of two, which the map contains; absent: boxes

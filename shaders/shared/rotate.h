@@ -24,7 +24,7 @@ FUNC NodeChild select_child(bool is_first, NodeChild a, NodeChild b)
     return chosen;
 }
 
-// The nodes below that a rotation changed; NOTHING if there is none.
+// The nodes below that a rotation changed; NOTHING if it changed none.
 struct Rotated
 {
     uint node0;
@@ -79,7 +79,7 @@ FUNC Rotated rotate_node(BvhChildren nodes, uint node, NodeChild a, NodeChild b,
     done.node0 = NOTHING;
     done.node1 = NOTHING;
     if (move == NOTHING) return done;
-    // One child's child on `side` goes up, and what was beside it, or in an exchange its child, down in its place.
+    // One child's child on `side` goes up, and the node beside it, or in an exchange its child, down in its place.
     bool is_of_b = move < 2u;
     bool is_exchange = move > 3u;
     uint side = move & 1u;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The part of a traversal of a SwTlasHeader that all layouts share, at primitives: the ray in the space of an instance,
-// or of the top level, what must be known of the instance that it is in, and what it has found so far.
+// or of the top level, the needed data of the instance that it is in, and its finds so far.
 #ifndef TWINRAY_SHARED_VISIT_H
 #define TWINRAY_SHARED_VISIT_H
 #include "shaders/shared/bvh.h"
@@ -36,7 +36,7 @@ struct InInstance
     uint culled; // side of its triangles that is not hit
     bool has_boxes;
     bool is_non_opaque;
-    bool is_flipped; // what culling takes for the front of its triangles is the back
+    bool is_flipped; // culling takes the back of its triangles for the front
     float error; // at LEVEL_CERTIFIED: see CertifiedRay; else 0
 };
 
@@ -218,7 +218,7 @@ FUNC bool comes_after(TriangleHit hit, float t_min, TraceOptions options)
     return is_after;
 }
 
-const uint NO_ENTRY = 0x7f800000u; // infinity, and what is larger: no hit is reported there
+const uint NO_ENTRY = 0x7f800000u; // infinity and above: no hit is reported there
 
 // Returns the rank among its siblings of a box that the ray crosses from `enter` to `leave`, the least first; the last
 // two bits are free. The nearest is first; if any hit will do, that in which the ray is longest, as most may be hit

@@ -26,8 +26,8 @@ void count_item(inout ItemLists counts, uint leaves)
     counts.subtrees += is_subtree(leaves) ? 1u : 0u;
 }
 
-// Finds room in a list for `count` more items, of which a group does `share`. The invocation that begins its last group
-// so far sets its number of groups.
+// Finds room in a list for `count` more items, `share` of them per group. The invocation that begins its last group so
+// far sets its number of groups.
 uint reserve(REF(CollapseLevel) list, uint count, uint share)
 {
     if (count == 0u) return 0u;

@@ -30,7 +30,7 @@ struct Range
 
 // A merge has its clusters in one half, and those of the next round in the other.
 shared Cluster clusters[2u * MOST_CLUSTERS];
-shared uint partners[MOST_CLUSTERS]; // the one that each chooses, itself if there is none
+shared uint partners[MOST_CLUSTERS]; // each one's choice, itself if it has none
 shared uint gone;                    // bits of those that have no place in the next round
 shared uint tallest;                 // of the clusters
 shared uint waiting;                 // bits of invocations whose range is to be merged

@@ -7,7 +7,7 @@
 
 const uvec2 TREE_END = uvec2(~0u); // the split beside the first and the last leaf
 
-bool has_low_codes; // leaves are sorted by low codes, too
+bool has_low_codes; // leaves are also sorted by low codes
 
 uvec2 split_of(BuildTree tree, uint position, uint code, uint next_code)
 {

@@ -156,7 +156,7 @@ VkResult import_memory(PFN_vkAllocateMemory allocate, VkDevice device, VkMemoryA
     return allocate(device, &info, nullptr, &memory);
 }
 
-// proc(5): user, nice, system, idle, iowait, irq, softirq, steal, in ticks; what follows is in user already.
+// proc(5): user, nice, system, idle, iowait, irq, softirq, steal, in ticks; the others are in user already.
 std::optional<ProcessorSeconds> processor_seconds() {
     std::ifstream file("/proc/stat");
     std::string name;

@@ -78,7 +78,7 @@ std::size_t draco_components_of(const std::string& type) {
                                                                                            : 0;
 }
 
-// Puts what a stream holds where the accessors of its primitive find it.
+// Puts the data of a stream where the accessors of its primitive find it.
 class DracoPrimitive {
   public:
     DracoPrimitive(const GltfFile& file, json& root, std::vector<tinygltf::Buffer>& buffers, const draco::Mesh& mesh,
@@ -158,7 +158,7 @@ std::span<const std::uint8_t> draco_stream(const GltfFile& file, const json& roo
     return stream_bytes(file, root["bufferViews"][view], buffers, object);
 }
 
-// Files that do not require the extension bring the data uncompressed, too. It is then taken.
+// Returns whether the data are also uncompressed, as in files that do not require the extension; they are then used.
 bool has_plain_data(const json& root, std::uint64_t accessor) {
     const auto accessors = root.find("accessors");
     return accessors != root.end() && accessor < accessors->size() && (*accessors)[accessor].contains("bufferView");
@@ -188,7 +188,7 @@ void decode_draco_primitives([[maybe_unused]] const GltfFile& file, [[maybe_unus
                              [[maybe_unused]] std::vector<tinygltf::Buffer>& buffers) {
 #ifdef TWINRAY_HAS_DRACO
     if (!root.contains("meshes")) return;
-    std::set<std::uint64_t> decoded;  // accessors of positions: a mesh may stand in the file twice
+    std::set<std::uint64_t> decoded;  // accessors of positions: a file may contain a mesh twice
     for (std::size_t m = 0; m < root["meshes"].size(); ++m) {
         json& mesh = root["meshes"][m];
         if (!mesh.contains("primitives")) continue;

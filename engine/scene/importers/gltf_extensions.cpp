@@ -158,7 +158,7 @@ void check_extensions(GltfFile& file, const json& root) {
 
     std::set<std::string> used = strings_of(root, "extensionsUsed");
     used.merge(strings_of(root, "extensionsRequired"));
-    used.erase("FB_ngon_encoding");  // says which triangles were one face, and nothing of how they look
+    used.erase("FB_ngon_encoding");  // tells which triangles were one face, and nothing of their look
     std::string ignored;
     for (const std::string& extension : used)
         if (!is_supported(extension)) ignored += (ignored.empty() ? "" : ", ") + extension;

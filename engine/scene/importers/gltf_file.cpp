@@ -147,7 +147,7 @@ GltfFile open_gltf(const std::filesystem::path& path) {
     decode_meshopt_views(file, source.root, buffers);
     decode_draco_primitives(file, source.root, buffers);
     parse_model(file, source.root);
-    // Morph targets that move few vertices of a mesh have such accessors, with as many elements as it has vertices.
+    // Morph targets that move few of a mesh's vertices have such accessors, with as many elements as it has vertices.
     file.zeros_left = std::size_t{1} << 22;
     for (const tinygltf::Buffer& buffer : buffers) file.zeros_left += 64 * buffer.data.size();
     file.model.buffers = std::move(buffers);

@@ -255,7 +255,7 @@ void read_anisotropy(const Reader& from, Material& material) {
     material.anisotropy_texture = from.texture("anisotropyTexture");
 }
 
-// Rays measure the thickness: it only matters whether there is a volume, of which a texture says nothing.
+// Rays measure the thickness. It only matters whether there is a volume, and a texture does not tell that.
 void read_volume(const Reader& from, Material& material) {
     material.thickness = clamped_factor(from.number("thicknessFactor", 0), 0, no_limit);
     material.attenuation_color = from.color("attenuationColor", vec3(1));
@@ -269,7 +269,7 @@ void read_transmission(const Reader& from, Material& material) {
     material.transmission_texture = from.texture("transmissionTexture");
 }
 
-// Takes one extension into `material`; others than these are none of its business.
+// Takes one extension into `material`; it ignores others than these.
 void read_extension(const std::string& name, const Reader& from, Material& material) {
     if (name == "KHR_materials_anisotropy") read_anisotropy(from, material);
     if (name == "KHR_materials_clearcoat") read_clearcoat(from, material);

@@ -93,7 +93,7 @@ Bytes decode_meshopt(const GltfFile& file, const MeshoptStream& stream, const st
                   meshopt_remedy);
     Bytes bytes(stream.count * stream.stride);
     const int status = decode_meshopt_into(stream, bytes);
-    constexpr std::uint8_t newest_vertices = 0xa0;  // that libmeshoptimizer of before 0.23 decodes
+    constexpr std::uint8_t newest_vertices = 0xa0;  // the newest that libmeshoptimizer of before 0.23 decodes
     if (status == -1 && MESHOPTIMIZER_VERSION < 230 && !is_index && !stream.bytes.empty() &&
         stream.bytes[0] > newest_vertices)
         file.fail(object, ": is compressed for a newer libmeshoptimizer than version ", MESHOPTIMIZER_VERSION / 1000,

@@ -18,7 +18,7 @@ using glm::dmat4;
 
 dmat4 translation(const dvec3& offset) { return glm::translate(dmat4(1), to_glm(offset)); }
 
-// It is computed before any instance is rounded.
+// Returns the bounds, computed before any instance is rounded.
 Bounds64 world_bounds(const Scene& scene, const Rig& rig, const Pose& pose) {
     std::vector<Bounds> of_meshes;
     for (const Mesh& mesh : scene.meshes) of_meshes.push_back(bounds_of(MeshView(mesh)));
@@ -91,7 +91,7 @@ class MeshMover {
     double reach_;
 };
 
-// Places what no node carries, such as skinned meshes, in the world as it was.
+// Places objects that no node carries, such as skinned meshes, in the world as they were.
 void move_places(Rig& rig) {
     for (Rig::Attachment& attachment : rig.instances)
         if (attachment.node < 0)

@@ -25,7 +25,7 @@ std::size_t target_count(const tinygltf::Mesh& mesh) {
     return count;
 }
 
-// Returns the node's, else the mesh's, else none of any target.
+// Returns the node's weights, else the mesh's, else none of any target.
 std::vector<double> rest_weights(const GltfFile& file, const GltfNode& node) {
     const tinygltf::Node& source = file.model.nodes[node.index];
     if (source.mesh < 0 || std::size_t(source.mesh) >= file.model.meshes.size()) return {};
@@ -85,7 +85,7 @@ Skin read_gltf_skin(const GltfFile& file, std::size_t index, const std::vector<s
     return skin;
 }
 
-// A mesh whose skin cannot be read is not shown: its vertices stand nowhere. Its node loses it, with a warning.
+// Reads skins. A mesh whose skin cannot be read has no place and is not shown. Its node loses it, with a warning.
 std::vector<Skin> read_used_skins(GltfFile& file, const std::vector<GltfNode>& nodes,
                                   const std::vector<std::int32_t>& flat) {
     const json& sources = file.motion->at("skins");

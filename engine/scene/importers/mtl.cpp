@@ -133,7 +133,7 @@ void MtlReader::read_line(const ObjLines& line) {
         passed_over_.add(keyword, line.line());
 }
 
-// A material that exists already is defined anew.
+// Starts a material; one that exists already is defined anew.
 void MtlReader::start(std::string_view name) {
     const auto [entry, is_new] = indices_.try_emplace(std::string(name), static_cast<uint>(scene_.materials.size()));
     current_ = Current{.index = entry->second};

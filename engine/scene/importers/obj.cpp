@@ -44,7 +44,7 @@ struct ObjFile {
     };
 
     std::vector<dvec3> positions;
-    std::vector<vec3> normals;  // 0 for those that are no number
+    std::vector<vec3> normals;  // 0 for normals that are no number
     std::vector<vec2> uvs;      // v upwards
     std::vector<FaceVertex> face_vertices;
     std::vector<Face> faces;
@@ -130,7 +130,7 @@ class ObjParser {
         file_.normals.push_back(normal_or_none({v[0], v[1], v[2]}));
     }
 
-    void add_library(std::string names) {  // some files say it with every object
+    void add_library(std::string names) {  // some files repeat it with every object
         if (std::ranges::find(file_.libraries, names) == file_.libraries.end())
             file_.libraries.push_back(std::move(names));
     }

@@ -188,7 +188,7 @@ class PlyReader {
             if (slots.back() == nowhere) passed_over_.add(property.name, property.line);
         }
         const bool has_colors = has[8] && has[9] && has[10];
-        const bool shows_colors = has_colors && header_.textures.empty();  // a picture says more
+        const bool shows_colors = has_colors && header_.textures.empty();  // a picture takes precedence
         for (const PlyProperty& property : element.properties)
             if (is_color(property) && !shows_colors) passed_over_.add("colours", property.line);
         if (!has[0] || !has[1] || !has[2]) fail("'", object_, "': its vertices have no x, y and z");
@@ -219,7 +219,7 @@ class PlyReader {
         return 0;
     }
 
-    // It also reads other elements, of which nothing is kept.
+    // Reads faces; other elements are read but not kept.
     void read_faces(const PlyElement& element) {
         const bool has_strips = element.name == "tristrips";
         if (!holds_faces(element)) passed_over_.add(element.name, element.line);

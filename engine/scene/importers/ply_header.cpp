@@ -103,8 +103,8 @@ PlyHeader parse_ply_header(const Bytes& bytes, const std::string& object) {
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     if (!text.starts_with("ply") || text.size() < 4)
         fail("'", object, "': not a PLY file (it does not start with 'ply')");
-    // All lines end as the first one does. Were it told by each, a body after CR that begins with the byte 10 would
-    // lose it.
+    // All lines end as the first one does. If each line decided for itself, a body after CR that begins with the byte
+    // 10 would lose it.
     const std::size_t first_end = text.find_first_of("\r\n");
     const bool ends_in_cr = first_end != text.npos && text[first_end] == '\r' && text.substr(first_end + 1, 1) != "\n";
     const char line_end = ends_in_cr ? '\r' : '\n';

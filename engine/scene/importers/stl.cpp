@@ -27,7 +27,7 @@ struct StlFile {
     std::vector<std::string> warnings;
 };
 
-// 80 bytes of anything, a count, and so many facets: normal, vertices, two bytes of anything.
+// A file has 80 bytes of anything, a count, and so many facets: normal, vertices, two bytes of anything.
 constexpr std::size_t HEADER_SIZE = 84, FACET_SIZE = 50;
 
 std::size_t facets_that_fit(const Bytes& bytes) {

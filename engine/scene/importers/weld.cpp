@@ -11,7 +11,7 @@
 namespace twinray {
 namespace {
 
-// Position, normal, tangent, both uvs and color; what a mesh lacks stays 0.
+// Position, normal, tangent, both uvs and color; missing ones stay 0.
 using Key = std::array<float, 18>;
 
 struct HashBits {

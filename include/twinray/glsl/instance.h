@@ -14,7 +14,7 @@ struct InstanceRecord {
 };
 BUFFER_OF(InstanceRecord, 16);
 
-// The start of every geometry's block: a box around its active triangles in object space. lo > hi: there are none.
+// The start of every geometry's block: a box around its active triangles in object space. lo > hi: it has none.
 struct GeometryBox {
     vec3 lo;
     vec3 hi;

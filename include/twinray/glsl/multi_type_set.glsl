@@ -5,7 +5,7 @@
 //     vec3 color_of(Glass glass, vec2 uv) { ... }
 //     #define COLOR_OF(element) color = color_of(element, uv)
 //
-//     vec3 color = vec3(1, 0, 1); // what a key that names nothing gives
+//     vec3 color = vec3(1, 0, 1); // the result for a key that names nothing
 //     WITH_INDEX(MATERIALS, push.materials, key, COLOR_OF)
 //
 // A key that names nothing calls nothing. Kernels compiled with TWINRAY_DEBUG note it, for

@@ -71,7 +71,7 @@ TraceOptions trace_options(uint mask, uint flags, uint query, Address user_data)
     return options;
 }
 
-// Shared by closest_hit() and any_hit(): returns whether there is a hit.
+// Returns whether there is a hit; shared by closest_hit() and any_hit().
 bool find_hit(Address accel, Ray ray, TraceOptions options, out Hit hit)
 {
     hit = trace(accel, ray, options);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Access to a structure of arrays in kernels: its view() is a struct declared by TWINRAY_SOA_VIEW.
 //
-//     vec3 direction = vec3(0); // what an index out of range gives
+//     vec3 direction = vec3(0); // the result for an index out of range
 //     SOA_GET(push.queue, i, direction, direction)
 //     SOA_SET(push.queue, i, t_max, 2.0 * t_max)
 //

@@ -3,7 +3,7 @@
 // AccelOptions::keeps_surfaces.
 //
 //     if (!closest_hit(accel, ray, hit)) ...
-//     Surface surface = surface_at(accel, ray, hit);           // all of it; or what is needed:
+//     Surface surface = surface_at(accel, ray, hit);           // all of it; or only the needed parts:
 //     SurfacePlace place = surface_place(accel, ray, hit);
 //     SurfacePoint point = point_at(place);                    // for spawn_position()
 //     vec3 normal = normal_at(place, point);

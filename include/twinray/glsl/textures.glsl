@@ -32,7 +32,7 @@ bool has_texture(TextureTable table, TextureRef ref)
 layout(set = 0, binding = 0) uniform sampler2D twinray_images[];
 #define TWINRAY_IMAGE(ref) twinray_images[nonuniformEXT(ref.number - 1u)]
 
-// Returns (0, 0) if there is none.
+// Returns (0, 0) if the reference names no texture.
 uvec2 texture_size(TextureTable table, TextureRef ref)
 {
     if (!has_texture(table, ref)) return uvec2(0u);
@@ -64,7 +64,7 @@ vec4 sample_texture_lod(TextureTable table, TextureRef ref, vec2 uv, float lod)
     return textureLod(TWINRAY_IMAGE(ref), uv, lod);
 }
 
-// Returns 0 if there is none.
+// Returns 0 if the reference names no texture.
 uint texture_levels(TextureTable table, TextureRef ref)
 {
     if (!has_texture(table, ref)) return 0u;
@@ -134,14 +134,14 @@ TextureRecord texture_level(TextureRecord record, uint level)
     return record;
 }
 
-// Returns 0 if there is none.
+// Returns 0 if the reference names no texture.
 uint texture_levels(TextureTable table, TextureRef ref)
 {
     if (!has_texture(table, ref)) return 0u;
     return AT(table.records, ref.number - 1u).levels;
 }
 
-// Returns (0, 0) if there is none.
+// Returns (0, 0) if the reference names no texture.
 uvec2 texture_size(TextureTable table, TextureRef ref)
 {
     if (!has_texture(table, ref)) return uvec2(0u);
