@@ -35,7 +35,7 @@ struct BlasInput {
     bool is_empty() const { return bounds.is_empty(); }  // there is nothing that could be hit
 };
 
-// This is a pure function. reorder: along a Morton curve.
+// Returns the driver's input: a pure function. reorder: along a Morton curve.
 BlasInput blas_input(const Geometry& geometry, bool reorder);
 
 // The built form of one geometry. It has no structure if nothing can be hit: Vulkan takes an instance of address 0 as

@@ -57,7 +57,7 @@ class Window {
   private:
     struct Neighbour {
         std::uint8_t triangle;
-        float cost;  // by how much the common box is larger than both boxes
+        float cost;  // half the area of the common box, less those of both boxes
     };
     struct Neighbours {
         std::array<Neighbour, 3> all;
@@ -227,7 +227,7 @@ void choose_leaves(Geometry& geometry, bool has_vertices) {
     geometry.leaves.clear();
     geometry.welded = {};
     const std::size_t triangles = geometry.triangles.size();
-    if (geometry.positions.size() >= 3 * triangles) return;  // as of triangles without a vertex in common
+    if (geometry.positions.size() >= 3 * triangles) return;  // like a mesh without shared vertices
     std::vector<Leaf> leaves = pair_triangles(geometry.positions, geometry.triangles);
     if (leaves.empty()) return;
     Welded welded;

@@ -137,7 +137,7 @@ class AccelBackend {
     struct GeometryInput {
         const Geometry* geometry;
         const Buffer* block;
-        PackedMesh mesh;               // where it is not null, the source of the build instead of the host's copy
+        PackedMesh mesh;               // the source of the build instead of the host's copy, unless null
         PackedMesh kept;               // the device's copy as long as it has the geometry, or null
         const BuiltGeometry* current;  // from an earlier sync and the same triangles, or null
         CostTarget cost;               // measures the cost for sah(), unless null

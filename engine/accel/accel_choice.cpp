@@ -6,7 +6,7 @@
 namespace twinray {
 namespace {
 
-// Returns "" if it can.
+// Says why the device cannot use hardware; "" if it can.
 std::string why_not_hardware(const DeviceProperties& device, const AccelNeeds& needs) {
     if (const std::vector<std::string> missing = missing_for_hardware(device); !missing.empty())
         return text("device '", device.name, "' lacks ", joined(missing));

@@ -25,7 +25,7 @@ struct AccelBackend::HeldGeometry {
 // The records of a sync, to be committed once it is certain to run.
 struct AccelBackend::Staged {
     MeshStore::Staged meshes;
-    std::vector<HeldGeometry*> sources;  // whose GeometrySource was written
+    std::vector<HeldGeometry*> sources;  // their GeometrySource was written
     std::vector<bool> is_rebuilt;        // by moved item of `meshes`, which come first
     std::optional<Buffer> refinement;
     SurfaceTables::Staged surfaces;

@@ -22,7 +22,7 @@ std::size_t capacity_for(std::size_t count, std::size_t capacity);
 // The instances of one handle, and the state of the device's copy.
 struct InstanceSlice {
     std::vector<InstanceRecord> records;  // as the host last wrote them
-    std::optional<std::size_t> first;     // where they start in the device's array; none: not there yet
+    std::optional<std::size_t> first;     // their start in the device's array; none: not there yet
     std::size_t placed = 0;               // how many of them are there; those that were appended follow
     bool device_wrote = false;            // transforms on the device may be newer than `records`
     Ref<Transform> incoming;              // device memory that the next sync copies the transforms from; 0 = none

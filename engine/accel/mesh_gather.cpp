@@ -12,7 +12,7 @@
 namespace twinray {
 namespace {
 
-constexpr std::size_t max_vertices = ~0u / 3;  // whose floats a kernel counts
+constexpr std::size_t max_vertices = ~0u / 3;  // a kernel counts their floats
 
 constexpr std::uint64_t index_bytes(IndexFormat format) { return format == IndexFormat::uint16 ? 2 : 4; }
 

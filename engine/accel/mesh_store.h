@@ -64,8 +64,8 @@ class MeshStore {
     // The result of stage(), to be committed once its commands are certain to run.
     struct Staged {
         std::vector<Item> items;
-        std::vector<MeshOnDevice> made;  // by item; empty where the present copy serves
-        std::vector<CostLog> costs;      // by item; empty where there is one
+        std::vector<MeshOnDevice> made;  // by item; empty if the present copy serves
+        std::vector<CostLog> costs;      // by item; empty if the item has one
         std::unordered_map<const StoredMesh*, std::size_t> item_of;
         MeshGather::Faults faults;
 

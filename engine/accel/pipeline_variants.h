@@ -52,7 +52,7 @@ class PipelineVariants {
         std::map<Job, State> states;
         std::deque<Job> queue;  // the first one is being compiled
         bool is_ending = false;
-        std::thread worker;  // from the first job on
+        std::thread worker;  // exists from the first job on
     };
 
     Job job(uint features, Query query, Level level);

@@ -15,7 +15,7 @@ namespace twinray {
 
 namespace {
 
-constexpr uint most_cells = 1u << 30;  // with their maxima fewer than 2^31
+constexpr uint most_cells = 1u << 30;  // fewer than 2^31 with their maxima
 constexpr uint most_side = 1u << 20;   // steps are counted in float32
 
 uint number_of(HorizonMeasure measure) {

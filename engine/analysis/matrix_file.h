@@ -9,9 +9,9 @@
 
 namespace twinray {
 
-// All rows, in order. Files are written whole or not at all; throws Error naming the file.
+// All rows are passed in order. Files are written whole or not at all; throws Error naming the file.
 
-// Lines i,j,F,ci_low,ci_high.
+// Writes lines i,j,F,ci_low,ci_high.
 void write_matrix_csv(const std::filesystem::path& file, std::span<const ViewFactorRow> rows);
 // Writes a csr_matrix in the format of scipy.sparse.save_npz, with the intervals, each entry's estimator, and for each
 // row its area, the fractions that leave the scene and meet backs, and its number of rays. `areas`: one per row.

@@ -51,7 +51,7 @@ class BoxTree {
     // Makes room for `count` boxes of a tree and returns the address where they must be written, in any order; empty
     // ones (lo > hi) are never found. Throws Error above max_count.
     Ref<TreeBox> prepare(std::size_t count);
-    const Buffer& boxes() const { return boxes_; }  // where they are written
+    const Buffer& boxes() const { return boxes_; }  // their buffer
     // Sorts the boxes that earlier passes have written and builds the tree, which depends only on the boxes.
     void record(Commands& commands) const;
     BoxTreeView view() const;

@@ -54,8 +54,8 @@ class TriangleSet {
     Context& context_;
     Kernel<WorldTrianglesArgs> kernel_;
     std::vector<TriangleRun> runs_;              // with addresses of the host
-    std::vector<MeshOnDevice> meshes_;           // those that take part, until build()
-    std::vector<std::vector<uint>> vertex_ids_;  // by mesh, where they are not the indices
+    std::vector<MeshOnDevice> meshes_;           // the meshes that take part, until build()
+    std::vector<std::vector<uint>> vertex_ids_;  // by mesh, unless they are the indices
     std::vector<uint> chosen_;
     std::size_t count_ = 0;
     Buffer vertex_ids_on_device_, table_, world_triangles_, names_;

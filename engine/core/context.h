@@ -91,7 +91,7 @@ struct Context::State {
     // Throws as check_process, and DeviceLost, with the work in flight and the driver's report, once the device has
     // been lost.
     void check_alive() const;
-    // Like vk_check for calls that may report the loss of the device, which is remembered.
+    // Checks like vk_check, for calls that may report the loss of the device, which is remembered.
     void check(VkResult result, const char* action) const;
 
     void warn(std::string_view message) const;

@@ -11,7 +11,7 @@
 namespace twinray {
 namespace {
 
-constexpr int most_links = 40;  // as Linux follows
+constexpr int most_links = 40;  // as many as Linux follows
 
 // Returns the file that the name refers to, which need not exist yet.
 std::filesystem::path linked(std::filesystem::path file) {

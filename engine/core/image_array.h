@@ -49,7 +49,7 @@ class SampledImage {
     SampledImage(SampledImage&& other) noexcept;
     SampledImage& operator=(SampledImage&& other) noexcept;
 
-    // Within a pass: replaces the texels of all levels, tightly packed each. Later passes see them.
+    // Replaces the texels of all levels, tightly packed each, within a pass. Later passes see them.
     void upload(Commands& commands, std::span<const std::vector<std::byte>> levels);
 
     VkDescriptorImageInfo descriptor() const {

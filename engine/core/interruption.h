@@ -13,7 +13,7 @@ inline constexpr double seconds_between_looks = 0.1;
 // Returns whether this thread has a live InterruptScope.
 bool is_interruptible() noexcept;
 
-// For loops of short turns: looks in every 1024th turn.
+// Looks in every 1024th turn, for loops of short turns.
 class LoopInterruption {
   public:
     void look() {

@@ -54,7 +54,7 @@ std::vector<std::string> arguments_of(int count, char** words);
 // Returns the file that text in UTF-8 names: Windows takes plain text for letters of one byte.
 inline std::filesystem::path path_of(std::string_view text) { return std::u8string(text.begin(), text.end()); }
 
-// Returns the user's folders for twinray's files; empty if the environment names none. They need not be there.
+// Return the user's folders for twinray's files; empty if the environment names none. They need not exist.
 std::filesystem::path cache_folder();
 std::filesystem::path state_folder();
 // Makes a new folder that other users cannot read. Throws Error naming the place that has no room for it.

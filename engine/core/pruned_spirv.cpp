@@ -21,8 +21,8 @@ struct Block {
     std::size_t begin, last, end;  // its OpLabel, its terminator, the position after it
     std::size_t merge = none;      // its OpSelectionMerge or OpLoopMerge
     bool is_live = false;
-    bool is_needed = false;       // as a merge block or continue target of a live one
-    std::optional<Id> loop = {};  // whose continue target it is
+    bool is_needed = false;       // a live block needs it as merge block or continue target
+    std::optional<Id> loop = {};  // the loop that it is the continue target of
 };
 
 struct Function {

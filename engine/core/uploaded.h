@@ -8,7 +8,7 @@
 
 namespace twinray {
 
-// Returns a buffer that holds them for all that is submitted later.
+// Returns a buffer that holds the items for all that is submitted later.
 template <class T>
 Buffer uploaded(Context& context, const char* name, std::span<const T> data) {
     Buffer buffer(context, {.name = name, .bytes = data.size_bytes()});

@@ -15,7 +15,7 @@ struct Edge {
     std::array<Vertex, 2> ends;  // ascending
     int passes;                  // 1: from the first to the second; -1: back
     uint triangle;
-    uint vertex;  // where the triangle begins to pass it
+    uint vertex;  // the triangle begins to pass the edge here
 
     bool operator<(const Edge& other) const {
         return ends != other.ends ? ends < other.ends : triangle < other.triangle;

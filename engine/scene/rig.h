@@ -146,7 +146,7 @@ Transform transform_of(const glm::dmat4& matrix);
 void place_light(Light& light, const glm::dmat4& frame);
 void place_camera(Camera& camera, const glm::dmat4& frame);
 
-// Like pose_scene(scene, pose), by a rig that the scene need not have.
+// Poses like pose_scene(scene, pose), by a rig that the scene need not have.
 void pose_scene(Scene& scene, const Rig& rig, const Pose& pose);
 
 // Moves a scene in its rest pose to a local origin, `wanted` or chosen for its contents, and the rig with it:

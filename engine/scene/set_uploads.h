@@ -41,10 +41,10 @@ class SetUploads {
     // Records into the caller's commands.
     void sync(Commands& commands, Elements elements);
 
-    // For callers that record more than this into the same commands: records the new elements, then takes them over
-    // once the commands are certain to run.
+    // Records the new elements, then takes them over once the commands are certain to run: for callers that record more
+    // than this into the same commands.
     struct Staged {
-        std::vector<std::optional<Buffer>> replacements;  // by type, where it grew
+        std::vector<std::optional<Buffer>> replacements;  // by type, if it grew
         std::vector<SetSlot> slots;
     };
     Staged stage(Commands& commands, Elements elements) const;

@@ -399,7 +399,7 @@ std::vector<float> horizon(Context& context, const HeightRaster& raster, const H
 
 // Options of visibility().
 struct VisibilityDesc {
-    // In lengths of a direction. Other hits are ignored: nearer ones for points on the scene itself.
+    // The range of hits that count, in lengths of a direction: nearer hits are ignored for points on the scene itself.
     float t_near = 0, t_far = INFINITY;
     ProgressCallback progress = {};
 };

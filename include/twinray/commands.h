@@ -131,7 +131,7 @@ class Commands {
         Commands& commands_;
     };
     [[nodiscard]] Pass pass(const std::string& name) { return Pass(*this, name); }  // begins one
-    bool in_pass() const;                                                           // whether one is open
+    bool in_pass() const;                                                           // whether a pass is open
     // Makes later commands of a pass see the writes of earlier ones, as from one pass to the next.
     void barrier();
 
@@ -182,11 +182,11 @@ class Commands {
     // recorded into them. Own commands for which it was called are submitted in the order of those calls.
     SyncPoint promise();
 
-    // After the submission: waits for the GPU. Returns an entry per pass; none if the queue has no timestamps.
+    // Waits for the GPU, after the submission. Returns an entry per pass; none if the queue has no timestamps.
     std::vector<PassTiming> timings() const;
 
     Context& context() const;        // that they were made on
-    VkCommandBuffer handle() const;  // where the next pass is recorded, until it ends
+    VkCommandBuffer handle() const;  // of the next pass, until it ends
 
   private:
     void write_bytes(const Buffer& target, std::uint64_t offset, std::span<const std::byte> data);

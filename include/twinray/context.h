@@ -134,7 +134,7 @@ enum class Memory : std::uint8_t {
 struct BufferRequest {
     const char* name = "";         // for debugging; valid during the call
     std::uint64_t bytes = 0;       // not 0
-    VkBufferUsageFlags usage = 0;  // with SHADER_DEVICE_ADDRESS: the memory needs VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT
+    VkBufferUsageFlags usage = 0;  // with SHADER_DEVICE_ADDRESS, the memory needs VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT
     Memory memory = Memory::device;
     std::uint64_t alignment = 1;  // of the device address; a power of two
 };

@@ -195,7 +195,7 @@ struct Transform {
         return of_columns({vec4(m[0][0], m[0][1], m[0][2], m[0][3]), vec4(m[1][0], m[1][1], m[1][2], m[1][3]),
                            vec4(m[2][0], m[2][1], m[2][2], m[2][3]), vec4(m[3][0], m[3][1], m[3][2], m[3][3])});
     }
-    static Transform of_columns(const std::array<vec4, 4>& columns);  // by columns
+    static Transform of_columns(const std::array<vec4, 4>& columns);  // takes four columns
 
     bool operator==(const Transform&) const = default;
 };

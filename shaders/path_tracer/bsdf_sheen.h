@@ -6,7 +6,7 @@
 #ifndef TWINRAY_PATH_TRACER_BSDF_SHEEN_H
 #define TWINRAY_PATH_TRACER_BSDF_SHEEN_H
 
-const float SHEEN_LEAST_ROUGHNESS = 0.1f; // where the table begins; below, the lobe is a rim that no picture resolves
+const float SHEEN_LEAST_ROUGHNESS = 0.1f; // the table begins here; below, the lobe is a rim that no picture resolves
 
 // Returns the density of normals: sin^(1 / alpha).
 FUNC float charlie_density(vec3 h, float alpha)

@@ -115,7 +115,7 @@ struct ChosenLeaf
     float rest; // in [0, 1): of the random number that chose it
 };
 
-// u in [0, 1): its remainder at each level decides the next.
+// Chooses a leaf by u in [0, 1): its remainder at each level decides the next.
 FUNC ChosenLeaf choose_leaf(REF(LightNode) tree, LightReceiver at, float u)
 {
     float chance = 1.0f;

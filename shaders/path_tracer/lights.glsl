@@ -10,7 +10,7 @@ struct LightSample
     vec3 radiance;
     float pdf;      // by solid angle; for a punctual light only its chance of being chosen
     bool is_delta;  // a punctual light, which no other strategy finds
-    vec3 target;    // where the shadow ray ends; an environment has no end
+    vec3 target;    // the end of the shadow ray; an environment has no end
     bool has_target;
 };
 
@@ -144,7 +144,7 @@ struct ChosenLight
     float chance; // without its chance in its part of the table
 };
 
-// u in [0, 1): between the tree and the lights that are not in it. word: among these.
+// Chooses a light. u in [0, 1): between the tree and the lights that are not in it. word: among these.
 ChosenLight choose_local(SceneData scene, LightReceiver at, float u, uint word)
 {
     ChosenLight chosen;

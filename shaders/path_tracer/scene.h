@@ -15,7 +15,7 @@ const uint PT_HAS_ENVIRONMENT = 3u;
 const uint PT_HAS_LOCAL_LIGHTS = 4u; // emissive triangles or punctual lights
 const uint PT_STRATEGY = 5u;         // how direct light is found
 const uint PT_HAS_AOVS = 6u;         // first surfaces are noted
-const uint PT_FILTER = 7u;           // which part of the picture a pixel shows
+const uint PT_FILTER = 7u;           // the part of the picture that a pixel shows
 const uint PT_HAS_QUEUES = 8u;       // rays are shaded by the kind of material that they met
 // The layers that a material may have (LAYER_ below).
 const uint PT_HAS_SPECULAR = 9u;

@@ -16,8 +16,8 @@ struct CollapseItem
 {
     uint tree;
     uint node_and_level;
-    uint record; // where it goes
-    uint descendants; // where the records below it begin
+    uint record; // its index
+    uint descendants; // the start of the records below it
 };
 BUFFER_OF(CollapseItem, 8);
 
@@ -55,7 +55,7 @@ struct CollapseArgs
     REF(CollapseItem) queues;        // of their groups, see queue_begin
     REF(CollapseLevel) level;        // the next one follows
     REF(CollapseLevel) subtree_level;
-    Uints leaf_indices;              // by leaf, as nodes refer to it: where its record goes
+    Uints leaf_indices;              // by leaf, as nodes refer to it: the index of its record
     uint tree_count;
     uint subtree_leaves;             // a subtree has at most
 };

@@ -37,5 +37,5 @@ const uint STACK_SHARED = 0u;    // in the workgroup's memory
 const uint STACK_REGISTERS = 1u; // in registers that are found by comparison: where groups have no memory of their own
 // The numbers of entries that it keeps: powers of two.
 const uint STACK_SIZE = 16u;
-const uint REGISTER_STACK_SIZE = 8u; // where each is compared with the slot
+const uint REGISTER_STACK_SIZE = 8u; // small, because each is compared with the slot
 #endif

@@ -197,7 +197,7 @@ FUNC uvec3 plus_product(uvec3 sum, int a, int b, int c)
     uvec2 of_two = multiply64(uint(abs(b)), uint(abs(c)));
     uvec2 low = multiply64(uint(abs(a)), of_two.x);
     uvec2 high = add64(multiply64(uint(abs(a)), of_two.y), uvec2(low.y, 0u));
-    // In two's complement ~x + 1.
+    // Negates in two's complement: ~x + 1.
     uint flips = (a ^ b ^ c) < 0 ? 0xffffffffu : 0u;
     uvec2 first = add64(uvec2(low.x ^ flips, 0u), uvec2(flips & 1u, 0u));
     first = add64(first, uvec2(sum.x, 0u));

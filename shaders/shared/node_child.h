@@ -65,7 +65,7 @@ FUNC float area_around(NodeChild a, NodeChild b, float scale)
 {
     return area_of(around_both(a.box, b.box), scale);
 }
-// For trees with leaf centres from lo to hi: areas are near 1 at most, or 0.
+// Returns the scale for trees with leaf centres from lo to hi: areas are then near 1 at most, or 0.
 FUNC float area_scale(vec3 lo, vec3 hi)
 {
     float unit = area_unit(lo, hi);

@@ -10,7 +10,7 @@ layout(constant_id = 0) const uint STEP = COLLAPSE_LEVEL;
 layout(constant_id = NODE_WIDTH_CONSTANT) const uint NODE_WIDTH = 4u;
 layout(push_constant, scalar) uniform Push { CollapseArgs args; };
 
-// For the next level and for subtrees: numbers of items, or positions in their lists.
+// Numbers of items, or positions in their lists, for the next level and for subtrees.
 struct ItemLists
 {
     uint next;

@@ -84,7 +84,7 @@ NodeChild load_top(BuildTree tree, BvhChildren nodes, uint child)
     return top;
 }
 
-// Returns the destination of the i-th of those before a round.
+// Returns the place in the next round of the i-th cluster of a round.
 uint index_after(uint i) { return i - bitCount(gone & ((1u << i) - 1u)); }
 bool is_gone(uint i) { return (gone & 1u << i) != 0u; }
 void begin_round()

@@ -37,7 +37,7 @@ struct FloatProbeArgs
     uint reserved;
 };
 
-// For devices with float64.
+// The arguments for devices with float64.
 struct Float64Args
 {
     REF(FloatCase) cases;

@@ -33,7 +33,7 @@ std::vector<char*> pointers_to(std::vector<std::string>& words) {
     return pointers;
 }
 
-// Not by this_program(): a library that was loaded before all others may watch over the reading of links.
+// this_program() is not used: a library that was loaded before all others may watch over the reading of links.
 fs::path file_of(const Program& program) { return program.file.empty() ? "/proc/self/exe" : program.file; }
 
 std::vector<std::string> words_of(const Program& program) {

@@ -6,7 +6,7 @@
 #define _WIN32_WINNT 0x0A00
 #include <winsock2.h>
 #include <ws2tcpip.h>
-// They come first.
+// The two above come first.
 #include <fcntl.h>
 #include <io.h>
 #include <shellapi.h>

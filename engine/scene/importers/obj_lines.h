@@ -22,7 +22,7 @@ class ObjLines {
     // since there are materials called "Material #25".
     std::string_view numbers() const;
     std::string_view name() const;
-    std::size_t line() const { return line_; }  // where it begins, from 1
+    std::size_t line() const { return line_; }  // number of its first line, from 1
 
   private:
     std::string_view cut_joined_line();

@@ -33,7 +33,7 @@ struct PlyHeader {
     Format format = Format::ascii;
     std::vector<PlyElement> elements;
     std::vector<std::string> textures;  // the pictures that lines `comment TextureFile` name
-    std::size_t size = 0;               // where the body starts
+    std::size_t size = 0;               // the header's: the body starts there
 };
 
 // Returns the type of a name in headers, also for names from writers of NumPy arrays; nothing if the name is no type.

@@ -75,7 +75,7 @@ Address address_at(Address base, uint index, uint stride)
 // Declares a specialisation constant that says whether kernels have a feature; all have it unless told otherwise.
 #define FEATURE(id, name) layout(constant_id = id) const bool name = true;
 
-// For code that is correct with either rounding.
+// a * b + c in code that is correct with either rounding.
 #define FMA(a, b, c) fma(a, b, c)
 // Counts work of a traversal in its CPU reference; does nothing in kernels.
 #define COUNT_STEPS(what, count)

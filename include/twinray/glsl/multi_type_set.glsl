@@ -28,8 +28,8 @@
             TWINRAY_FAULT(SET_OF_ P.faults, KEY_OF_ P.type, KEY_OF_ P.index)                    \
         }                                                                                       \
         break;
-// ACTION(element) for the element that `key` names: a switch over the types of the list. `set` and `key` are variables
-// or members, not calls.
+// Runs ACTION(element) for the element that `key` names: a switch over the types of the list. `set` and `key` are
+// variables or members, not calls.
 #define WITH_INDEX(LIST, set, key, ACTION)                                                      \
     switch (key.type) {                                                                         \
         LIST(SET_CASE_, (set, key, ACTION))                                                     \
@@ -41,7 +41,7 @@
         ACTION_OF_ P(AT(SET_OF_ P.name, name##_index), set_index_);                             \
         set_index_++;                                                                           \
     }
-// ACTION(element, i) for all elements, type after type in the order of the list; i counts them from 0.
+// Runs ACTION(element, i) for all elements, type after type in the order of the list; i counts them from 0.
 #define FOREACH_ELEMENT(LIST, set, ACTION)                                                      \
     {                                                                                           \
         uint set_index_ = 0u;                                                                   \

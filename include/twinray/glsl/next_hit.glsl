@@ -13,7 +13,7 @@
 #define TWINRAY_PROGRAM
 #include "twinray/glsl/query.glsl"
 
-Hit twinray_passed; // by the current traversal
+Hit twinray_passed; // the current traversal has passed it
 
 // Returns the value to begin with, before the first hit.
 Hit no_hit() { return miss(); }

@@ -25,7 +25,7 @@
 #define THIRD_(a, b, c) c
 
 #define FOR_CASE_(P, number, Type, name) SECOND_ P(FIRST_ P.name);
-// ACTION(element) for each element, in order.
+// Runs ACTION(element) for each element, in order.
 #define FOR_UNROLLED(LIST, tuple, ACTION) { LIST(FOR_CASE_, (tuple, ACTION, 0)) }
 
 #define MAP_CASE_(P, number, Type, name) SECOND_ P.name = THIRD_ P(FIRST_ P.name);
@@ -41,7 +41,7 @@
 #define SUM_UNROLLED(LIST, tuple, result, FUNCTION) { LIST(SUM_CASE_, (tuple, result, FUNCTION)) }
 
 #define GET_CASE_(P, number, Type, name) case uint(number): SECOND_ P(FIRST_ P.name); break;
-// ACTION(element) for the element at an index, by a switch. An index out of range calls nothing.
+// Runs ACTION(element) for the element at an index, by a switch. An index out of range calls nothing.
 #define GET_UNROLLED(LIST, tuple, index, ACTION) \
     switch (uint(index)) { LIST(GET_CASE_, (tuple, ACTION, 0)) default: break; }
 #endif
