@@ -203,7 +203,7 @@ class AbstractAccel {
     Capability capability(Feature feature) const;
     // Throws Error, which names `kernel`, if the accelerator lacks Feature::kernel_queries.
     void check_kernel_queries(const std::string& kernel) const;
-    std::vector<Capability> capabilities() const;  // 0 for a dead handle
+    std::vector<Capability> capabilities() const;  // of all features, in their order
     // Tells which of the two modules of a kernel with twinray/glsl/query.glsl fits.
     bool is_software() const;
 
