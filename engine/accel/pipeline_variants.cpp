@@ -12,7 +12,7 @@ PipelineVariants::PipelineVariants(Create create, uint all, bool in_background)
 
 PipelineVariants::~PipelineVariants() {
     if (background_->process != platform::process_id()) {
-        // Nobody waits for its worker.
+        // This process does not have its worker: there is nothing to wait for.
         static_cast<void>(background_.release());
         return;
     }

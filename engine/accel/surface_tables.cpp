@@ -241,7 +241,7 @@ SurfaceTables::Staged SurfaceTables::stage(Commands& commands, std::span<const I
 void SurfaceTables::commit(Staged&& staged) {
     for (auto& [slice, data] : staged.data) {
         slice->data = std::move(data);
-        slice->packed = std::vector<std::byte>();  // without freeing its memory here
+        slice->packed = std::vector<std::byte>();  // empty, and its memory is freed
         slice->copies = {};
     }
     if (staged.rows) rows_ = std::move(*staged.rows);

@@ -57,7 +57,7 @@ inline std::filesystem::path path_of(std::string_view text) { return std::u8stri
 // Return the user's folders for twinray's files; empty if the environment names none. They need not exist.
 std::filesystem::path cache_folder();
 std::filesystem::path state_folder();
-// Makes a new folder that other users cannot read. Throws Error naming the place that has no room for it.
+// Makes a new folder that other users cannot read. Throws Error naming the path at which it cannot be made.
 std::filesystem::path make_temporary_folder();
 
 // Return the columns of the terminal, 0 if the standard output is none; and whether the error output is a terminal that

@@ -83,7 +83,7 @@ class Wedge {
         low_ = std::min(low_, along - toward);
         high_ = std::max(high_, along + toward);
     }
-    // Returns the camera's position, from the origin along the axis and backward; 0 without points.
+    // Return the camera's position, from the origin along the axis and backward; 0 without points.
     double middle() const { return low_ <= high_ ? (low_ + high_) / 2 : 0; }
     double distance() const { return low_ <= high_ ? (high_ - low_) / (2 * slope_) : 0; }
 

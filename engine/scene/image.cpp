@@ -76,7 +76,7 @@ dvec3 radiance_factors(std::span<const std::uint8_t> bytes) {
         dvec3 factor(1);
         for (int i = 0; i < wanted; ++i) {
             const std::optional<double> number = parse_number(cut_word(numbers));
-            if (!number || !(*number > 0) || !std::isfinite(*number)) return;  // like Radiance, which uses valid ones
+            if (!number || !(*number > 0) || !std::isfinite(*number)) return;  // like Radiance: only valid lines count
             if (wanted == 1) factor = dvec3(*number);
             factor[i] = *number;
         }

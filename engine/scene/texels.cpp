@@ -52,7 +52,7 @@ void write_number(TexelFormat format, std::byte* at, double value) {
     }
 }
 
-// Decodes sRGB by IEC 61966-2-1, in float64.
+// Convert between sRGB and linear light by IEC 61966-2-1, in float64.
 double linear_number(double encoded) {
     return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
 }

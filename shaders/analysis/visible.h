@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rays from each point along each vector, and the answers which of them hit nothing.
+// Rays from each point along each vector, and which of them hit nothing.
 #ifndef TWINRAY_ANALYSIS_VISIBLE_H
 #define TWINRAY_ANALYSIS_VISIBLE_H
 #include "twinray/glsl/ray.h"

@@ -49,7 +49,7 @@ struct Answer
     Columns to_world;
     uint triangles;        // candidates
     uint boxes;
-    uint opaque_boxes;     // those that were reported as opaque; OPACITY_UNKNOWN if nobody knows
+    uint opaque_boxes;     // of `boxes`, those reported as opaque; OPACITY_UNKNOWN if no stage is told
     uint outside;          // triangles whose t was not inside the interval that was left
 };
 BUFFER_OF(Answer, 4);

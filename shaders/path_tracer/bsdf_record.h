@@ -106,7 +106,8 @@ FUNC bool is_smooth(Bsdf bsdf)
 // Returns whether passing light goes straight on.
 FUNC bool is_pane(Bsdf bsdf) { return is_thin(bsdf) && is_smooth(bsdf); }
 
-// Returns w in the frame of the grain, for microfacets of a base with a grain.
+// Returns w in the frame of the grain. The functions of facets below are for microfacets of the base, with or without
+// a grain.
 FUNC vec3 along_grain(Bsdf bsdf, vec3 w)
 {
     return vec3(bsdf.grain.x * w.x + bsdf.grain.y * w.y, bsdf.grain.x * w.y - bsdf.grain.y * w.x, w.z);

@@ -31,7 +31,7 @@ struct FilmPixel
 };
 BUFFER_OF(FilmPixel, 8);
 
-// Returns the mantissa of |x|, which is mantissa << shift, in units of 2^-149, for finite x.
+// Return the mantissa and the shift of |x|, which is mantissa << shift, in units of 2^-149, for finite x.
 FUNC uint film_mantissa(float x)
 {
     uint bits = floatBitsToUint(x);

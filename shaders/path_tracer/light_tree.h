@@ -81,7 +81,7 @@ FUNC float chance_of_first(LightNode first, LightNode second, LightReceiver at)
     return a / (a + b);
 }
 
-// Returns a unit vector on the octahedron, 16 bits per coordinate, with the number of sides in the last bit.
+// Pack and unpack a unit vector on the octahedron, 16 bits per coordinate, with the number of sides in the last bit.
 FUNC uint packed_facing(vec3 normal, bool has_two_sides)
 {
     vec3 n = normal / (abs(normal.x) + abs(normal.y) + abs(normal.z));

@@ -46,7 +46,8 @@ vec3 environment_pixel(Environment env, int x, int y)
 }
 
 // Returns the filtered map as seen. As light it is constant in each pixel, since it is sampled so: near a sun a
-// filtered value could exceed the density of its own pixel a hundred times; such samples are bright dots. at: pixels.
+// filtered value could exceed the density of its own pixel a hundred times; such samples are bright dots.
+// at: in pixels.
 vec3 environment_seen(Environment env, vec2 at)
 {
     vec2 low = floor(at - 0.5);

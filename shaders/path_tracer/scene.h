@@ -121,7 +121,7 @@ const uint LAYER_SPECULAR = 1u;   // a weight or color of the dielectric reflect
 const uint LAYER_COAT = 2u;
 const uint LAYER_SHEEN = 4u;
 const uint LAYER_ANISOTROPY = 8u;
-const uint LAYER_VOLUME = 16u;    // the transmitting surface bounds a volume, else a thin wall
+const uint LAYER_VOLUME = 16u;    // the transmitting surface bounds a volume, else it is a thin wall
 
 // Bits of the textures that a LayeredMaterial has.
 const uint LAYERED_SPECULAR = 1u;

@@ -208,7 +208,7 @@ FUNC float squared_distance_below(PointBox p, TreeBox box, float scale)
     return min(dot(gap, gap), 3.402823466e38f) * 0.9999995f;
 }
 
-// Does the same for a squared distance in world units, but not below it, nor denormal.
+// Converts a squared distance in world units to the same form; the result is not below it, nor denormal.
 FUNC float squared_distance_above(double squared, float scale)
 {
     double scaled = squared * double(scale) * double(scale);

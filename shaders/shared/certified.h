@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Level certified: float64 decides from the ray, the vertices and the transform as they were given which triangle a ray
-// meets, and in which order. float32 only leaves out triangles that provably are no hit, within the bounds of its
+// Level certified: float64 decides which triangle a ray meets, and in which order, from the ray, the vertices and the
+// transform as they were given. float32 only leaves out triangles that provably are no hit, within the bounds of its
 // errors:
 //  - Boxes are padded by what transforming the ray may move it, so that no box of a hit is passed by.
 //  - A triangle is refused where two edges see the ray on opposite sides by more than their error bounds (a

@@ -43,8 +43,9 @@ FUNC float cell_within(float cells)
     return from_zero < 255.0f ? from_zero : 255.0f;
 }
 
-// Returns a plane in cells from the origin, moved outwards by a 256th of a cell at least: a traversal that computes its
-// distance from the ray in float32 is off by less than 2^-10 cells near it, and by its own padding far from it.
+// Return a plane in cells from the origin, moved outwards by a 256th of a cell at least: a traversal that computes with
+// the plane's distance from the ray in float32 is off by less than 2^-10 cells near it, and by its own padding far from
+// it.
 FUNC uint cell_below(float plane, float origin, float per_unit)
 {
     PRECISE float cells = (plane - origin) * per_unit - 0.00390625f;

@@ -132,8 +132,8 @@ FUNC RaySpace make_ray_space(vec3 origin, vec3 direction, float pad)
 // 2^-20
 FUNC float vertex_pad(vec3 origin, float extent) { return (largest_entry(origin) + extent) * 9.5367431640625e-07f; }
 
-// Returns the interval in which a ray is inside of all three slabs, begun with its own, which a NaN (of products out of
-// range) leaves as it was.
+// Return the ends of the interval in which a ray is inside of all three slabs, begun with its own, which a NaN (of
+// products out of range) leaves as it was.
 FUNC float latest_of(float enter, float near_x, float near_y, float near_z)
 {
     return max_no_nan(near_z, max_no_nan(near_y, max_no_nan(near_x, enter)));

@@ -248,7 +248,7 @@ FUNC Hit hit_of(Search search, SwTlasHeader scene, TraceOptions options)
     return hit;
 }
 
-// Returns whether the hit comes first in the order of hits: by t, then by (instance, primitive).
+// Returns whether the hit comes before the best one of the search: by t, then by (instance, primitive).
 FUNC bool comes_before(TriangleHit hit, uint instance_index, uint primitive_index, Search search, TraceOptions options)
 {
     bool is_lower = primitive_index < search.primitive_index;
