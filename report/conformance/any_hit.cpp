@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Candidates: what is offered, how often, and what follows a refusal.
+// Candidates: which are offered, how often, and what follows a refusal.
 #include "report/conformance/case_run.h"
 #include "report/conformance/suite.h"
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Boxes: which are boxes_offered, and intersections that are generated for them.
+// Boxes: which are offered, and intersections that are generated for them.
 #include "report/conformance/case_run.h"
 #include "report/conformance/suite.h"
 
 namespace twinray::conformance {
 namespace {
 
-// Anywhere, of any size.
+// Makes boxes anywhere and of any size.
 GeometryInput random_boxes(Draws& draws, uint count) {
     GeometryInput geometry;
     for (uint i = 0; i < count; ++i) {

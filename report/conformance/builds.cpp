@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Builds: flags, several geometries, nothing at all, what is inactive, where data begins.
+// Builds: flags, several geometries, empty builds, inactive primitives, offsets of data.
 #include <limits>
 
 #include "report/conformance/case_run.h"
@@ -93,7 +93,7 @@ void pointers(CaseRun& run) {
     run.check_hits(scene, shots);
 }
 
-// One to four times `step` of what the build is to pass over come first.
+// Puts one to four times `step` items that the build must skip in front.
 void check_later(CaseRun& run, std::uint32_t GeometryInput::*earlier, std::uint32_t step) {
     for (const Indices indices : {Indices::none, Indices::bits16, Indices::bits32}) {
         GeometryInput geometry = random_triangles(run.draws(), usual_triangle_count);
@@ -112,7 +112,7 @@ void later_boxes(CaseRun& run) {
     run.check_candidates(scene_of(geometry), layer_shots(run.draws(), run.rays()));
 }
 
-// A turn, a mirror or a scale by a power of two and a move: exact.
+// Returns an exact transform: a turn, mirrors, a scale by a power of two and a move.
 Transform exact_placement(Draws& draws) {
     Transform placement;
     const uint turn = draws.below(3);

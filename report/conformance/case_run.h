@@ -17,8 +17,8 @@ struct Tally {
     std::uint64_t n = 0;
     std::uint64_t faults = 0;
     std::map<std::string, std::uint64_t> counts = {};
-    std::string example = {};  // of the first fault: its class, and the ray's 8 floats, hexadecimal
-    std::string what = {};     // of the first fault that is not about a ray
+    std::string example = {};  // the class of the first fault and its ray's 8 floats, hexadecimal
+    std::string what = {};     // the first fault that is not about a ray
     Values results = {};
 
     void add(Finding finding, const Ray& ray);
@@ -27,7 +27,7 @@ struct Tally {
 
 class CaseRun {
   public:
-    // `rays`: of this round.
+    // `rays`: the number of rays in this round.
     CaseRun(Driver& driver, std::uint64_t seed, std::size_t rays, Tally& tally)
         : driver_(driver), draws_(seed), rays_(rays), tally_(tally) {}
 
@@ -38,11 +38,11 @@ class CaseRun {
 
     // Builds the scene, traces and judges the hits.
     void check_hits(const SceneInput& scene, std::span<const Shot> shots);
-    // Judges the hits of a structure that is there. `scene`: what it should hold.
+    // Judges the hits of a structure that is already built. `scene`: what it should hold.
     void check_hits(const SceneInput& scene, const Top& top, std::span<const Shot> shots);
     // Refuses all candidates and judges which were offered.
     void check_candidates(const SceneInput& scene, std::span<const Shot> shots);
-    // A finding that is not about a ray.
+    // Records a finding that is not about a ray.
     void expect(bool holds, const std::string& sentence_if_not);
 
   private:

@@ -60,7 +60,7 @@ void updated_clone(CaseRun& run) {
     Bottom copy = run.driver().copied(source, Driver::Copy::clone);
     check_bottom(run, scene, copy);
     scene.bottoms[0].geometries[0].positions = random_triangles(run.draws(), usual_triangle_count).positions;
-    if (copy.input.geometries[0].triangles.size() < usual_triangle_count) return;  // a control's
+    if (copy.input.geometries[0].triangles.size() < usual_triangle_count) return;  // a control's copy is incomplete
     run.driver().update(copy, scene.bottoms[0]);
     check_bottom(run, scene, copy);
 }

@@ -9,7 +9,7 @@
 
 namespace twinray::conformance {
 
-// The same numbers on every platform for one seed.
+// A random generator: one seed gives the same numbers on every platform.
 class Draws {
   public:
     explicit Draws(std::uint64_t seed) : engine_(seed) {}
@@ -17,10 +17,10 @@ class Draws {
     uint below(uint count) { return static_cast<uint>(engine_() % count); }
     bool chance(double share) { return unit() < share; }
     double unit() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
-    // A multiple of 2^-10 in [-extent, extent].
+    // Returns a multiple of 2^-10 in [-extent, extent].
     float coordinate(float extent);
     vec3 point(float extent);
-    // Multiples of 2^-8, of which the length is between 1/2 and 2.
+    // Returns multiples of 2^-8; the length is between 1/2 and 2.
     vec3 direction();
 
   private:
@@ -28,25 +28,25 @@ class Draws {
 };
 
 constexpr uint usual_triangle_count = 24;
-// Random triangles about the origin, within [-1.5, 1.5]: of areas that no rounding turns into edges.
+// Makes random triangles about the origin, within [-1.5, 1.5]. They are too large for rounding to turn them into edges.
 GeometryInput random_triangles(Draws& draws, uint count);
-// Boxes one behind the other along z, from z = 2 i to 2 i + 1, of which x and y reach from -1 to 1.
+// Makes boxes one behind the other along z, from z = 2 i to 2 i + 1; x and y reach from -1 to 1.
 GeometryInput layered_boxes(uint count);
-// The same as triangles at z = 2 i, larger than the boxes.
+// Makes the same as triangles at z = 2 i, larger than the boxes.
 GeometryInput layered_triangles(uint count);
 SceneInput scene_of(GeometryInput geometry);
 SceneInput scene_of(std::vector<GeometryInput> geometries);
-// In two instances, for no bottom level may hold both.
+// Makes two instances, because no bottom level may hold both.
 SceneInput scene_of_both(std::vector<GeometryInput> triangles, std::vector<GeometryInput> boxes);
 
-// From afar through the middle of things: of each two about one hits something.
+// Makes rays from afar through the middle of the scene; about every second one hits something.
 std::vector<Shot> random_shots(Draws& draws, std::size_t count, float extent = 1);
-// Along z through x, y in (-0.75, 0.75), from z = -1; of layered scenes.
+// Makes rays along z through x, y in (-0.75, 0.75), from z = -1, for layered scenes.
 std::vector<Shot> layer_shots(Draws& draws, std::size_t count);
-// The same, which meet each box in its middle.
+// Makes the same rays, which hit each box in its middle.
 std::vector<Shot> box_shots(Draws& draws, std::size_t count);
 Shot shot_of(const Ray& ray);
-// Rotations, scales, shears and mirrors, of which no inverse loses much.
+// Returns a random transform that rotates, scales, shears and mirrors; its inverse loses little.
 Transform random_instance_transform(Draws& draws);
 
 }  // namespace twinray::conformance

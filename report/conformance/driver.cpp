@@ -39,7 +39,7 @@ RayTracingPipelineDesc pipeline_desc(const Context& context) {
     return desc;
 }
 
-// Opens passes. The answers become zeros first.
+// Opens passes. Sets the answers to zero first.
 void record_trace(const RayTracingPipeline& pipeline, Commands& commands, const QueryArgs& args,
                   const Buffer& answers) {
     Buffer arguments(commands.context(), {.name = "conformance arguments", .bytes = sizeof(QueryArgs)});
@@ -80,7 +80,7 @@ BottomInput spoiled(Misdeed misdeed, BottomInput input) {
     return input;
 }
 
-// Stages of a pipeline are not told of them.
+// Adds the record offsets, which the stages of a pipeline do not know.
 void add_record_offsets(const Top& top, Traced& traced) {
     for (Answer& answer : traced.answers)
         if (answer.kind != ANSWER_MISS && answer.instance < top.input.instances.size())

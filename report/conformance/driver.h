@@ -31,7 +31,7 @@ struct Serialized {
     std::uint64_t serialized_bytes() const { return word(0); }
     std::uint64_t deserialized_bytes() const { return word(1); }
     std::uint64_t handle_count() const { return word(2); }
-    void set_handles(std::span<const std::uint64_t> addresses);  // of bottom levels, which the file's are replaced by
+    void set_handles(std::span<const std::uint64_t> addresses);  // replaces the addresses of bottom levels
     std::vector<std::uint64_t> handles() const;
 
     static constexpr std::size_t header_bytes = 2 * VK_UUID_SIZE;  // before the numbers
@@ -40,7 +40,7 @@ struct Serialized {
     std::uint64_t word(std::size_t index) const;
 };
 
-// A structure, and what it was made of.
+// A structure and the input that it was built from.
 struct Bottom {
     AccelerationStructure structure;
     BottomInput input;
@@ -50,7 +50,7 @@ struct Bottom {
 struct Top {
     AccelerationStructure structure;
     TopInput input;
-    std::vector<BottomRef> bottoms;  // that the instances refer to
+    std::vector<BottomRef> bottoms;  // to which the instances refer
 };
 struct DriverScene {
     std::vector<Bottom> bottoms;
@@ -59,27 +59,27 @@ struct DriverScene {
 
 class Driver {
   public:
-    // Throws Error where the device has no such way.
+    // Throws Error if the device cannot trace in this way.
     explicit Driver(Context& context, Backend way = Backend::ray_query);
 
-    // From now on; none is how the driver is.
+    // Sets the misdeed of all later calls; without one, the driver is as it is.
     void behave_as(Misdeed misdeed) { misdeed_ = misdeed; }
 
     Context& context() const { return context_; }
     bool can_cull_primitives() const { return context_.properties().primitive_culling; }
 
     Bottom build(const BottomInput& input);
-    // All by one command.
+    // Builds all of them by one command.
     std::vector<Bottom> build_together(std::span<const BottomInput> inputs);
     Top build(const TopInput& input, std::span<const Bottom> bottoms);
     Top build(const TopInput& input, const std::vector<BottomRef>& bottoms);
     DriverScene build(const SceneInput& scene);
-    // Into the memory of another build, which took as many primitives or more.
+    // Builds into the memory of another build, which took as many primitives or more.
     void rebuild(Bottom& bottom, const BottomInput& input) { rebuild(bottom, input, "conformance rebuild", false); }
-    // In place.
+    // Updates in place.
     void update(Bottom& bottom, const BottomInput& input) { rebuild(bottom, input, "conformance update", true); }
     void update(Top& top, const TopInput& input);
-    // Into another structure; the source stays as it was.
+    // Updates into another structure; the source stays as it was.
     Bottom updated(const Bottom& source, const BottomInput& input);
 
     enum class Copy : std::uint8_t { clone, compact };
@@ -95,7 +95,7 @@ class Driver {
     Traced trace(const Top& top, std::span<const Shot> shots, uint slots = 0);
 
   private:
-    // In the form that the driver needs: a pipeline's instances choose their hit record.
+    // Returns the input in the form that the driver needs: a pipeline's instances choose their hit record.
     TopInput told(const TopInput& input, const std::vector<BottomRef>& bottoms) const;
     AccelerationStructure new_structure(const char* name, const BuildInput& input);
     void record_build(Commands& commands, std::span<const BuildInput> inputs,
@@ -105,7 +105,7 @@ class Driver {
     void submit_build(Commands& commands, const BuildInput& input, const AccelerationStructure& target,
                       const AccelerationStructure* updated_from = nullptr);
     void rebuild(Bottom& bottom, const BottomInput& input, const char* name, bool is_update);
-    // The result of Misdeed::copies_in_part.
+    // Returns the result of Misdeed::copies_in_part.
     Bottom shortened(BottomInput input);
     Top shortened(TopInput input, const std::vector<BottomRef>& bottoms);
     AccelerationStructure copy(const AccelerationStructure& source, VkAccelerationStructureTypeKHR type, Copy mode);
@@ -115,8 +115,8 @@ class Driver {
     Context& context_;
     Misdeed misdeed_ = Misdeed::none;
     std::size_t traces_ = 0;
-    // One of these. In a pipeline candidates come up in any-hit and intersection shaders; instances of triangles take
-    // its first hit record, those of boxes the second.
+    // Only one of these is set. In a pipeline, candidates come up in any-hit and intersection shaders; instances of
+    // triangles use its first hit record, instances of boxes the second.
     std::unique_ptr<Kernel<QueryArgs>> query_;
     std::unique_ptr<RayTracingPipeline> pipeline_;
 };

@@ -15,7 +15,8 @@ namespace {
 
 constexpr std::uint64_t input_alignment = 16;
 
-// Items that a build must skip. They are far from everything else, so that a build that does not skip them is noticed.
+// The place of items that a build must skip. It is far from everything else, so that a build that does not skip them is
+// noticed.
 constexpr float passed_over = 64;
 
 template <class T>
@@ -52,7 +53,7 @@ void append_vertex(std::vector<std::byte>& bytes, VkFormat format, vec3 p) {
 void pad(std::vector<std::byte>& bytes, std::uint32_t count) { bytes.resize(bytes.size() + count, std::byte{0x55}); }
 
 std::uint64_t to_device(Commands& commands, const char* name, const std::vector<std::byte>& bytes) {
-    // Builds of nothing also need an address.
+    // An empty build also needs an address.
     Buffer buffer(commands.context(),
                   {.name = name, .bytes = std::max<std::uint64_t>(bytes.size(), 1), .alignment = input_alignment});
     commands.upload(buffer, std::span(bytes));

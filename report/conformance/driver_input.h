@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A build's input in device memory, and as Vulkan wants to be told of it.
+// A build's input in device memory, and in the form that Vulkan expects.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,8 @@
 
 namespace twinray::conformance {
 
-// The bytes of a geometry's vertices in its format, the padding and those before the first included, and as many after.
+// Returns the bytes of a geometry's vertices in its format, including the padding, the vertices before the first, and
+// as many after.
 std::vector<std::byte> encoded_vertices(const GeometryInput& geometry);
 std::vector<std::byte> encoded_indices(const GeometryInput& geometry);
 std::vector<std::byte> encoded_boxes(const GeometryInput& geometry);
@@ -30,7 +31,7 @@ struct BottomRef {
     bool holds_boxes = false;
 };
 
-// Uploads in passes of their own; the buffers live as long as the commands need them.
+// Uploads in its own passes; the buffers live as long as the commands need them.
 BuildInput upload(Commands& commands, const BottomInput& input);
 BuildInput upload(Commands& commands, const TopInput& input, const std::vector<BottomRef>& bottoms);
 

@@ -12,7 +12,7 @@ namespace {
 
 GeometryInput geometry_of(const Mesh& mesh) { return {.positions = mesh.positions, .triangles = mesh.triangles}; }
 
-// A vertex of a random triangle, or a point of one of its edges, in float64.
+// Returns a vertex of a random triangle, or a point of one of its edges, in float64.
 dvec3 edge_point(Draws& draws, const GeometryInput& geometry) {
     const uvec3 corners = geometry.triangles[draws.below(static_cast<uint>(geometry.triangles.size()))];
     const uint first = draws.below(3);
@@ -29,7 +29,7 @@ Transform sphere_placement(Draws& draws) {
     return Transform::translation(vec3(draws.point(2))) * random_instance_transform(draws);
 }
 
-// Every ray from inside has to hit something.
+// Checks that every ray from inside hits something.
 void check_closed(CaseRun& run, const Transform& placement) {
     SceneInput scene = scene_of(geometry_of(make_icosphere(2)));
     scene.top.instances[0].to_world = placement;
@@ -48,7 +48,7 @@ void check_closed(CaseRun& run, const Transform& placement) {
 void closed_mesh(CaseRun& run) { check_closed(run, {}); }
 void closed_instance(CaseRun& run) { check_closed(run, sphere_placement(run.draws())); }
 
-// From straight above, where nothing overlaps: exactly one triangle of an edge or a vertex.
+// Checks rays from above, where nothing overlaps: each must meet exactly one triangle of an edge or a vertex.
 void check_single(CaseRun& run, float height, bool is_slanted) {
     GeometryInput geometry = geometry_of(make_grid(8, 8, height, run.draws().below(1000)));
     geometry.flags = 0;
@@ -77,7 +77,7 @@ void check_single(CaseRun& run, float height, bool is_slanted) {
 void single_flat(CaseRun& run) { check_single(run, 0, false); }
 void single_rough(CaseRun& run) { check_single(run, 0.0625f, true); }
 
-// A hit at an edge is that of one of its owners, told as float64 has it.
+// Checks that a hit at an edge names one of its owners, with the values of float64.
 void owners(CaseRun& run) {
     const GeometryInput geometry = geometry_of(make_grid(3, 3, 0.25f, run.draws().below(1000)));
     std::vector<Shot> shots = random_shots(run.draws(), run.rays() / 2 + 1);

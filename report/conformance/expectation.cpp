@@ -7,9 +7,9 @@
 namespace twinray::conformance {
 namespace {
 
-constexpr double rounding = 32 * 0x1p-24;  // as of ErrorBounds, twice
+constexpr double rounding = 32 * 0x1p-24;  // twice that of ErrorBounds
 
-// Far more than rounding moves a ray: what lies outside needs no closer look.
+// A distance far above what rounding moves a ray: whatever lies beyond it needs no closer look.
 constexpr double near_ray = 0x1p-10;
 
 bool may_touch(const dvec3& center, double radius, const dvec3& origin, const dvec3& direction) {
@@ -19,7 +19,7 @@ bool may_touch(const dvec3& center, double radius, const dvec3& origin, const dv
     return dot(across, across) <= reach * reach * dot(direction, direction);
 }
 
-// From where the ray enters a box to where it leaves it; empty (first > second) where it passes by.
+// The interval from where the ray enters a box to where it leaves it; empty (first > second) if it misses the box.
 struct Stretch {
     double first, second;
 };

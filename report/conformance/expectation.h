@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a ray meets, by brute force in float64: every primitive with how certain it is in float32.
+// The primitives that a ray meets, by brute force in float64, each with how certain it is in float32.
 #pragma once
 
 #include <vector>
@@ -10,14 +10,14 @@
 
 namespace twinray::conformance {
 
-// Vulkan's rules of what a ray may meet at all: flags of geometries, instances and rays.
+// Vulkan's rules for what a ray may meet: flags of geometries, instances and rays.
 
 // Flags of a ray, with SPIR-V's values.
 enum RayFlag : uint {
     ray_opaque = 0x1,
     ray_no_opaque = 0x2,
     ray_terminates = 0x4,         // on the first hit
-    ray_skips_closest_hit = 0x8,  // shaders, of which a query has none
+    ray_skips_closest_hit = 0x8,  // shaders, which a query does not have
     ray_culls_back = 0x10,
     ray_culls_front = 0x20,
     ray_culls_opaque = 0x40,
@@ -26,14 +26,14 @@ enum RayFlag : uint {
     ray_skips_boxes = 0x200,
 };
 
-// The flags that meet where a ray meets a primitive.
+// The flags that apply where a ray meets a primitive.
 struct MetFlags {
     VkGeometryFlagsKHR geometry = 0;
     VkGeometryInstanceFlagsKHR instance = 0;
     uint ray = 0;
 };
 
-// The ray's word counts before the instance's, and that before the geometry's.
+// The ray's flag overrides the instance's, which overrides the geometry's.
 bool is_opaque(const MetFlags& flags);
 // The side that (v1 - v0) x (v2 - v0) points to is the front, unless the instance turns it.
 bool is_front(const MetFlags& flags, bool sees_normal_side);
@@ -48,7 +48,7 @@ struct Candidate {
     bool is_front = false;
     bool is_opaque = false;
     bool is_offered_once = false;  // VK_GEOMETRY_NO_DUPLICATE_ANY_HIT_INVOCATION_BIT_KHR
-    double t_low = 0, t_high = 0;  // of triangles: where a driver finds it; of boxes: from one side to the other
+    double t_low = 0, t_high = 0;  // triangles: where a driver finds it; boxes: from one side to the other
 
     uint name() const { return candidate_name(is_box, instance, geometry, primitive); }
 };
@@ -56,16 +56,16 @@ struct Candidate {
 // A scene in float64. Immutable, so threads may share it.
 class Expectation {
   public:
-    // Copies what it needs. Transforms of geometries are to be such that their product with the instance's is exact.
+    // Copies what it needs. The product of a geometry's transform with the instance's must be exact.
     explicit Expectation(const SceneInput& scene);
 
-    // All that masks, flags and the interval leave, by instance, geometry and primitive. A driver may offer any box, so
-    // all are there.
+    // Returns all candidates that masks, flags and the interval leave, by instance, geometry and primitive. A driver
+    // may offer any box, so all boxes are there.
     std::vector<Candidate> candidates(const Shot& shot) const;
 
-    // Whether u and v name a point that lies within rounding of the ray.
+    // Returns whether u and v name a point that lies within rounding of the ray.
     bool is_on_ray(const Shot& shot, const Candidate& candidate, vec2 uv) const;
-    // Whether the ray in the instance's space, as a driver told it, is right up to rounding.
+    // Returns whether the driver's ray in the instance's space is right up to rounding.
     bool is_object_ray(const Shot& shot, uint instance, vec3 origin, vec3 direction) const;
     const InstanceInput& instance(uint index) const { return instances_[index]; }
 

@@ -9,7 +9,7 @@
 namespace twinray::conformance {
 namespace {
 
-// Triangles that share vertices, in no order.
+// Makes triangles that share vertices, in no order.
 GeometryInput shared_vertices(Draws& draws, uint count) {
     GeometryInput geometry = random_triangles(draws, count);
     const uint vertices = static_cast<uint>(geometry.positions.size());
@@ -38,7 +38,7 @@ bool is_normalized(VkFormat format) {
     return format == VK_FORMAT_R16G16_SNORM || format == VK_FORMAT_R16G16B16A16_SNORM;
 }
 
-// The nearest that the format holds.
+// Returns the nearest position that the format can hold.
 vec3 held(VkFormat format, vec3 p) {
     if (is_flat(format)) p.z = 0;
     if (!is_normalized(format)) return p;

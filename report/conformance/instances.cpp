@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Instances: what they are called, masks, flags, transforms.
+// Instances: ids, masks, flags, transforms.
 
 #include "report/conformance/case_run.h"
 #include "report/conformance/suite.h"
@@ -10,7 +10,7 @@ namespace {
 constexpr uint instanced_triangles = 12;
 constexpr uint largest_index = (1u << 24) - 1;
 
-// Of one or two bottom levels, each instance somewhere else.
+// Makes instances of one or two bottom levels, each in another place.
 SceneInput many_instances(CaseRun& run, uint count) {
     SceneInput scene;
     scene.bottoms.push_back({{random_triangles(run.draws(), instanced_triangles)}});
@@ -60,7 +60,7 @@ void mask_above_8_bits(CaseRun& run) {
     run.check_hits(masked_instances(run), shots);
 }
 
-// Half of the instances have the flags, half of the rays cull each side.
+// Half of the instances have the flags; half of the rays cull each side.
 void check_facing(CaseRun& run, VkGeometryInstanceFlagsKHR flags) {
     SceneInput scene = many_instances(run, 5);
     for (InstanceInput& instance : scene.top.instances) instance.flags = run.draws().chance(0.5) ? flags : 0;
@@ -77,7 +77,7 @@ void both_facing(CaseRun& run) {
                           VK_GEOMETRY_INSTANCE_TRIANGLE_FACING_CULL_DISABLE_BIT_KHR);
 }
 
-// Opaque geometries and others, instances with the flag and without; random refusals show which is which.
+// Mixes opaque geometries with others and instances with the flag with others; random refusals show which is which.
 void check_opacity(CaseRun& run, VkGeometryInstanceFlagsKHR flags) {
     SceneInput scene = many_instances(run, 5);
     scene.bottoms[1].geometries[0].flags = 0;
@@ -96,7 +96,7 @@ void force_no_opaque(CaseRun& run) { check_opacity(run, VK_GEOMETRY_INSTANCE_FOR
 
 void transforms(CaseRun& run) { run.check_hits(many_instances(run, 4), random_shots(run.draws(), run.rays())); }
 
-// Facing is that of the object's space, which a mirror does not change.
+// Facing is decided in the object's space, so a mirror does not change it.
 void mirrors(CaseRun& run) {
     SceneInput scene = many_instances(run, 3);
     for (InstanceInput& instance : scene.top.instances)

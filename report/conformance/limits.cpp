@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// t_min and t_max, which triangles may not reach.
+// t_min and t_max, between which a triangle's t must lie.
 #include <cmath>
 
 #include "report/conformance/case_run.h"
@@ -8,7 +8,7 @@
 namespace twinray::conformance {
 namespace {
 
-// Rays that hit, and where the driver says that they do.
+// Rays that hit, and the driver's answers.
 struct Met {
     SceneInput scene;
     DriverScene built;
@@ -28,7 +28,7 @@ Met meet(CaseRun& run) {
     return met;
 }
 
-// Half of the rays end at the t that was told, the others begin there; or one step of float32 beyond it.
+// Half of the rays end at the driver's t, the others begin there; or one step of float32 beyond it.
 std::vector<Shot> cut_at(const Met& met, bool is_beyond) {
     std::vector<Shot> shots = met.shots;
     for (std::size_t i = 0; i < shots.size(); ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A run of the suite as text.
+// The results of a suite's run as text.
 #pragma once
 
 #include <ostream>
@@ -8,7 +8,7 @@
 
 namespace twinray::conformance {
 
-// A line for each topic, below it each case that failed or was not run, with its first example; then the sum.
+// Prints a line for each topic, below it each case that failed or was not run, with its first example; then the sum.
 void print(std::ostream& out, std::span<const Record> records);
 
 }  // namespace twinray::conformance

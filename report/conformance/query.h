@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// shaders/conformance/query.h for C++, and what a trace gives.
+// shaders/conformance/query.h for C++, and the result of a trace.
 #pragma once
 
 #include <span>
@@ -15,11 +15,11 @@ namespace twinray::conformance {
 static_assert(sizeof(Shot) == 56 && sizeof(Answer) == 128);
 
 struct Traced {
-    std::vector<Answer> answers;   // one a shot
+    std::vector<Answer> answers;   // one per shot
     std::vector<uint> candidates;  // `slots` words for each shot
     uint slots = 0;
 
-    // Those that were offered, as many as there were slots for.
+    // Returns the candidates that were offered, as many as there were slots for.
     std::span<const uint> candidates_of(std::size_t shot) const {
         const Answer& answer = answers[shot];
         return std::span(candidates).subspan(shot * slots, std::min(slots, answer.triangles + answer.boxes));

@@ -10,7 +10,7 @@ namespace {
 
 constexpr uint flagged_triangles = 10;
 
-// Opaque triangles and others, in instances with flags of their own.
+// Makes opaque triangles and others, in instances with their own flags.
 SceneInput mixed_triangles(CaseRun& run) {
     SceneInput scene =
         scene_of({random_triangles(run.draws(), flagged_triangles), random_triangles(run.draws(), flagged_triangles)});
@@ -39,7 +39,7 @@ void culls_back(CaseRun& run) { check_flag(run, ray_culls_back); }
 void culls_front(CaseRun& run) { check_flag(run, ray_culls_front); }
 void skips_closest_hit(CaseRun& run) { check_flag(run, ray_skips_closest_hit); }
 
-// The first that is confirmed ends the ray: nothing is offered after it.
+// The first confirmed candidate ends the ray: nothing is offered after it.
 void terminates(CaseRun& run) {
     SceneInput scene = mixed_triangles(run);
     for (GeometryInput& geometry : scene.bottoms[0].geometries) geometry.flags = 0;
@@ -53,7 +53,7 @@ void terminates(CaseRun& run) {
         run.tally().add(traced.answers[i].triangles > 1 ? Finding::offered_falsely : Finding::agrees, shots[i].ray);
 }
 
-// Boxes and triangles one behind the other, opaque and not.
+// Makes boxes and triangles one behind the other, opaque and not.
 SceneInput mixed_layers() {
     std::vector<GeometryInput> triangles = {layered_triangles(3), layered_triangles(2)};
     std::vector<GeometryInput> boxes = {layered_boxes(5), layered_boxes(4)};
@@ -79,7 +79,7 @@ void check_skipping(CaseRun& run, uint flag) {
 void skips_triangles(CaseRun& run) { check_skipping(run, ray_skips_triangles); }
 void skips_boxes(CaseRun& run) { check_skipping(run, ray_skips_boxes); }
 
-// One flag of opacity and one of facing or kinds at most: more are forbidden together.
+// Returns at most one flag of opacity and one of facing or kinds: more are forbidden together.
 uint random_flags(Draws& draws, bool can_skip) {
     constexpr std::array opacity = {0u, uint{ray_opaque}, uint{ray_no_opaque}, uint{ray_culls_opaque},
                                     uint{ray_culls_no_opaque}};

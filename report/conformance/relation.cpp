@@ -22,7 +22,7 @@ Changed moved(const SceneInput& scene, std::span<const Shot> shots, const Move& 
 }
 using Move = std::function<vec3(vec3)>;
 
-// The first geometry's triangles from `at` on, which it loses.
+// Takes the triangles from `at` on out of the geometry and returns them.
 GeometryInput take_from(GeometryInput& geometry, uint at) {
     GeometryInput rest = geometry;
     rest.triangles.erase(rest.triangles.begin(), rest.triangles.begin() + at);
@@ -122,7 +122,7 @@ Finding compare_hits(const Expectation& expectation, const Shot& shot, const Ans
     if (first.kind == ANSWER_MISS && second.kind == ANSWER_MISS) return Finding::agrees;
     const std::vector<Candidate> all = expectation.candidates(shot);
     const Candidate *one = find(all, first), *other = find(all, second);
-    // Triangles that the ray does not meet at all.
+    // An answer that names a triangle which the ray does not meet at all is a difference.
     if ((first.kind != ANSWER_MISS && !one) || (second.kind != ANSWER_MISS && !other)) return Finding::differs;
     if (!one || !other) return (one ? one : other)->is_sure ? Finding::differs : Finding::rounding;
     const double slack = 0x1p-23 * std::abs(static_cast<double>(first.t));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Scenes and rays changed in ways that must not change what is hit, and answers brought back.
+// Changes to scenes and rays that must not change what is hit, and answers mapped back.
 #pragma once
 
 #include <functional>
@@ -9,8 +9,8 @@
 
 namespace twinray::conformance {
 
-// A scene and its rays, and what an answer there means for the scene it came of: ids and t. Facing, barycentrics and
-// the object's ray are not brought back.
+// A changed scene with its rays, and how its answers map back to the original scene: ids and t. Facing, barycentrics
+// and the object's ray are not mapped back.
 struct Changed {
     SceneInput scene;
     std::vector<Shot> shots;
@@ -24,18 +24,18 @@ Changed scaled(const SceneInput& scene, std::span<const Shot> shots, float power
 Changed faster(const SceneInput& scene, std::span<const Shot> shots, float power_of_two);  // directions
 // Triangle order[i] of the first geometry becomes triangle i.
 Changed permuted(const SceneInput& scene, std::span<const Shot> shots, std::span<const uint> order);
-// The first geometry becomes two, those before `at` and the others; or two bottom levels in two instances.
+// Splits the first geometry before triangle `at` into two geometries, or into two bottom levels in two instances.
 Changed split_geometry(const SceneInput& scene, std::span<const Shot> shots, uint at);
 Changed split_instance(const SceneInput& scene, std::span<const Shot> shots, uint at);
-// Vertices are moved by the inverse, instances back again.
+// Moves vertices by the inverse, and instances back again.
 Changed by_instance(const SceneInput& scene, std::span<const Shot> shots, vec3 offset, float power_of_two);
-// The ray from its end at `t` back to its origin.
+// Returns the ray from its end at `t` back to its origin.
 Shot reversed(const Shot& shot, float t);
 
-// Whether two answers to a shot say the same. They may name different triangles where rounding decides: an edge, a tie,
-// an end of the interval.
+// Compares two answers to a shot. They may name different triangles where rounding decides: at an edge, a tie, an end
+// of the interval.
 Finding compare_hits(const Expectation& expectation, const Shot& shot, const Answer& first, const Answer& second);
-// Whether two lists name the same candidates, whatever the order. Those that are in one alone must be uncertain.
+// Compares two lists of candidates in any order. A candidate that only one of them has must be uncertain.
 Finding compare_candidates(const Expectation& expectation, const Shot& shot, std::span<const uint> first,
                            std::span<const uint> second);
 

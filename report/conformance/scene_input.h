@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a driver's structures are built from, as data on the host. The same data makes the expectation.
+// The input of a driver's structures, as data on the host. The same data makes the expectation.
 #pragma once
 
 #include <cstdint>

@@ -13,7 +13,8 @@
 namespace twinray::conformance {
 namespace {
 
-// Rays of a case in the quick suite, and of a control; so many rays are traced through one scene.
+// The number of rays: of a case in the quick suite, through one scene in the quick and the full suite, and of a
+// control.
 constexpr std::size_t quick_rays = 2048, quick_round = 512, full_round = 1u << 14, control_rays = 512;
 
 constexpr std::array ways = {Backend::ray_query, Backend::pipeline};
@@ -78,7 +79,7 @@ class Runner {
           rays_(rays_of_case),
           progress_(progress) {}
 
-    // False where the device was lost.
+    // Returns false if the device was lost.
     bool run(const Case& row) {
         progress_.rename(text("conformance ", row.id));
         const std::string missing = why_not(row);
@@ -170,11 +171,11 @@ std::vector<Case> catalogue() {
 void run(Context& context, const Settings& settings, Recorder& recorder, bool quiet,
          const std::function<void(const Record&)>& on_record) {
     std::vector<Case> cases = catalogue();
-    const std::uint64_t all = ways.size() * cases.size();  // so that a case takes as many whichever others run
+    const std::uint64_t all = ways.size() * cases.size();  // so that a case's share is the same whichever others run
     const std::uint64_t rays = settings.is_full ? (settings.full_rays + all - 1) / all : quick_rays;
     std::erase_if(cases, [&](const Case& row) { return !frame::is_chosen(settings.only, row.id); });
     samples::Progress progress("conformance", ways.size() * cases.size() * rays, quiet);
-    std::string lost;  // where it was
+    std::string lost;  // where the device was lost
     std::deque<Runner> runners;
     for (const Backend way : ways) runners.emplace_back(context, way, settings, recorder, on_record, rays, progress);
     for (const Case& row : cases)

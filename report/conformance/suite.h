@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Whether a driver's own acceleration structures do what Vulkan says: cases by kind, each with a negative control.
+// Tests of a driver's own acceleration structures against Vulkan: cases by kind, each with a negative control.
 #pragma once
 
 #include <functional>
@@ -30,7 +30,7 @@ enum class Topic : std::uint8_t {
 inline constexpr std::size_t topic_count = 12;
 std::string_view name_of(Topic topic);
 
-// Whether Vulkan requires or recommends it.
+// How firmly Vulkan demands something: it requires or recommends it.
 enum class Demand : std::uint8_t {
     must,    // "must", or what a command is defined to do
     should,  // "should", or what users count on and Vulkan leaves open
@@ -40,7 +40,7 @@ constexpr std::string_view name_of(Demand demand) { return demand == Demand::mus
 class CaseRun;
 
 struct Case : frame::Case {
-    // `kind`: public conformance suites that ask the like, or the relation's name.
+    // `kind`: public conformance suites with a similar test, or the relation's name.
     Case(const std::string& id, Topic topic, const std::string& what, const std::string& kind,
          const std::string& demanded, Misdeed control, std::function<void(CaseRun&)> run, Demand demand = Demand::must,
          bool culls_primitives = false, const std::string& not_by_pipeline = {})
@@ -54,7 +54,7 @@ struct Case : frame::Case {
 
     Topic topic;
     Demand demand;
-    Misdeed control;  // that must show faults here
+    Misdeed control;  // must show faults here
     std::function<void(CaseRun&)> run;
     bool culls_primitives;        // needs rayTraversalPrimitiveCulling
     std::string not_by_pipeline;  // why only ray queries can tell; "" = both can
@@ -76,28 +76,29 @@ std::vector<Case> catalogue();  // all of them
 
 struct Settings {
     bool is_full = false;
-    std::uint64_t full_rays = 100'000'000;  // of all cases by both ways together, where is_full
+    std::uint64_t full_rays = 100'000'000;  // of all cases by both ways together, if is_full
     std::uint64_t seed = 1;
     std::vector<std::string> only = {};  // patterns of case ids with * and ?; empty: all
 };
 
-// Runs all cases and the control of each, by ray query (backend "hw") and by ray tracing pipeline ("hw-pipeline"). A
-// record a case, each case by both ways before the next, and one with the variant "control: ..." for its control, which
-// passes where it shows faults. Of records that did not pass, fault_of is the driver's, or ours where a control shows
-// nothing or a case could not be carried out. results has "topic", "demand", "what" and "kind". On a device without one
-// of the ways its cases are recorded as not run. `on_record` follows each. A case in which the device is lost or hangs
-// (see ContextDesc::most_wait_seconds) is the driver's fault, and the cases after it are not run: nothing of the
-// context is.
+// Runs all cases and the control of each, by ray query (backend "hw") and by ray tracing pipeline ("hw-pipeline"), each
+// case by both ways before the next. Each case gets one record, and its control another with the variant "control:
+// ...", which passes if it shows faults. If a record did not pass, fault_of is the driver's, or ours if a control shows
+// nothing or a case could not be carried out. results has "topic", "demand", "what" and "kind". If the device lacks one
+// of the ways, its cases are recorded as not run. Calls `on_record` after each record. If the device is lost or hangs
+// in a case (see ContextDesc::most_wait_seconds), this is the driver's fault, and the cases after it are not run,
+// because the context runs nothing more.
 void run(Context& context, const Settings& settings, Recorder& recorder, bool quiet,
          const std::function<void(const Record&)>& on_record = {});
 
-// Records of a case that was begun in a process which the driver ended, beside those that it left: the first that is
-// missing is a fault of the driver, `how` it ended, and the others were not run for it. None where `finished` has all
-// of the case: of each way one that was not run, or its control.
+// Returns records of a case during which the driver ended the process, beside those that it left. The first missing one
+// is a fault of the driver, with `how` it ended; the others were not run because of it. Returns none if `finished` is
+// complete: if it has for each way a record that was not run, or the control.
 std::vector<Record> records_of_ended(const Case& row, std::span<const Record> finished, const Settings& settings,
                                      const std::string& how);
 
-// For records of a run: whether the driver breaks a requirement of Vulkan; whether the suite itself has a fault.
+// Return whether the driver breaks a requirement of Vulkan, and whether the suite itself has a fault, by records of a
+// run.
 bool fails_demands(std::span<const Record> records);
 bool has_fault_of_ours(std::span<const Record> records);
 

@@ -15,7 +15,7 @@ SceneInput updatable(GeometryInput geometry) {
     return scene;
 }
 
-// The same number of triangles at another place.
+// Moves the triangles to another place; their number stays the same.
 void move_triangles(CaseRun& run, SceneInput& scene) {
     for (GeometryInput& geometry : scene.bottoms[0].geometries)
         geometry.positions = random_triangles(run.draws(), moved_triangles).positions;

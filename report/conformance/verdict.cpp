@@ -13,7 +13,7 @@ constexpr std::array<std::string_view, finding_count> finding_names = {
     "WRONG_IDS",     "WRONG_FACING", "WRONG_UV",   "WRONG_TRANSFORM", "NOT_OFFERED", "OFFERED_AGAIN", "OFFERED_FALSELY",
     "WRONG_OPACITY", "LEAK",         "DOUBLE_HIT", "DIFFERS",         "BROKEN"};
 
-// A candidate that may be committed, with where.
+// Returns the candidates that may be committed, and at which t.
 std::vector<Candidate> committable(const Expectation& expectation, const Shot& shot) {
     std::vector<Candidate> all = expectation.candidates(shot);
     std::erase_if(all, [&](Candidate& candidate) {
@@ -22,7 +22,7 @@ std::vector<Candidate> committable(const Expectation& expectation, const Shot& s
         // A box is never committed by itself, whether it is opaque or not.
         const float t = box_t_of(shot, candidate.primitive);
         const bool is_inside = t >= shot.ray.t_min && t <= shot.ray.t_max;
-        // Where its t lies outside of it, an earlier hit may end the ray before the box comes up.
+        // If the box's t lies outside the box, an earlier hit may end the ray before the box comes up.
         candidate.is_sure = candidate.is_sure && t >= candidate.t_low && t <= candidate.t_high;
         candidate.t_low = candidate.t_high = t;
         return is_out || !is_inside;
@@ -43,7 +43,7 @@ bool is_map_of(const Answer& answer, const Transform& to_world) {
     return true;
 }
 
-// The other values of a hit on the right triangle.
+// Judges the other values of a hit on the right triangle.
 Finding judge_attributes(const Expectation& expectation, const Shot& shot, const Answer& answer, const Candidate& hit) {
     const InstanceInput& instance = expectation.instance(answer.instance);
     if (answer.custom_index != instance.custom_index || answer.sbt_offset != instance.sbt_offset)

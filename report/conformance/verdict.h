@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a driver's answer to a shot is worth.
+// The verdict on a driver's answer to a shot.
 #pragma once
 
 #include <string_view>
@@ -12,28 +12,28 @@ enum class Finding : std::uint8_t {
     agrees,
     rounding,     // an edge, a tie, a limit: accepted, as float32 may decide either way
     lost,         // a miss where something is surely hit
-    lost_nearer,  // something farther than what is surely hit
-    false_hit,    // what the ray does not meet, or may not by flags and masks
+    lost_nearer,  // a hit farther than one that is certain
+    false_hit,    // of something that the ray does not meet, or may not by flags and masks
     wrong_t,
     outside_limits,  // a t that the interval excludes
     wrong_ids,       // custom index, record offset, instance, geometry or primitive
     wrong_facing,
     wrong_uv,
     wrong_transform,  // the object's ray, or the map of the instance
-    not_offered,      // a candidate that is surely there
-    offered_again,    // though its geometry says once
+    not_offered,      // a candidate that is certain
+    offered_again,    // though its geometry allows one
     offered_falsely,
     wrong_opacity,  // of a box
     leak,           // out of a closed mesh, or through a shared edge
     double_hit,     // of a shared edge
     differs,        // from another answer that must be the same
-    broken,         // what is not about a ray
+    broken,         // a fault that is not about a ray
 };
 inline constexpr std::size_t finding_count = 19;
 std::string_view name_of(Finding finding);  // "AGREE", "LOST", ...
 constexpr bool is_fault(Finding finding) { return finding > Finding::rounding; }
 
-// Judges the committed hit of a ray whose refusals are as in the shot. Boxes are met at the shot's box_t.
+// Judges the committed hit of a ray with the shot's refusals. Boxes are met at the shot's box_t.
 Finding judge_hit(const Expectation& expectation, const Shot& shot, const Answer& answer);
 
 // Judges the candidates of a ray that refuses all of them.

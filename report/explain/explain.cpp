@@ -18,14 +18,14 @@ namespace {
 
 using exact::Rational, exact::TriangleId;
 
-// An accelerator of this device, what it answers and what that is worth.
+// An accelerator of this device, its answer and the class of that answer.
 struct Answer {
     frame::Configuration configuration;
     Hit hit;
     HitClass kind;
 };
 
-// The scene, the ray and what is right.
+// The scene, the ray and the right answer.
 struct Stage {
     Replay replay;
     Scene scene;
@@ -141,7 +141,8 @@ void print_header(std::ostream& out, const Stage& stage) {
 
 const char* sign_of(int sign) { return sign > 0 ? "+" : sign < 0 ? "-" : "0"; }
 
-// The boxes from the root to the leaf that is_wanted(leaf index), the root's first; false: there is no such leaf.
+// Finds the boxes from the root to the leaf that is_wanted(leaf index), the root's first. Returns false without such a
+// leaf.
 template <class IsWanted>
 bool find_path(const Bvh& bvh, uint reference, const IsWanted& is_wanted, std::vector<Bounds>& path) {
     if (reference == NOTHING) return false;
@@ -156,7 +157,7 @@ bool find_path(const Bvh& bvh, uint reference, const IsWanted& is_wanted, std::v
     return false;
 }
 
-// The slab test as it stands in textbooks, without padding.
+// Does the slab test of textbooks, without padding.
 bool enters_unpadded(const Bounds& box, const RaySpace& space, float t_min, float t_max) {
     for (int axis = 0; axis < 3; ++axis) {
         const float inverse = 1.0f / space.direction[axis];

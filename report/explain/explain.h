@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What SwTlas computes on the way to one triangle, beside what is true: the arithmetic of the shaders run on the CPU.
-// A faulty ray is explained by that.
+// SwTlas's computations on the way to one triangle, beside the exact values: the arithmetic of the shaders run on the
+// CPU. They explain a faulty ray.
 #pragma once
 
 #include <filesystem>
@@ -18,9 +18,10 @@ class Explainer {
     // The scene is only read here; the reference must outlive it.
     Explainer(const Scene& scene, const ReferenceScene& reference, const Ray& ray, Level level);
 
-    // The triangle test: vertices as the ray sees them, edge functions in float32 and exactly, and what each decides.
+    // Prints the triangle test: vertices as the ray sees them, edge functions in float32 and exactly, and what each
+    // decides.
     void print_test(std::ostream& out, exact::TriangleId triangle) const;
-    // The boxes of SwTlas's trees that lead to it, and whether the ray enters them with the padding and without.
+    // Prints the boxes of SwTlas's trees that lead to it, and whether the ray enters them with the padding and without.
     void print_boxes(std::ostream& out, exact::TriangleId triangle) const;
 
   private:
@@ -32,9 +33,9 @@ class Explainer {
     std::unique_ptr<reference::Scene> on_cpu_;
 };
 
-// Traces the ray of a replay file again on every accelerator of the device and tells step by step what each does and
-// why it is right or wrong. True: SwTlas shows a fault of twinray, still. Throws Error where the scene is not the one
-// that the file names.
+// Traces the ray of a replay file again on every accelerator of the device and prints step by step what each does and
+// why it is right or wrong. Returns whether SwTlas still shows a fault of twinray. Throws Error if the scene is not the
+// one that the file names.
 bool show(const std::filesystem::path& file, frame::Devices& devices, std::ostream& out);
 
 }  // namespace twinray::replay

@@ -29,7 +29,7 @@ namespace {
     F(vkGetQueryPoolResults, VK_ERROR_OUT_OF_HOST_MEMORY, true)                 \
     F(vkGetRayTracingShaderGroupHandlesKHR, VK_ERROR_OUT_OF_HOST_MEMORY, false)
 
-// With the type that it makes.
+// The functions that make an object, with its type.
 #define TWINRAY_CREATING(F)                                                                         \
     F(vkCreateInstance, VK_ERROR_INCOMPATIBLE_DRIVER, false, VkInstance)                            \
     F(vkCreateDebugUtilsMessengerEXT, VK_ERROR_OUT_OF_HOST_MEMORY, false, VkDebugUtilsMessengerEXT) \
@@ -75,7 +75,7 @@ FaultInjector* active = nullptr;
 PFN_vkGetInstanceProcAddr real_instance_proc_addr = nullptr;
 PFN_vkGetDeviceProcAddr real_device_proc_addr = nullptr;
 
-// One wrapper per function; `Tag` names it and says what is behind.
+// One wrapper per function; `Tag` names and describes the function.
 template <class Tag, class Pointer>
 struct Wrapper;
 
@@ -128,7 +128,7 @@ TWINRAY_DESTROYING(TWINRAY_TAG)
 PFN_vkGetAccelerationStructureBuildSizesKHR real_build_sizes = nullptr;
 PFN_vkCreateAccelerationStructureKHR wrapped_create_structure = nullptr;
 
-// More than the driver wants, of which the driver is not told: it finds that a compacted copy needs less.
+// Returns more than the driver wants. The driver does not know this, and finds that a compacted copy needs less.
 void VKAPI_PTR generous_build_sizes(VkDevice device, VkAccelerationStructureBuildTypeKHR type,
                                     const VkAccelerationStructureBuildGeometryInfoKHR* info,
                                     const std::uint32_t* counts, VkAccelerationStructureBuildSizesInfoKHR* sizes) {
@@ -144,7 +144,7 @@ VkResult VKAPI_PTR create_structure_without_slack(VkDevice device, const VkAccel
     return wrapped_create_structure(device, &real, callbacks, structure);
 }
 
-// The wrapper of a function, or the function itself where there is none.
+// Returns the wrapper of a function, or the function itself if it has no wrapper.
 PFN_vkVoidFunction around(std::string_view name, PFN_vkVoidFunction real) {
     if (!real) return nullptr;
     if (name == "vkCreateAccelerationStructureKHR") {
@@ -240,7 +240,7 @@ void FaultInjector::created(const char* type, void* handle) {
 void FaultInjector::destroyed(const char* type, void* handle) {
     if (!handle) return;
     if (!live_.erase({type, handle})) ++wrong_destructions_;
-    // There is one device at a time: it goes after everything that was made from it.
+    // There is one device at a time: it is destroyed after everything that was made from it.
     if (std::string_view(type) == "VkDevice")
         for (const auto& [other, count] : live())
             wrong_destructions_ += other != "VkInstance" && other != "VkDebugUtilsMessengerEXT";

@@ -15,7 +15,7 @@
 
 namespace twinray::faults {
 
-// Which calls fail, counted from when it was told. The default is none.
+// The calls that fail, counted from inject() on. Before it, none fails.
 struct Fault {
     std::string_view function = {};      // "" = every one that can return `result`
     std::uint64_t first = 1;             // the first call to fail; 1 = the next
@@ -27,8 +27,8 @@ constexpr std::uint64_t every_call = UINT64_MAX;
 
 using Counts = std::map<std::string, std::size_t>;
 
-// One at a time, around the contexts that use it. A call that fails is not passed on, except that a device that is
-// reported lost is first waited for: the work of a lost device counts as finished.
+// Only one exists at a time, around the contexts that use it. A call that fails is not passed on, but a device that is
+// reported lost is waited for first, because the work of a lost device counts as finished.
 class FaultInjector {
   public:
     FaultInjector();
@@ -44,20 +44,22 @@ class FaultInjector {
     std::uint64_t injected() const { return injected_; }   // that failed, since inject()
     const std::string& failed() const { return failed_; }  // the function that failed last, since inject()
 
-    // A driver that asks for so many bytes more for each acceleration structure than it uses, as drivers do whose
-    // structures can be compacted. Once, before the first structure; odd, so that no size is told both ways.
+    // Acts as a driver that asks for this many bytes more for each acceleration structure than it uses, as drivers do
+    // if structures can be compacted. Call it once, before the first structure, with an odd number, so that a size with
+    // slack equals no size without.
     void set_structure_slack(std::uint64_t bytes) { structure_slack_ = bytes; }
 
-    // How many objects are alive, by type ("VkBuffer"); types of which none is are left out. Command buffers go with
+    // Returns how many objects are alive, by type ("VkBuffer"), without types that have none. Command buffers go with
     // their pool and are not counted.
     Counts live() const;
-    // Without the memory: VMA keeps a block for the next allocation. allocated_bytes() tells what of it is used.
+    // Leaves out memory, because VMA keeps a block for the next allocation. allocated_bytes() returns how much of it is
+    // used.
     Counts live_objects() const;
-    // How many objects were destroyed that were not alive, or outlived their device.
+    // Returns how many destroyed objects were not alive, or outlived their device.
     std::size_t wrong_destructions() const { return wrong_destructions_; }
     VkInstance instance() const { return instance_; }  // the last one made
 
-    // For the wrappers.
+    // The wrappers use these.
     struct Function {
         const char* name;
         VkResult error;
@@ -77,7 +79,7 @@ class FaultInjector {
     Fault fault_;
     std::string function_;
     std::uint64_t structure_slack_ = 0;
-    std::set<std::uint64_t> generous_;  // sizes told with slack
+    std::set<std::uint64_t> generous_;  // sizes reported with slack
     std::uint64_t calls_ = 0, injected_ = 0;
     std::string failed_;
     std::set<std::pair<std::string, void*>> live_;
@@ -85,12 +87,12 @@ class FaultInjector {
     VkInstance instance_ = VK_NULL_HANDLE;
 };
 
-// Where VMA has another way to the same memory, or where nothing but the freeing of memory waits for the answer.
+// Returns whether VMA has another way to the same memory, or only the freeing of memory waits for the answer.
 bool may_be_harmless(const std::string& function);
 
 enum class Outcome { done, error, lost };
 
-// The outcome of an action, and the text of its Error.
+// Returns the outcome of an action, and the text of its Error.
 Outcome outcome_of(const std::function<void()>& action, std::string* what = nullptr);
 std::string what_is_thrown_by(const std::function<void()>& action);
 

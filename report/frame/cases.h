@@ -20,9 +20,9 @@ struct Case {
     std::string criterion;  // when it passes
 };
 
-// Whether `text` fits a pattern with * (any characters) and ? (one).
+// Returns whether `text` fits a pattern with * (any characters) and ? (one).
 bool matches(std::string_view text, std::string_view pattern);
-// Whether a pattern fits the id; without patterns all are chosen.
+// Returns whether a pattern fits the id; without patterns all are chosen.
 bool is_chosen(std::span<const std::string> patterns, std::string_view id);
 
 // Thrown by a case that the device cannot answer: it becomes a record that says why.
@@ -37,25 +37,25 @@ struct Ending {
 
     bool is_failure() const { return kind == Kind::failed || kind == Kind::lost; }
 };
-// Throws nothing, whatever the work throws.
+// Throws nothing, even if the work does.
 Ending run_guarded(const std::function<void()>& work);
-// The reason for which the cases after it are not run.
+// Returns the reason why the cases after it are not run.
 inline std::string lost_in(const std::string& id) { return "the device was lost in " + id; }
 
-// With the case's id and criterion.
+// Returns a record with the case's id and criterion.
 Record record_of(const Case& row, std::uint64_t seed);
 void set_not_run(Record& record, const std::string& reason);
 void set_failure(Record& record, const std::string& what, const std::string& fault_of = "twinray");
-// With the bound of the rate at 95 %.
+// Sets the faults, with the bound of the rate at 95 %.
 void set_faults(Record& record, std::uint64_t faults, std::uint64_t n);
 
 inline bool is_control(const Record& record) { return record.variant.starts_with("control"); }
 // Decides the record of a control, which must show faults.
 void decide_control(Record& record);
-// Decides any other: none may be there.
+// Decides any other record, which must show no faults.
 void decide(Record& record, const std::string& fault_of);
 
-// A ray as Record::example shows it.
+// Returns a ray as Record::example shows it.
 std::string hexadecimal(const Ray& ray);
 
 }  // namespace twinray::frame

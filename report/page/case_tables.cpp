@@ -24,7 +24,7 @@ struct Group {
     bool is_disturbed() const {
         return std::ranges::any_of(records, [](const Record* r) { return r->time && r->time->is_disturbed(); });
     }
-    // The worst of them: a fault of twinray, then one of the driver, then a pass.
+    // Returns the worst of them: a fault of twinray, then one of the driver, then a pass.
     const Record& worst() const {
         const auto rank = [](const Record* record) {
             return !record->pass ? 0 : *record->pass ? 1 : record->fault_of == "twinray" ? 3 : 2;
@@ -40,7 +40,7 @@ struct Group {
     }
 };
 
-// "120 to 340" over all settings.
+// Returns "120 to 340" over all settings.
 template <class Of>
 std::string range(const Group& group, const Of& of) {
     std::optional<Interval> all;
@@ -88,7 +88,7 @@ struct TableRow {
     std::string fault;  // the worst, with its replay; empty: none
 };
 
-// `told`: what the rows above say of their faults, which is not said again.
+// `told`: the faults in the rows above, which are not repeated.
 TableRow row_of(const Key& key, const Group& group, std::set<std::string>& told) {
     const Record& worst = group.worst();
     TableRow row{{escaped(key[1].empty() ? key[0] : key[0] + ' ' + key[1]) +
@@ -109,7 +109,7 @@ TableRow row_of(const Key& key, const Group& group, std::set<std::string>& told)
     return row;
 }
 
-// Without the columns that no row has anything in.
+// Leaves out the columns that are empty in every row.
 void write_table(std::ostream& out, const std::vector<TableRow>& rows) {
     std::vector<std::size_t> used;
     for (std::size_t i = 0; i < columns.size(); ++i)
@@ -127,7 +127,7 @@ void write_table(std::ostream& out, const std::vector<TableRow>& rows) {
     out << "</table></div>";
 }
 
-// A control that shows faults, as it must.
+// Returns whether it is a control that shows faults, as it must.
 bool is_control_that_passes(const Record& record) { return !is_users_kernel(record) && record.pass == true; }
 
 void write_case(std::ostream& out, const frame::Case& row, const std::vector<const Record*>& records) {

@@ -36,7 +36,7 @@ std::string name_of(const Check& check) { return check.case_id + (check.on.empty
 
 bool is_skipped(const Check& check) { return check.outcome == Outcome::tolerated || check.outcome == Outcome::skipped; }
 
-// Control characters, which XML 1.0 does not have, are left out.
+// Leaves out control characters, which XML 1.0 does not have.
 std::string xml(std::string text) {
     std::erase_if(text, [](unsigned char c) { return c < 0x20 && c != '\n' && c != '\t'; });
     return escaped(text);

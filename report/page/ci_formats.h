@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a report found, as continuous integration reads it: pure functions of records.
+// The results of a report in the formats of continuous integration: pure functions of records.
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@ namespace twinray::report {
 
 // A case on one accelerator, level and variant, over all its settings.
 struct Check {
-    // The later one counts where settings of a check differ.
+    // If the settings of a check differ, the later of these counts.
     enum class Outcome : std::uint8_t {
         skipped,  // not run, or only measured
         passed,
@@ -28,14 +28,16 @@ struct Check {
     Outcome outcome = Outcome::passed;
 };
 
-// In the order of the records. Strictly, a fault of the driver fails: of cases K that Vulkan only advises it does not.
+// Returns checks in the order of the records. If strict, a fault of the driver fails, but not in cases K that Vulkan
+// only advises.
 std::vector<Check> checks_of(std::span<const Record> records, bool is_strict);
 
-// JUnit XML, as CI systems take it: a test suite for each device. Tolerated and skipped checks are skipped there.
+// Returns JUnit XML, as CI systems read it: a test suite for each device. Tolerated and skipped checks are skipped
+// there.
 std::string junit_xml(std::span<const Check> checks);
-// Test Anything Protocol 14. A tolerated check is "not ok ... # TODO".
+// Returns Test Anything Protocol 14. A tolerated check is "not ok ... # TODO".
 std::string tap(std::span<const Check> checks);
-// SARIF 2.1.0: a result for each fault, an error where it fails, else a warning.
+// Returns SARIF 2.1.0: a result for each fault, an error if it fails, else a warning.
 std::string sarif(std::span<const Check> checks, const std::string& version);
 
 }  // namespace twinray::report

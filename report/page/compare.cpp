@@ -16,8 +16,8 @@ namespace {
 
 double log_choose(double n, double k) { return std::lgamma(n + 1) - std::lgamma(k + 1) - std::lgamma(n - k + 1); }
 
-constexpr std::uint64_t few = 100;       // items, of which a rate says little
-constexpr std::size_t fewest_cases = 5;  // of which the bootstrap draws
+constexpr std::uint64_t few = 100;       // items; the rate of fewer says little
+constexpr std::size_t fewest_cases = 5;  // from which the bootstrap draws
 constexpr std::size_t draws = 10'000;
 
 using Pair = std::pair<const Record*, const Record*>;  // before and now
@@ -32,21 +32,21 @@ std::string name_of(const Record& record) {
 
 std::string group_of(const Record& record) { return record.backend + ' ' + record.level; }
 
-// Whether they are of one case, accelerator and level, whatever their settings.
+// Returns whether they are of one case, accelerator and level, whatever their settings.
 bool asks_of_one(const Record& a, const Record& b) {
     return a.case_id == b.case_id && a.backend == b.backend && a.level == b.level;
 }
 
-// Something that may have changed, with the probability of what was seen if it did not.
+// A possible change, and how probable the observation is if nothing changed.
 struct Suspicion {
     Change change;
     double p = 1;
 };
 
-// So many of n, before and now.
+// A count out of n, before and now.
 struct Counted {
     std::uint64_t before = 0, n_before = 0, now = 0, n_now = 0;
-    // The change of the rate: above 0 if it rose.
+    // Returns the change of the rate: above 0 if it rose.
     double rise() const {
         return static_cast<double>(now) * static_cast<double>(n_before) -
                static_cast<double>(before) * static_cast<double>(n_now);
@@ -66,7 +66,7 @@ Suspicion suspicion_of(const std::string& what, const std::string& kind, const C
             fisher_exact(counted.before, counted.n_before, counted.now, counted.n_now)};
 }
 
-// Of whole cases, each of which counts as one: its rays share a scene that is random, too.
+// Tests whole cases. Each counts as one, because its rays share a random scene.
 Suspicion suspicion_of_cases(const std::string& what, const std::string& kind,
                              const std::map<std::string, Counted>& cases) {
     Counted sum;
@@ -83,20 +83,20 @@ Suspicion suspicion_of_cases(const std::string& what, const std::string& kind,
             sign_test(rose, fell)};
 }
 
-// Any answer that Vulkan and rounding allow.
+// Returns whether Vulkan and rounding allow the answer.
 bool is_right(std::string_view kind) {
     constexpr std::array<std::string_view, 5> right = {"AGREE", "TIE", "BOUNDARY", "BOUNDARY_HW_MISS", "UNSPECIFIED"};
     return std::ranges::count(right, kind) > 0;
 }
 
-// Whether its counts are those of classes, one for each item.
+// Returns whether its counts are those of classes, one for each item.
 bool has_classes(const Record& record) {
     std::uint64_t sum = 0;
     for (const auto& [kind, count] : record.counts) sum += count;
     return !record.counts.empty() && sum == record.n;
 }
 
-// By class; where a record has no classes, its faults.
+// Returns counts by class, or the faults if a record has no classes.
 std::map<std::string, Counted> counts_of(const Record& before, const Record& now) {
     std::map<std::string, Counted> counts;
     for (const auto& [record, is_now] : {std::pair{&before, false}, std::pair{&now, true}}) {
@@ -128,7 +128,7 @@ class Comparing {
         result_.compared = pairs_.size();
         result_.only_before = known.size();
         result_.only_now = only_now.size();
-        // A record that did not run has no settings, so it corresponds to none that has.
+        // A record that did not run has no settings, so it corresponds to none that has some.
         for (const Record* record : only_now)
             if (!record->was_run && std::ranges::any_of(known, [&](const auto& was) {
                     return was.second->was_run && asks_of_one(*was.second, *record);
@@ -186,14 +186,14 @@ class Comparing {
             for (const auto& [kind, counted] : counts_of(*before, *now)) {
                 if (counted.before + counted.now == 0) continue;
                 if (result_.has_one_seed) suspicions_.push_back(suspicion_of(name_of(*now), kind, counted));
-                // Cases of other amounts would change the sum of all without a change in any.
+                // Cases with other amounts would change the sum of all although no case changed.
                 if (now->level == "fast" || (result_.has_one_seed && !asks_the_same)) continue;
                 by_case_[group_of(*now) + " over all cases"][kind][now->case_id] += counted;
             }
         }
     }
 
-    // Log of the ratio of both medians, by case.
+    // The logarithm of the ratio of both medians, by case.
     using CaseRatios = std::map<std::string, std::vector<double>>;
 
     void compare_times() {
@@ -218,7 +218,7 @@ class Comparing {
     }
 
     void compare_group(const std::string& backend, const std::string& level, const CaseRatios& cases) {
-        std::vector<double> means;  // each case counts once: what it measures has the machine's state in common
+        std::vector<double> means;  // each case counts once: its measurements share the machine's state
         std::size_t measurements = 0;
         for (const auto& [id, ratios] : cases) {
             means.push_back(median(ratios));
@@ -264,7 +264,7 @@ double fisher_exact(std::uint64_t count_a, std::uint64_t n_a, std::uint64_t coun
     const auto log_p = [&](std::uint64_t k) {
         return log_choose(a, static_cast<double>(k)) + log_choose(b, static_cast<double>(count - k)) - all;
     };
-    const double seen = log_p(count_a), slack = 1e-7;  // of rounding
+    const double seen = log_p(count_a), slack = 1e-7;  // for rounding
     double p = 0;
     for (std::uint64_t k = count > n_b ? count - n_b : 0; k <= std::min(count, n_a); ++k)
         if (const double here = log_p(k); here <= seen + slack) p += std::exp(here);

@@ -14,7 +14,7 @@ namespace twinray::report {
 
 // The chance that something is reported although nothing changed, over all tests of a comparison together.
 inline constexpr double false_alarms = 0.05;
-// Times of a group count as changed where their ratio is beyond this, or its inverse, beyond noise.
+// Times of a group count as changed if their ratio is beyond this, or its inverse, beyond noise.
 inline constexpr double tolerated_ratio = 1.1;
 
 struct Change {
@@ -25,7 +25,7 @@ struct Change {
     bool operator==(const Change&) const = default;
 };
 
-// Times of one accelerator and level over all cases, of which the median of all ratios is taken out: how busy the
+// Times of one accelerator and level over all cases, divided by the median of all ratios, which shows how busy the
 // machine was.
 struct TimeRatio {
     std::string backend, level;
@@ -41,29 +41,31 @@ struct Comparison {
     std::size_t compared = 0;                   // records with a counterpart
     std::size_t tests = 0;                      // of the hypothesis that nothing changed
     std::size_t only_before = 0, only_now = 0;  // without one
-    bool has_one_seed = true;                   // both asked the same rays, where they asked as many
+    bool has_one_seed = true;                   // both asked the same rays, if they asked as many
 
     bool is_worse() const;
 };
 
-// Records correspond where case, settings, accelerator, level and variant are the same. Counts of classes and of faults
-// are compared by Fisher's exact test, for each record and for each accelerator and level over all cases of as many
-// rays. Where seeds differ, so do the scenes, in which the rays of a case are no independent trials: then only over all
-// cases, by the sign test of whole cases. Times, of as many rays, are compared by the bootstrap. A test that Holm's
-// procedure (1979) keeps at false_alarms is a change. Certain, without a test: a fault of twinray where there was none;
-// a record of under 100 items that asked the same (seed and n) and passes no more, or again; a record that ran and does
-// not, or all of a case, accelerator and level.
+// Records correspond if case, settings, accelerator, level and variant are the same. Fisher's exact test compares
+// counts of classes and of faults, for each record, and for each accelerator and level over all cases with as many
+// rays. If seeds differ, so do the scenes, and the rays of a case are no independent trials: then the sign test
+// compares whole cases, over all cases only. The bootstrap compares times of as many rays. A test that Holm's procedure
+// (1979) keeps at false_alarms is a change. Some changes are certain without a test: a new fault of twinray; a record
+// of under 100 items that asked the same (seed and n) and no longer passes, or passes again; a record that ran and no
+// longer does, or all of a case, accelerator and level.
 Comparison compare(std::span<const Record> before, std::span<const Record> now);
 
 // Tests of the hypothesis that nothing changed.
 
-// P of a table at least as unlikely as this one, where both rates are the same: Fisher's exact test (1922), two-sided.
+// Returns P of a table at least as unlikely as this one if both rates are the same: Fisher's exact test (1922),
+// two-sided.
 double fisher_exact(std::uint64_t count_a, std::uint64_t n_a, std::uint64_t count_b, std::uint64_t n_b);
 
-// Which of the hypotheses with these p are refuted so that the chance to refute a true one is at most `level`.
+// Returns which of the hypotheses with these p are refuted so that the chance to refute a true one is at most `level`.
 std::vector<bool> holm(std::span<const double> p, double level);
 
-// P of so many ups among ups and downs or more extreme, where both are as likely: the sign test, two-sided.
+// Returns P of this many ups among ups and downs, or more extreme, if both are equally likely: the sign test,
+// two-sided.
 double sign_test(std::size_t ups, std::size_t downs);
 
 // Reports beside each other, as text: compare_text.cpp.
@@ -72,16 +74,17 @@ struct NamedReport {
     std::string name;
     std::vector<Record> records;
 };
-// A file of JSON lines, or a folder with report.jsonl in it. Throws Error naming what cannot be read or has no record.
+// Reads a file of JSON lines, or a folder with report.jsonl in it. Throws Error naming what cannot be read or has no
+// record.
 NamedReport read_report(const std::filesystem::path& path);
 
-// Device, driver and version of each, and a table in Markdown: how often each was wrong in which way, which cases of
-// the driver's own structures it fails, and how its time compares with SwTlas's.
+// Prints device, driver and version of each, and a table in Markdown: how often each was wrong in which way, which
+// cases of the driver's own structures it fails, and how its time compares with SwTlas's.
 void print_side_by_side(std::ostream& out, std::span<const NamedReport> reports);
-// The changes, the ratios of times, and a verdict with its probability of a false alarm.
+// Prints the changes, the ratios of times, and a verdict with its probability of a false alarm.
 void print_comparison(std::ostream& out, const Comparison& comparison);
 
-// Lines of a baseline that are no records of a report.
+// Prints the lines of a baseline that are no records of a report.
 void print_other_lines(std::ostream& out, const JsonLines& baseline);
 
 }  // namespace twinray::report

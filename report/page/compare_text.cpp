@@ -16,7 +16,7 @@ std::string_view word_of(Change::Kind kind) {
     return words[static_cast<std::size_t>(kind)];
 }
 
-// One for SwTlas, one for each way of the driver.
+// Prints a row for SwTlas and one for each way of the driver.
 void print_rows(std::ostream& out, std::span<const Record> records) {
     const std::vector<Finding> findings = findings_of(records);
     const std::vector<Speed> speeds = speeds_of(records);

@@ -24,14 +24,14 @@ std::string text_at(const Values& values, const std::string& name) {
     return found == values.end() ? "" : found->second.text();
 }
 
-// By name, in the order of their first appearance.
+// Returns the series of this name; series are in the order of their first appearance.
 FigureSeries& series_of(std::vector<FigureSeries>& all, const std::string& label, std::size_t color) {
     for (FigureSeries& series : all)
         if (series.label == label) return series;
     return all.emplace_back(FigureSeries{.label = label, .color = color, .points = {}});
 }
 
-// y ~ x^slope, written behind the series' label in brackets.
+// Fits y ~ x^slope and writes the slope behind the series' label in brackets.
 void add_slopes(std::vector<FigureSeries>& all) {
     for (FigureSeries& series : all) {
         std::vector<double> x, y;
@@ -40,7 +40,7 @@ void add_slopes(std::vector<FigureSeries>& all) {
     }
 }
 
-// The label of an estimate in the plot; "" for records that are not in it.
+// Returns the label of an estimate in the plot, or "" for records that are not in it.
 std::string estimated_by(const Record& record) {
     const auto is = [&](const char* id, const char* setting, std::string_view value) {
         return record.case_id == id && (!setting || text_at(record.params, setting) == value);

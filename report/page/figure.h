@@ -15,7 +15,7 @@ struct FigurePoint {
     double x = 0, y = 0;
     Interval x_95 = {0, 0}, y_95 = {0, 0};  // no bar where both ends are the value
     std::string label = {};                 // written beside it
-    bool is_bound = false;                  // no event was seen: x is the bound of the rate, and it may be any less
+    bool is_bound = false;                  // no event was seen: x is the bound of the rate, which may be lower
 };
 
 struct FigureSeries {
@@ -27,18 +27,18 @@ struct FigureSeries {
 
 struct Figure {
     std::string id, title;
-    std::string sentence = {};  // what there is to see
+    std::string sentence = {};  // what the figure shows
     std::string x_label = {}, y_label = {};
     bool is_log_x = true, is_log_y = true;
     std::vector<std::string> rows = {};  // names of y = 0, 1, ..., from above: y has no scale then
-    std::optional<double> mark_x = {};   // a line at what all are compared with
+    std::optional<double> mark_x = {};   // a line at the value that all are compared with
     std::vector<FigureSeries> series = {};
 };
 
-// Of SwTlas 0, of the driver's ray queries 1, of its pipelines 2, of anything else 3.
+// Returns 0 for SwTlas, 1 for the driver's ray queries, 2 for its pipelines, 3 for anything else.
 std::size_t color_of(std::string_view backend);
 
-// The five that matter, in this order; one without a point is left out.
+// Returns the five figures that matter, in this order, without those that have no point.
 //   levels: error of t against the time of a trace, a point for each accelerator and level, and the front of those that
 //           no other beats in both
 //   leaks: rays lost at edges and vertices, with 95 % intervals
@@ -52,7 +52,7 @@ Figure paths_figure(std::span<const Record> records);
 Figure estimates_figure(std::span<const Record> records);
 Figure features_figure(std::span<const Record> records);
 
-// Of points, those that no other beats in both x and y, by ascending x.
+// Returns the points that no other beats in both x and y, by ascending x.
 std::vector<FigurePoint> front_of(std::vector<FigurePoint> points);
 
 }  // namespace twinray::report

@@ -12,7 +12,8 @@
 namespace twinray::report {
 namespace {
 
-// By mistake, in their order: what is counted, what one does who makes it, and the cases that ask.
+// A row for each mistake, in their order: what is counted, what an accelerator that makes it does, and the cases that
+// ask.
 struct MistakeRow {
     std::string_view name, of_driver;
     suite::Subject subject;
@@ -26,7 +27,7 @@ constexpr std::array<MistakeRow, all_mistakes.size()> mistakes = {{
 }};
 const MistakeRow& row_for(Mistake mistake) { return mistakes[static_cast<std::size_t>(mistake)]; }
 
-// Whether a class is this mistake: SwTlas and the driver have their own.
+// Returns whether a class is this mistake: SwTlas and the driver have their own classes.
 bool is_class_of(Mistake mistake, std::string_view kind) {
     switch (mistake) {
         case Mistake::leak: return kind == "SW_LEAK" || kind == "HW_LEAK";
@@ -38,7 +39,7 @@ bool is_class_of(Mistake mistake, std::string_view kind) {
     return false;
 }
 
-// Whether the record's rays were looked at for it. Level fast is its own negative control.
+// Returns whether the record's rays were checked for it. Level fast is its own negative control.
 bool can_show(Mistake mistake, const Record& record) {
     if (!record.was_run || !(is_users_kernel(record) || record.level == "fast")) return false;
     if (record.params.contains("counted")) return mistake == Mistake::counted_wrong;
@@ -56,14 +57,14 @@ double share(std::uint64_t count, std::uint64_t n) {
     return n ? static_cast<double>(count) / static_cast<double>(n) : 0.0;
 }
 
-// How many of these cases have rays among them.
+// Returns how many of these cases have rays among them.
 std::size_t cases_run_of(std::span<const std::string_view> ids, std::span<const RayKind> kinds) {
     return static_cast<std::size_t>(std::ranges::count_if(ids, [&](std::string_view id) {
         return std::ranges::any_of(kinds, [&](const RayKind& kind) { return kind.case_id == id; });
     }));
 }
 
-// Each kind of rays as a stratum, so that all of one case together weigh as much as another.
+// Makes each kind of rays a stratum, so that all kinds of one case together weigh as much as another case.
 std::vector<Stratum> strata_of(std::span<const RayKind> kinds) {
     std::map<std::string, std::size_t> kinds_of_case;
     for (const RayKind& kind : kinds) ++kinds_of_case[kind.case_id];
@@ -79,7 +80,7 @@ std::uint64_t faults_in(std::span<const RayKind> kinds) {
     return sum;
 }
 
-// The finding of the level with the most faults, of those that promise to make none.
+// Returns the finding of the level with the most faults, among the levels that promise to make none.
 Finding finding_of(std::span<const Record> records, std::string_view backend, Mistake mistake) {
     std::vector<std::string> levels;
     for (const Record& record : records)
@@ -98,7 +99,7 @@ Finding finding_of(std::span<const Record> records, std::string_view backend, Mi
     return worst;
 }
 
-// "W04 {aim vertex}, 4.6 % (4.2 to 5)": the interval holds for all kinds together.
+// Returns "W04 {aim vertex}, 4.6 % (4.2 to 5)": the interval holds for all kinds together.
 std::string worst_of(const Finding& finding) {
     const RayKind& worst =
         *std::ranges::max_element(finding.kinds, {}, [](const RayKind& kind) { return share(kind.faults, kind.n); });
@@ -107,14 +108,14 @@ std::string worst_of(const Finding& finding) {
            rate_text(share(worst.faults, worst.n), rate_interval(worst.faults, worst.n, miss));
 }
 
-// "N01 28 of 8,192, S02 ...": the three cases with the highest rates among the rays that show faults.
+// Returns "N01 28 of 8,192, S02 ...": the three cases with the highest rates among the rays that show faults.
 std::string text_of_elsewhere(std::span<const RayKind> kinds) {
     std::map<std::string, RayKind> by_case;
     for (const RayKind& kind : kinds) {
         RayKind& whole = by_case[kind.case_id];
         whole = {kind.case_id, "", whole.faults + kind.faults, whole.n + kind.n};
     }
-    std::vector<RayKind> cases;  // of all its settings
+    std::vector<RayKind> cases;  // one for all settings of a case
     for (auto& [id, whole] : by_case) cases.push_back(std::move(whole));
     std::ranges::stable_sort(cases, std::greater(), [](const RayKind& kind) { return share(kind.faults, kind.n); });
     std::vector<std::string> parts;

@@ -16,7 +16,7 @@
 namespace twinray::report {
 namespace {
 
-// Each at least 3 to 1 against white and against nearly black.
+// Each has a contrast of at least 3 to 1 with white and with nearly black.
 constexpr std::array colors = {"#2f81f7", "#d9730d", "#a35bd6", "#2a9d5c", "#808080", "#c94f7c", "#17909c", "#8f8420"};
 const char* color(std::size_t index) { return colors[std::min(index, colors.size() - 1)]; }
 
@@ -31,7 +31,7 @@ struct Axis {
     }
 };
 
-// The range of the points, with a margin; the margin is larger if labels follow points, and for the arrow of a bound.
+// Returns the range of the points, with a margin; it is larger if labels follow points, and for the arrow of a bound.
 Axis axis_of(const std::vector<double>& values, bool is_log, double room_after) {
     Axis axis{*std::min_element(values.begin(), values.end()), *std::max_element(values.begin(), values.end()), is_log,
               false};
@@ -96,7 +96,7 @@ std::vector<Label> labels_of(const Figure& figure, const Axes& axes) {
             add(point.label, figure.rows.empty() ? point.x : std::max(point.x, point.x_95.high), point.y, series.color);
         if (series.points.empty()) continue;
         const auto last = std::ranges::max_element(series.points, {}, &FigurePoint::x);
-        // Beside the plot, where no other line passes.
+        // The label is beside the plot, where no other line passes.
         add(series.label, labels_points(figure) ? last->x : axes.x.high, last->y, series.color);
     }
     std::vector<LabelPlace> places;
@@ -106,7 +106,7 @@ std::vector<Label> labels_of(const Figure& figure, const Axes& axes) {
     return labels;
 }
 
-// Used if powers of ten alone would leave an axis with one number or none.
+// Writes tics if powers of ten alone would leave an axis with one number or none.
 void write_tics(std::ostream& out, char axis, const Axis& range) {
     const std::vector<double> tics = log_tics(range.low, range.high);
     if (tics.empty()) return;
@@ -173,7 +173,7 @@ void write_data(std::ostream& out, const Figure& figure) {
     out << '\n';
 }
 
-// From <svg on, without fixed sizes, in the page's colour.
+// Returns the text from <svg on, without fixed sizes, in the page's colour.
 std::string element_of(std::string svg, const std::string& name) {
     svg.erase(0, svg.find("<svg"));
     const std::size_t end = svg.find('>');
@@ -185,7 +185,7 @@ std::string element_of(std::string svg, const std::string& name) {
     for (const std::string written : {"rgb(  1,   2,   3)", "rgb(1,2,3)", "#010203"})
         for (std::size_t at; (at = svg.find(written)) != std::string::npos;)
             svg.replace(at, written.size(), "currentColor");
-    // gnuplot's own colour of a group, which would be the current one.
+    // gnuplot's own colour of a group would become the current colour.
     for (const std::string black = " color=\"black\""; svg.find(black) != std::string::npos;)
         svg.erase(svg.find(black), black.size());
     return svg;

@@ -68,7 +68,8 @@ void write_verdict(std::ostream& out, const PageInput& input, const Verdict& ver
     out << "</ul>\n";
 }
 
-// The largest share of the processors that other programs took during a time that is disturbed; 0 where none is.
+// Returns the largest share of the processors that other programs took during a disturbed time, or 0 if none is
+// disturbed.
 double most_of_others(std::span<const Record> records) {
     double most = 0;
     for (const Record& record : records)
@@ -137,13 +138,13 @@ std::string title_of(const PageInput& input, const std::string& case_id) {
     return case_id;
 }
 
-// The time that an error takes; "-" where that was not measured.
+// Returns the time that an error takes, or "-" if it was not measured.
 std::string cost_text(const Record& record, const char* result) {
     const double ms = number_at(record.results, result);
     return ms > 0 ? number(ms, 2) : "-";
 }
 
-// A row for each estimator: the time that an error of 1 % and of 0.1 % takes.
+// Writes a row for each estimator: the time that an error of 1 % and of 0.1 % takes.
 void write_costs(std::ostream& out, const PageInput& input) {
     bool has_head = false;
     for (const Record& record : input.records) {
@@ -168,7 +169,7 @@ std::string error_text(const Record& record) {
     return text(number(record.error->p99, 2), " (", number(record.error->max, 2), ") ", record.error->metric);
 }
 
-// A refit's time stands beside that of a build.
+// Puts a refit's time beside that of a build.
 std::string time_text(const Record& record) {
     std::string time = text(number(record.time->median, 3), ' ', record.time->metric);
     if (const auto build = record.time->phases_ms.find("build");
@@ -177,7 +178,7 @@ std::string time_text(const Record& record) {
     return time;
 }
 
-// Queries that have no error but rounding: the error beside the time, for each amount of work.
+// Writes queries with no error but rounding: the error beside the time, for each amount of work.
 void write_exact(std::ostream& out, const PageInput& input) {
     bool has_head = false;
     for (const Record& record : input.records) {

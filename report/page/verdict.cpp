@@ -15,11 +15,11 @@
 namespace twinray::report {
 namespace {
 
-constexpr std::uint64_t fewest_rays = 2048;  // below, times are mostly those of a dispatch
+constexpr std::uint64_t fewest_rays = 2048;  // below it, times are mostly those of a dispatch
 
 std::string measurement_of(const Record& record) { return record.case_id + '|' + settings_text(record); }
 
-// The driver's way that most of its users take.
+// Returns the driver's way that most of its users take.
 std::string driver_backend(std::span<const Record> records) {
     for (const char* backend : {"hw", "hw-pipeline"})
         for (const Record& record : records)
@@ -116,7 +116,7 @@ std::size_t faults_of(std::span<const Record> records, std::string_view whose) {
     return static_cast<std::size_t>(std::ranges::count(records, whose, &Record::fault_of));
 }
 
-// The mistakes of the driver, as the headline lists them; "" for none.
+// Returns the mistakes of the driver, as the headline lists them; "" for none.
 std::string wrongs_of(std::span<const Record> records, std::span<const Finding> findings, std::string_view driver) {
     std::vector<std::string> wrongs;
     for (const Finding& finding : findings)

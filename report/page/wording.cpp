@@ -22,7 +22,7 @@ std::string escaped(std::string_view text) {
 }
 
 std::string number(double value, int digits) {
-    // 99.6 too, of which two digits would be 1e+02.
+    // This includes 99.6, which is 1e+02 in two digits.
     const bool is_long = std::abs(value) >= std::pow(10, digits) - 0.5 && std::abs(value) < 1e6;
     return is_long ? text(std::llround(value)) : text(std::setprecision(digits), value);
 }
@@ -53,7 +53,7 @@ std::string share_text(double share) {
 std::string rate_text(double rate, const Interval& rate_95) {
     const Unit unit = unit_of(rate);
     const auto written = [&](double share, int digits) { return number(unit.of_one * share, digits); };
-    int digits = 2;  // more where the ends would read alike
+    int digits = 2;  // more if the ends would read alike
     while (digits < 5 && written(rate_95.low, digits) == written(rate_95.high, digits)) ++digits;
     return written(rate, digits) + unit.name + " (" + written(rate_95.low, digits) + " to " +
            written(rate_95.high, digits) + ')';

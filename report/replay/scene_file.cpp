@@ -89,7 +89,7 @@ void write_chunk(std::ostream& out, const char* type, const char* bytes, std::si
 
 Scene scene_of(const ReferenceScene& reference) {
     Scene scene;
-    const Geometry64* last = nullptr;  // instances of one mesh stand together, as push() places them
+    const Geometry64* last = nullptr;  // instances of one mesh are adjacent, as push() places them
     for (uint i = 0; i < reference.instance_count(); ++i) {
         if (&reference.geometry(i) != last) scene.meshes.push_back(mesh_of(reference.geometry(i)));
         last = &reference.geometry(i);

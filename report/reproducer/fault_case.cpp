@@ -37,7 +37,7 @@ class MeshMaker {
     std::map<Bits, uint> numbers_;
 };
 
-// In float64, in world space.
+// Computes in float64, in world space.
 bool is_near(const CaseTriangle& triangle, const Transform& transform, const Ray& ray) {
     dvec3 lo(transform_point(transform, triangle.vertices[0])), hi = lo;
     for (const vec3& vertex : triangle.vertices) {

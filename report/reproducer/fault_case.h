@@ -19,31 +19,30 @@ struct CaseTriangle {
     bool operator==(const CaseTriangle&) const = default;
 };
 
-// Triangles are numbered within their instance in the order in which they stand here; instances without triangles have
-// no number.
+// Triangles are numbered within their instance in the order of this list; instances without triangles have no number.
 struct FaultCase {
     std::vector<Transform> transforms;
     std::vector<CaseTriangle> triangles;
     Ray ray{};
 };
 
-// Whether a case still shows the fault that it stands for.
+// Returns whether a case still shows its fault.
 using CaseTest = std::function<bool(const FaultCase&)>;
 
-// The scene's triangles, instance by instance; `reorders`: along a Morton curve, as HwTlas gives them to drivers that
-// build in the order of their input. Those with a vertex that is not finite are left out: HwTlas never gives such to
-// drivers.
+// Returns the scene's triangles, instance by instance. `reorders`: along a Morton curve, as HwTlas gives them to
+// drivers that build in the order of their input. Triangles with a vertex that is not finite are left out, because
+// HwTlas never gives them to drivers.
 FaultCase case_of(const Scene& scene, const Ray& ray, bool reorders);
 
-// The triangles whose boxes, grown by a quarter, the ray meets, whatever its t_min and t_max, and the one numbered
-// `also` of `instance`, if there is such a one.
+// Returns the triangles whose boxes, grown by a quarter, the ray meets, whatever its t_min and t_max, and the one
+// numbered `also` of `instance`, if it exists.
 FaultCase near_the_ray(const FaultCase& fault, std::size_t instance, std::size_t also);
 
-// The input of the driver: HwTlas builds each mesh in units of a power of two near its largest coordinate, which its
-// instances then have in their transforms. Those that have their largest coordinate in [1, 2) stay as they are.
+// Returns the input of the driver: HwTlas builds each mesh in units of a power of two near its largest coordinate,
+// which its instances then have in their transforms. Meshes with their largest coordinate in [1, 2) stay as they are.
 FaultCase as_built(const FaultCase& fault);
 
-// A mesh for each instance that has triangles; vertices with the same bits are one.
+// Makes a mesh for each instance that has triangles; vertices with the same bits are one.
 Scene scene_of(const FaultCase& fault);
 
 }  // namespace twinray::reproducer

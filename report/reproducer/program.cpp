@@ -17,7 +17,7 @@
 namespace twinray::reproducer {
 namespace {
 
-// A number in C.
+// Returns a number in C.
 std::string literal(double value, const char* suffix) {
     if (std::isinf(value)) return value > 0 ? "INFINITY" : "-INFINITY";
     if (value == std::nearbyint(value) && std::abs(value) < 1e6 && !(value == 0 && std::signbit(value)))
@@ -33,7 +33,7 @@ std::string quoted(std::string words) {
     return text(std::quoted(words));
 }
 
-// Also in decimal if it is not.
+// Writes a vertex; a comment has it in decimal if the code does not.
 void put_vertex(std::ostream& out, const vec3& p) {
     const std::string numbers = literals(p);
     out << "    {" << numbers << "},";

@@ -17,7 +17,8 @@ struct ProgramData {
     std::string found_on;  // device and driver
 };
 
-// The template reproducer.c with this data in place of its example. Floats are hexadecimal, so that nothing rounds.
+// Returns the template reproducer.c with this data in place of its example. Floats are hexadecimal, so that nothing
+// rounds.
 std::string program_text(const ProgramData& data);
 
 // The shaders of the program, as SPIR-V.

@@ -29,7 +29,7 @@ const char* summary(const Reproduction& found) {
     }
 }
 
-// The rule of the Vulkan specification, and how firm it is.
+// Returns the rule of the Vulkan specification, and how firm it is.
 const char* specification(const Reproduction& found) {
     if (is_leak_at_edges(found))
         return "Chapter *Ray Traversal*, section *Ray Intersection Candidate Determination*, *Watertightness*, for "
@@ -51,7 +51,8 @@ const char* specification(const Reproduction& found) {
            "operation in float32.";
 }
 
-// Whether two triangles of an instance list an edge in the same direction: that is no shared edge to Vulkan.
+// Returns whether two triangles of an instance list an edge in the same direction: to Vulkan, it is then no shared
+// edge.
 bool has_unequal_winding(const Scene& scene) {
     for (const Mesh& mesh : scene.meshes) {
         std::set<std::pair<uint, uint>> directed;
@@ -83,8 +84,7 @@ void put_triangles(std::ostream& out, const Scene& scene) {
     }
 }
 
-// The driver's own answers: nothing is refined, and triangles and instances are built in the order in which they are
-// given.
+// The driver's own answers: nothing is refined, and triangles and instances are built in the given order.
 class DriverTest {
   public:
     DriverTest(frame::Devices& devices, frame::Backend backend)
@@ -100,10 +100,10 @@ class DriverTest {
     HwTlas accel_;
 };
 
-// Whether the driver reorders this scene's triangles is known by an accelerator as users have it.
+// Asks an accelerator as users have it whether the driver reorders this scene's triangles.
 bool reorders(frame::Devices& devices, frame::Backend backend) { return HwTlas(devices.context(backend)).reorders(); }
 
-// Compares by the intervals that a program without twinray uses. The answer is a fault, so a miss is none.
+// Compares by the intervals that a program without twinray uses. The answer is a fault, so a miss is not allowed.
 bool is_allowed(const ReferenceScene& reference, const Ray& ray, const Hit& answer) {
     if (!answer.hit || answer.instance_index >= reference.instance_count()) return false;
     if (!reference.geometry(answer.instance_index).find(answer.primitive_index)) return false;

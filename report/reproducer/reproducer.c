@@ -3,9 +3,10 @@
 //
 //     cc -std=c99 reproducer.c -lvulkan -o reproducer && ./reproducer [DEVICE [query|pipeline]]
 //
-// DEVICE: its number among vkEnumeratePhysicalDevices; if not given the first that can trace. The ray is traced by a
-// ray query in a compute shader or by a ray tracing pipeline, as it was when the fault was found unless the second
-// argument says otherwise. Prints the answer and RIGHT (exit status 0) or WRONG (1); 2: it cannot run here.
+// DEVICE is its number among vkEnumeratePhysicalDevices; the default is the first that can trace. The ray is traced by
+// a ray query in a compute shader or by a ray tracing pipeline, as it was when the fault was found unless the second
+// argument says otherwise. Prints the answer and RIGHT (exit status 0) or WRONG (1), or exits with 2 if it cannot run
+// here.
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -13,13 +14,13 @@
 #include <string.h>
 #include <vulkan/vulkan.h>
 
-// Each instance is a bottom level of its own over some of the triangles. `rows` are its transform, object to world.
+// Each instance is its own bottom level over some of the triangles. `rows` are its transform, object to world.
 typedef struct {
     uint32_t first_triangle, triangle_count;
     VkTransformMatrixKHR transform;
 } Instance;
 
-// A hit of this triangle is right where t, u and v lie between these bounds, which allow for all rounding in float32.
+// A hit of this triangle is right if t, u and v lie between these bounds, which allow for all rounding in float32.
 typedef struct {
     uint32_t instance, triangle;
     double t[2], u[2], v[2];
@@ -41,7 +42,7 @@ static const uint32_t query_spirv[] = {0}, raygen_spirv[] = {0}, hit_spirv[] = {
 
 enum { instance_count = sizeof instances / sizeof *instances };
 
-// What the shaders write.
+// The output of the shaders.
 typedef struct {
     uint32_t is_hit, instance, triangle;
     float t, u, v;
@@ -159,7 +160,7 @@ typedef struct {
     void* mapped;
 } Buffer;
 
-// In memory that the host can write, its address a multiple of `alignment`, a power of two.
+// Makes a buffer in memory that the host can write; its address is a multiple of `alignment`, a power of two.
 static Buffer make_buffer(VkDeviceSize bytes, VkBufferUsageFlags usage, VkDeviceSize alignment) {
     Buffer buffer;
     VkBufferCreateInfo info = {.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
@@ -367,7 +368,7 @@ static Answer trace(int is_pipeline) {
     return *(const Answer*)answer.mapped;
 }
 
-// ---- What it is worth ----
+// ---- The verdict ----
 static int lies_in(const double bounds[2], double value) { return bounds[0] <= value && value <= bounds[1]; }
 
 static int is_right(const Answer* answer) {

@@ -13,7 +13,7 @@
 namespace twinray::reproducer {
 namespace {
 
-// The range in which u and v name points within point_error of the ray; all numbers if the ray sees the triangle
+// Sets the range in which u and v name points within point_error of the ray: all numbers if the ray sees the triangle
 // edge-on.
 void set_barycentrics(RightHit& right, const TriangleBound& bound) {
     const dvec2 a = bound.vertices[1] - bound.vertices[0], b = bound.vertices[2] - bound.vertices[0],
@@ -32,7 +32,7 @@ bool is_right(const ReferenceScene& reference, const Ray& ray, const Hit& hit) {
     return !is_fault_of_hardware(class_of(reference, ray, hit));
 }
 
-// Also as a short fraction if the number has one.
+// Returns the number in decimal, and as a short fraction if it has one.
 std::string words_of(const exact::Rational& value) {
     const std::string fraction = value.get_str(), decimal = text(std::setprecision(17), exact::rounded(value));
     constexpr std::size_t most_digits = 20;

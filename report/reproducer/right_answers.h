@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a driver may answer to a ray, as numbers that a program without twinray can compare with.
+// The answers that a driver may give to a ray, as numbers that a program without twinray can compare with.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,7 @@ struct Interval {
     bool holds(double value) const { return low <= value && value <= high; }  // no NaN
 };
 
-// A hit of this triangle is right where t, u and v lie within.
+// A hit of this triangle is right if t, u and v lie within these intervals.
 struct RightHit {
     uint instance, primitive;
     Interval t, u, v;
@@ -33,11 +33,11 @@ struct RightAnswers {
 // Judges an answer of the driver by the exact reference, if float64 cannot decide.
 HitClass class_of(const ReferenceScene& reference, const Ray& ray, const Hit& hit);
 
-// All that class_of() finds no fault of hardware in: the exact answer to some ray within float32 rounding of this one.
-// u and v may be off by as much as the point that they name may, in the worst direction.
+// Returns all answers in which class_of() finds no fault of hardware: the exact answer to some ray within float32
+// rounding of this one. u and v may be off by as much as the point that they name, in the worst direction.
 RightAnswers right_answers(const ReferenceScene& reference, const Ray& ray);
 
-// Of one triangle, which is active, the part of that; nothing where no hit of it is right.
+// Returns the part of one triangle, which is active; nothing if no hit of it is right.
 std::optional<RightHit> right_hit(const ReferenceScene& reference, const Ray& ray, uint instance, uint primitive);
 
 }  // namespace twinray::reproducer

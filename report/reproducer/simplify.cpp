@@ -16,7 +16,7 @@
 namespace twinray::reproducer {
 namespace {
 
-// The first index of part `part` of `parts` nearly equal ones.
+// Returns the first index of part `part` of `parts` nearly equal ones.
 std::ptrdiff_t begin_of(std::size_t part, std::size_t parts, std::size_t count) {
     return static_cast<std::ptrdiff_t>(part * count / parts);
 }
@@ -33,7 +33,7 @@ Indices without(const Indices& all, std::size_t part, std::size_t parts) {
 
 constexpr int significant_bits = std::numeric_limits<float>::digits;
 
-// The nearest number of so many significant bits.
+// Returns the nearest number with this many significant bits.
 float rounded_to(float value, int bits) {
     int exponent = 0;
     const float fraction = std::frexp(value, &exponent);
@@ -46,7 +46,7 @@ int bits_of(float value) {
     return significant_bits;
 }
 
-// Takes the change where the fault stays.
+// Takes the change if the fault stays.
 bool accept(FaultCase& fault, FaultCase changed, const CaseTest& shows_fault) {
     if (!shows_fault(changed)) return false;
     fault = std::move(changed);
@@ -70,7 +70,7 @@ bool is_point_or_line(const CaseTriangle& t) {
     return t.vertices[0] == t.vertices[1] || t.vertices[1] == t.vertices[2] || t.vertices[2] == t.vertices[0];
 }
 
-// The ends of an edge, of each instance, both ways.
+// The ends of an edge of an instance; the list has each edge in both directions.
 struct Edge {
     std::size_t instance;
     vec3 from, to;
@@ -85,11 +85,11 @@ std::vector<Edge> edges_of(const FaultCase& fault) {
     return edges;
 }
 
-// A vertex as a key, of an instance.
+// A vertex of an instance, as a key.
 using Vertex = std::pair<std::size_t, std::array<float, 3>>;
 Vertex key_of(std::size_t instance, const vec3& p) { return {instance, {p.x, p.y, p.z}}; }
 
-// Each edge's first end moved to its second; triangles that become lines are gone.
+// Moves each edge's first end to its second; triangles that become lines are removed.
 FaultCase with_joined(const FaultCase& fault, std::span<const Edge> edges) {
     std::map<Vertex, vec3> moves;
     for (const Edge& edge : edges) moves.try_emplace(key_of(edge.instance, edge.from), edge.to);
@@ -102,7 +102,7 @@ FaultCase with_joined(const FaultCase& fault, std::span<const Edge> edges) {
     return joined;
 }
 
-// Edges that share no vertex, as many as are found at once.
+// Returns edges that share no vertex, as many as one pass finds.
 std::vector<Edge> separate_edges(const FaultCase& fault) {
     std::vector<Edge> separate;
     std::set<Vertex> used;
@@ -115,10 +115,10 @@ std::vector<Edge> separate_edges(const FaultCase& fault) {
     return separate;
 }
 
-// From so many triangles on, which may all close around one vertex, leaving out or joining one by one takes long.
+// For this many triangles or more, which may all close around one vertex, removing or joining one by one takes long.
 constexpr std::size_t many = 24;
 
-// Many edges at once: all of them, half of them, a quarter.
+// Joins many edges at once: all of them, half of them, a quarter.
 bool join_many(FaultCase& fault, const CaseTest& shows_fault) {
     const std::vector<Edge> edges = separate_edges(fault);
     for (const std::size_t parts : {1u, 2u, 4u})
@@ -131,7 +131,7 @@ bool join_many(FaultCase& fault, const CaseTest& shows_fault) {
     return false;
 }
 
-// Coordinates that are equal in one axis, of one instance, and so stay equal.
+// Coordinates of one instance that are equal in one axis, and so stay equal.
 struct Coordinate {
     std::size_t instance;
     int axis;
@@ -155,7 +155,7 @@ FaultCase with_coordinate(const FaultCase& fault, const Coordinate& coordinate, 
     return changed;
 }
 
-// Everything moved so that `center` is the origin; float32 rounds.
+// Moves everything so that `center` is the origin; float32 rounds.
 FaultCase moved(const FaultCase& fault, const vec3& center) {
     FaultCase changed = fault;
     for (CaseTriangle& triangle : changed.triangles)
@@ -164,7 +164,7 @@ FaultCase moved(const FaultCase& fault, const vec3& center) {
     return changed;
 }
 
-// Everything, ray and all, in units of a power of two near the largest coordinate: as_built() leaves it then.
+// Converts everything, also the ray, to units of a power of two near the largest coordinate: as_built() then leaves it.
 FaultCase in_units_of_largest(const FaultCase& fault) {
     std::vector<vec3> vertices;
     for (const CaseTriangle& triangle : fault.triangles)
@@ -189,7 +189,7 @@ int total_length(const FaultCase& fault) {
     return length;
 }
 
-// Those without a transform become one.
+// Joins instances without a transform into one.
 bool join_instances(FaultCase& fault, const CaseTest& shows_fault) {
     const auto stands_in_world = [&](const CaseTriangle& t) { return fault.transforms[t.instance] == Transform{}; };
     const auto first = std::ranges::find_if(fault.triangles, stands_in_world);
@@ -230,7 +230,7 @@ bool shorten_ray(FaultCase& fault, const CaseTest& shows_fault) {
     return has_changed;
 }
 
-// One vertex at the origin, where that makes the numbers shorter.
+// Moves one vertex to the origin if that makes the numbers shorter.
 bool move_to_origin(FaultCase& fault, const CaseTest& shows_fault) {
     for (const CaseTriangle& triangle : fault.triangles)
         if (fault.transforms[triangle.instance] != Transform{}) return false;
@@ -250,7 +250,7 @@ Indices ddmin(std::size_t count, const ShowsFault& shows_fault) {
     Indices kept(count);
     std::iota(kept.begin(), kept.end(), std::size_t{0});
     std::size_t parts = 2;
-    // One part of `parts`, or all but one; halves are each other's rest.
+    // Tries one part of `parts`, or all but one; halves are each other's rest.
     const auto reduced = [&](const auto& choose, std::size_t next_parts) {
         for (std::size_t part = 0; part < parts; ++part)
             if (Indices fewer = choose(kept, part, parts); shows_fault(fewer)) {
@@ -349,7 +349,7 @@ FaultCase simplified(FaultCase fault, const CaseTest& shows_fault) {
     leave_out_instances(fault, shows_fault);
     while (fault.triangles.size() > many && join_many(fault, shows_fault)) {}
     leave_out_triangles(fault, shows_fault);
-    // Each may open the way for the others.
+    // Each step may open the way for the others.
     constexpr int most_rounds = 8;
     for (int round = 0; round < most_rounds; ++round) {
         bool has_changed = bake_transforms(fault, shows_fault);

@@ -30,7 +30,7 @@ frame::Backend backend_of(const replay::Replay& replay) {
     fail("a fault of '", replay.backend, "' is not a fault of the driver; reproducers only show faults of drivers");
 }
 
-// Of the reduced fault, on the device of now.
+// Returns the replay of the reduced fault on the current device.
 replay::Replay replay_of(const Reproduction& found, const replay::Replay& original, const DeviceProperties& device) {
     const ReferenceScene reference = ReferenceScene::of(found.scene);
     replay::Replay replay = original;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// All hits of rays through layers, whose number and places are known.
+// All hits of rays through layers of known number and places.
 #include <twinray/queries.h>
 
 #include <algorithm>
@@ -12,14 +12,14 @@
 namespace twinray::suite {
 namespace {
 
-// Triangles over [0, 1]^2 at these heights, from below upwards.
+// Makes triangles over [0, 1]^2 at these heights, from below upwards.
 Mesh layers(std::span<const float> heights) {
     Mesh mesh;
     for (const float z : heights) add_triangle(mesh, vec3(-1, -1, z), vec3(3, -1, z), vec3(-1, 3, z));
     return mesh;
 }
 
-// Upwards, slightly aslant, so that none passes an edge.
+// Makes rays upwards, slightly aslant, so that none passes an edge.
 std::vector<Ray> upward_rays(std::size_t count) {
     std::vector<Ray> rays;
     for (std::size_t i = 0; i < count; ++i) {
@@ -35,7 +35,7 @@ std::vector<Configuration> configurations_of(CaseRun& run) {
     return chosen;
 }
 
-// How many rays do not meet triangle i as their hit i.
+// Returns how many rays do not meet triangle i as their hit i.
 std::uint64_t wrong_rays(const HitsOfRays& found, std::size_t rays, std::size_t layer_count) {
     std::uint64_t wrong = 0;
     for (std::size_t ray = 0; ray < rays; ++ray) {

@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t batch_size = 1 << 20;
 
-// The answers of a configuration and of the CPU reference, batch by batch.
+// Compares the answers of a configuration with those of the CPU reference, batch by batch.
 Difference compared(CaseRun& run, const Configuration& configuration, const Scene& scene, std::span<const Ray> rays,
                     const std::optional<Control>& control = {}) {
     const World world = world_of(scene);
@@ -36,7 +36,7 @@ Difference compared(CaseRun& run, const Configuration& configuration, const Scen
     return sum;
 }
 
-// SwTlas's configurations whose arithmetic is `precise` throughout.
+// Returns SwTlas's configurations with `precise` arithmetic throughout.
 std::vector<Configuration> precise_configurations(CaseRun& run) {
     std::vector<Configuration> chosen;
     for (const Configuration& configuration : run.configurations())
@@ -44,7 +44,7 @@ std::vector<Configuration> precise_configurations(CaseRun& run) {
     return chosen;
 }
 
-// Contraction does harm here: edges of cells far from the origin.
+// Makes edges of cells far from the origin, where contraction does harm.
 Mesh far_grid() { return moved(scaled(make_grid(32, 32), 32), vec3(1e7f, 0, 1e7f)); }
 
 // `excuse`: why nothing is demanded; "" = it is.
@@ -70,7 +70,7 @@ void record_contraction(CaseRun& run, const Configuration& configuration, const 
                    control ? "without `precise` the driver may contract" : why_bits_may_differ(run, configuration));
 }
 
-// Instances under rotations and uneven scales, so that the inverse and the transformed ray are also used.
+// Returns rotations and uneven scales of instances, so that the inverse and the transformed ray are also used.
 std::vector<Transform> uneven_transforms() {
     return {Transform{},
             Transform{{vec4(0.3f, 0.8f, 0.1f, 2), vec4(-0.7f, 0.2f, 0.4f, 0.5f), vec4(0.1f, -0.3f, 1.7f, 1)}},
@@ -89,7 +89,7 @@ std::vector<NamedScene> scenes_for_both() {
             {"instances", instances_of(make_soup(500, 6, 0.3f), uneven_transforms())}};
 }
 
-// Each coordinate of origins and directions is a denormal, half of the time; the rest is as it was.
+// Makes each coordinate of origins and directions a denormal, half of the time; the rest is as it was.
 std::vector<Ray> with_denormals(std::vector<Ray> rays, std::uint64_t seed) {
     std::mt19937 random(static_cast<std::uint32_t>(seed));
     const auto denormal = [&] {

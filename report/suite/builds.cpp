@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Structure: what trees are built of, and that rays find everything in them. Refits are in builds_refit.cpp.
+// Structure: meshes from which trees are built, and rays that must find everything in them. Refits are in
+// builds_refit.cpp.
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -20,7 +21,7 @@
 namespace twinray::suite {
 namespace {
 
-// As the traversal's stack is made for: 60 bits of Morton codes, then the position among equal codes.
+// Returns the depth that the traversal's stack allows: 60 bits of Morton codes, then the position among equal codes.
 uint depth_limit(std::size_t leaves) { return 60 + static_cast<uint>(std::bit_width(leaves)); }
 
 TreeCheck check_tree(const BuiltTree& tree, const Mesh& mesh) {
@@ -37,7 +38,7 @@ void measure_and_check(CaseRun& run, const Mesh& mesh, std::span<const Ray> rays
     expect_sound_tree(run, mesh, params);
 }
 
-// Triangles of different sizes around one centroid, and copies of one triangle.
+// Builds triangles of different sizes around one centroid, and copies of one triangle.
 void equal_centroids(CaseRun& run) {
     const std::size_t count = run.amount(500, 100'000);
     const std::size_t rays = run.amount(1'024, 16'384);
@@ -51,7 +52,7 @@ void equal_centroids(CaseRun& run) {
     measure_and_check(run, copies, random_rays(bounds_of(copies), rays, run.seed()), {{"triangles", "copies"}});
 }
 
-// Triangle k has size and position 2^k: each is alone in its half of what remains. One ray at each, from above.
+// Triangle k has size and position 2^k: each is alone in its half of the rest. One ray aims at each, from above.
 void geometric_series(CaseRun& run) {
     Mesh chain;
     std::vector<Ray> rays;
@@ -77,7 +78,7 @@ void lines_and_planes(CaseRun& run) {
                       {{"centroids", "in a plane"}});
 }
 
-// All of them in one cell of the Morton grid of what surrounds them and a triangle far away.
+// Puts all triangles but one far away into one cell of the Morton grid.
 void morton_cluster(CaseRun& run) {
     const auto count = static_cast<uint>(run.amount(5'000, 1'000'000));
     Mesh cluster = make_soup(count, 9, 0.01f);
@@ -88,7 +89,7 @@ void morton_cluster(CaseRun& run) {
     measure_and_check(run, cluster, rays, {{"outlier", "at 1e6"}});
 }
 
-// Vertices at +-1e18 and at the end of float32.
+// Uses vertices at +-1e18 and at the end of float32.
 void huge_extents(CaseRun& run) {
     for (const float extent : {1e18f, 3e38f}) {
         Mesh mesh;
@@ -131,7 +132,7 @@ bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
     return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
 }
 
-// Ours: the nodes. The driver's are hidden: the hits.
+// Compares nodes and hits of our builds, and only hits of the driver's, because its nodes are hidden.
 void repeated_builds(CaseRun& run) {
     constexpr std::size_t builds = 10;
     const Mesh mesh = make_soup(static_cast<uint>(run.amount(5'000, 500'000)), 21);
@@ -166,7 +167,7 @@ void sound_trees(CaseRun& run) {
     expect_sound_tree(run, make_grid(100, 100, 0.2f, 3), {{"mesh", "height field"}});
 }
 
-// Meshes whose boxes are far from the origin for their size, flat, or of very different sizes in one node.
+// Uses meshes with boxes that are far from the origin for their size, flat, or of very different sizes in one node.
 void quantised_nodes(CaseRun& run) {
     std::vector<std::pair<std::string, Mesh>> meshes = {{"height field", make_grid(60, 60, 0.2f, 3)}};
     for (const int exponent : {0, 8, 16, 22}) {
@@ -194,7 +195,7 @@ void quantised_nodes(CaseRun& run) {
     }
 }
 
-// Each of these sizes has another shape of tree.
+// Each of these sizes gives another shape of tree.
 void small_sizes(CaseRun& run) {
     std::map<std::pair<Backend, Level>, CheckResult> sums;
     std::vector<Configuration> configurations = run.configurations();

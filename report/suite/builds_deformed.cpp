@@ -13,10 +13,10 @@
 namespace twinray::suite {
 namespace {
 
-// Errors count in 2^-24 of the mesh's size. A vertex is a dozen sums of numbers up to four times as large.
+// Errors are in 2^-24 of the mesh's size. A vertex is a dozen sums of numbers up to four times as large.
 constexpr double most_error = 32;
 
-// Joints of a sphere: one turns, one flattens it, one is nowhere and has no weight.
+// Returns joints of a sphere: one turns, one flattens it, one is at infinity and has no weight.
 std::vector<Rig::Node> joints(float size, Random& random) {
     std::vector<Rig::Node> nodes(3);
     const auto part = [&] { return double{random.between(-0.5f, 0.5f)}; };
@@ -27,7 +27,8 @@ std::vector<Rig::Node> joints(float size, Random& random) {
     return nodes;
 }
 
-// Half of the first target's displacements, and none of the second's, which are no numbers.
+// Returns displacements of two targets. The second ones are NaN; the pose takes half of the first and none of the
+// second.
 VertexMotion motion(std::size_t vertices, float size, Random& random) {
     VertexMotion motion;
     motion.targets.resize(2);
@@ -56,7 +57,7 @@ std::shared_ptr<const Rig> rig_of(const Mesh& mesh, float size, std::uint64_t se
     return rig;
 }
 
-// Poses the mesh and moves the accelerator's to it. Its buffers are kept in `deformers`.
+// Poses the mesh and moves the accelerator's to it. Keeps its buffers in `deformers`.
 const Buffer& pose(AbstractAccel& accel, AccelHandle handle, const std::shared_ptr<const Rig>& rig,
                    std::vector<std::unique_ptr<Deformer>>& deformers) {
     Context& context = accel.context();

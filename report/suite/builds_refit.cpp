@@ -113,7 +113,7 @@ void refit_many_times(CaseRun& run) {
                         {{"moved", "vertices"}, {"triangles", mesh.triangles.size()}});
         }
         expect_same(run, configuration, refit_instances(run, configuration, steps, rays), {{"moved", "instances"}});
-        run.devices().drop_accels();  // whose rebuild ratio was changed
+        run.devices().drop_accels();  // their rebuild ratio was changed
     }
 }
 

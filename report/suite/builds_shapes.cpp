@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Kernels as they are shaped for GPUs and for CPU drivers (engine/core/kernel_tuning.h), both on this device.
+// Kernels in their shapes for GPUs and for CPU drivers (engine/core/kernel_tuning.h), both on this device.
 #include <algorithm>
 #include <cstring>
 
@@ -20,7 +20,7 @@ std::vector<Hit> hits_of(AbstractAccel& accel, const World& world, std::span<con
     return query == Query::any ? accel.any_hits(rays, desc) : accel.closest_hits(rays, desc);
 }
 
-// The row of the suite's own context is one; this is the other.
+// Returns a context with the row that the suite's own context does not use.
 ContextDesc of_other_shape(Devices& devices) {
     ContextDesc desc = devices.desc(Backend::software);
     const bool is_for_gpu = devices.context(Backend::software).state().tuning().row == TuningRow::gpu;
@@ -28,7 +28,7 @@ ContextDesc of_other_shape(Devices& devices) {
     return desc;
 }
 
-// Triangles that share edges; some that overlap, for which the stack has to be long; mirrored and flat instances.
+// Makes triangles that share edges, some that overlap and need a long stack, and mirrored and flat instances.
 std::vector<std::pair<std::string, World>> shaped_worlds(CaseRun& run) {
     Scene many;
     many.meshes = {make_icosphere(2), make_soup(400, 3, 0.3f)};
@@ -48,7 +48,7 @@ void expect_same_bits(CaseRun& run, Context& other_context, const Configuration&
     AbstractAccel& own = devices.empty_accel(configuration, layout);
     const auto other = Devices::make_accel(other_context, Backend::software, devices.options(configuration, layout));
     for (const auto& [name, world] : shaped_worlds(run)) {
-        // More than a group has, so that invocations have several where a shape gives them more than one.
+        // These are more than a group has, so that invocations have several if a shape gives them more than one.
         const std::vector<Ray> rays = random_rays({vec3(-2), vec3(2)}, run.amount(8'192, 1'000'000), run.seed());
         CaseRun::Outcome outcome{
             .params = {{"scene", name}, {"layout", std::string(name_of(layout))}}, .n = 0, .reference = "invariance"};

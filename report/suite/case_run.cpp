@@ -13,14 +13,14 @@ namespace {
 
 constexpr std::size_t least_reps = 3, full_reps = 15;
 
-// A record of what must show faults.
+// Makes it the record of something that must show faults.
 void set_control(Record& record, const std::string& what) {
     record.variant = "control: " + what;
     record.criterion = record.variant + " must show faults, which proves that the case sees them";
     decide_control(record);
 }
 
-// Sets pass and whose fault it is where it is false.
+// Sets pass and, if it is false, whose fault it is.
 void decide(Record& record, const Configuration& configuration, const Measurement& measurement) {
     if (const auto& control = measurement.control) {
         record.variant = control->code.name;
@@ -39,7 +39,7 @@ void decide(Record& record, const Configuration& configuration, const Measuremen
     frame::decide(record, is_ours(configuration.backend) ? "twinray" : "driver");
 }
 
-// How the trees differ from the default ones.
+// Returns how the trees differ from the default ones.
 std::string variant_of(const AccelOptions& trees) {
     const AccelOptions usual;
     std::vector<std::string> parts;
@@ -68,7 +68,7 @@ Record CaseRun::record(const Configuration& configuration) const {
 
 void CaseRun::add(Record record) {
     if (record.time) {
-        constexpr double least_seconds = 0.5;  // under which the system's clock ticks are too few
+        constexpr double least_seconds = 0.5;  // below it, the system's clock has too few ticks
         const MachineLoad& load = load_.seconds() > least_seconds ? load_ : recorder_.load();
         record.time->others = load.of_others().value_or(0);
     }

@@ -16,14 +16,14 @@ struct Measurement {
     // Elsewhere fast promises nothing at edges and is only measured.
     bool fast_is_control = false;
     std::size_t reps = 0;  // timed repetitions; 0: as many as the suite takes
-    // Instead of all configurations, SwTlas's kernel compiled as this says, at watertight.
+    // If set, SwTlas's kernel compiled as this says, at watertight, runs instead of all configurations.
     std::optional<Control> control = {};
 };
 
 // The checked data, for demands of a case beyond the classes of its answers.
 struct Measured {
-    std::vector<Traced> traces;            // one of each configuration
-    std::vector<ReferenceHit> references;  // one of each ray
+    std::vector<Traced> traces;            // one per configuration
+    std::vector<ReferenceHit> references;  // one per ray
 };
 
 // A case while it runs: what it may use, and where its results go.
@@ -32,36 +32,40 @@ class CaseRun {
     CaseRun(const SuiteCase& row, const Settings& settings, Devices& devices, Recorder& recorder)
         : row_(row), settings_(settings), devices_(devices), recorder_(recorder) {}
 
-    // How many rays, cells, ... at this effort: in between by equal ratios; of 0 and 1, whether all is to be done.
+    // Returns how many rays, cells, ... to use at this effort, in equal ratios from least to full. For 0 and 1: whether
+    // to do everything.
     std::size_t amount(std::size_t least, std::size_t full);
-    // Of the full suite, for what takes so much that no step towards it, with seconds that are left, shall bring it.
+    // Returns true only in the full suite. It is for work so large that no step of effort in the seconds that are left
+    // may start it.
     bool is_whole() const { return settings_.is_whole; }
     bool depends_on_effort() const { return depends_on_effort_; }  // so far
     std::uint64_t seed() const { return settings_.seed; }
     Devices& devices() { return devices_; }
-    // Those that can answer here; the others are recorded as not run, once a case. Hardware has one test of its own,
-    // which is not asked again for Level::fast.
+    // Returns the configurations that can answer here; the others are recorded as not run, once per case. Hardware has
+    // one test of its own, which is not repeated for Level::fast.
     std::vector<Configuration> configurations();
-    // The first level of each backend, watertight or above: for what does not depend on the level.
+    // Returns the first level of each backend, watertight or above, for results that do not depend on the level.
     std::vector<Configuration> one_configuration_each();
 
-    // Traces the closest hits on all configurations, checks them by the reference and records what came out. Ours pass
+    // Traces the closest hits on all configurations, checks them by the reference and records the results. Ours pass
     // with 0 SW_LEAK, SW_FALSE, T_ERR and 0 hits of invalid rays; a fault of hardware is the driver's.
     Measured measure(const World& world, std::span<const Ray> rays, const Measurement& measurement = {});
 
-    // Counts how often each ray crosses `world`, all of whose instances are non-opaque, on the configurations that can
-    // (see CrossingCounter: not the pipeline), and records the counts that are not `right`: those of ours are faults,
-    // of hardware the driver's. Record::counts has them by number: CROSSED_0, CROSSED_2, ..., CROSSED_OFTEN from 8 on.
+    // Counts how often each ray crosses `world`, in which all instances are non-opaque, on the configurations that can
+    // (see CrossingCounter: not the pipeline). Records the counts that are not `right`: ours are faults of twinray,
+    // those of hardware are the driver's. Record::counts has them by number: CROSSED_0, CROSSED_2, ..., CROSSED_OFTEN
+    // from 8 on.
     using RightCount = std::function<bool(const Ray&, uint)>;
     void count_crossings(const World& world, std::span<const Ray> rays, const RightCount& right,
                          const Measurement& measurement = {});
     std::vector<Configuration> crossing_configurations();
 
-    // The same as measure for answers that a case has traced and checked itself, as the sum of many small scenes.
+    // Does the same as measure for answers that a case has traced and checked itself, such as the sum of many small
+    // scenes.
     void add_checked(const Configuration& configuration, const CheckResult& checked,
                      const Measurement& measurement = {});
 
-    // For what no reference checks: `faults` of `n` things were not as specified. `what` says which, and is recorded if
+    // A result without a reference: `faults` of `n` things were not as specified. `what` says which, and is recorded if
     // there are any. fault_of: see Record; "" = by the backend. only_measured: why nothing is demanded; "" = it is.
     struct Outcome {
         Values params = {};
@@ -77,28 +81,28 @@ class CaseRun {
     };
     void expect(const Configuration& configuration, const Outcome& outcome);
 
-    // A record of this case, to be filled further and added.
+    // Returns a record of this case, to be filled further and added.
     Record record(const Configuration& configuration) const;
     void add(Record record);
-    // The same of what is computed from an accelerator's answers: a failure is a fault of twinray, or the driver's
-    // where SwTlas passed with the same settings.
+    // Adds the same for results computed from an accelerator's answers: a failure is a fault of twinray, or the
+    // driver's if SwTlas passed with the same settings.
     void add_computed(Record record);
-    // Includes the cases before this one.
+    // Returns all records so far, including those of the cases before this one.
     std::span<const Record> earlier() const { return recorder_.records(); }
     void add_not_run(const std::string& reason, const Configuration* configuration = nullptr);
     void add_failure(const std::string& what);  // an exception: a fault of twinray
 
   private:
     Record blank() const { return record_of(row_, settings_.seed); }
-    // A record of answers that the reference has checked, not decided yet.
+    // Returns a record of answers that the reference has checked, not decided yet.
     Record checked_record(const Configuration& configuration, const CheckResult& checked,
                           const Measurement& measurement) const;
-    // Writes the ray of checked.first_fault, if there is one, and returns the file as Record::replay wants it.
+    // Writes the ray of checked.first_fault, if there is one, and returns the file as Record::replay expects it.
     std::string write_replay(const World& world, std::span<const Ray> rays, const Traced& traced,
                              const CheckResult& checked) const;
     std::vector<Configuration> control_configuration();  // SwTlas at watertight if it was asked for
 
-    // Throws Error where the table of claims does not say that the case asks this.
+    // Throws Error if the table of claims does not say that the case asks this.
     void check_claim(Subject subject) const;
 
     const SuiteCase& row_;

@@ -23,8 +23,9 @@ bool is_fault(HitClass kind) {
 
 using Vector = Vec<3, long double>;
 
-// t of the triangle's plane, from its vertices in world space. The reference's t is a mean of the vertices' depths,
-// which loses 3 units in the last place of float32 where these are 1e10 times as far as the hit; here it keeps 2^-64.
+// Returns t of the triangle's plane, from its vertices in world space. The reference's t is a mean of the vertices'
+// depths, which loses 3 units in the last place of float32 if these are 1e10 times as far as the hit; this one keeps
+// 2^-64.
 std::optional<double> t_of_plane(const ReferenceScene& reference, const Ray& ray, const ReferenceHit& hit) {
     const Placement64& placement = reference.placement(hit.instance);
     std::array<Vector, 3> vertices;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// From answers to the figures of a record; nothing here runs on a device.
+// The figures of a record, computed from answers; nothing here runs on a device.
 #pragma once
 
 #include "report/suite/suite.h"
@@ -7,18 +7,18 @@
 
 namespace twinray::suite {
 
-// The reference's answers to all rays, on all cores, with t of the triangle's plane in long double.
+// Returns the reference's answers to all rays, on all cores, with t of the triangle's plane in long double.
 std::vector<ReferenceHit> references_of(const ReferenceScene& reference, std::span<const Ray> rays);
 
-// |t - reference| in units of the reference's last place in float32; nothing unless the hit names the reference's
-// primitive.
+// Returns |t - reference| in units of the reference's last place in float32, or nothing unless the hit names the
+// reference's primitive.
 std::optional<double> t_ulps(const ReferenceHit& reference, const Hit& hit);
 
-// Takes at least one error; none is negative. The usual floor is half a unit in the last place of float32, in which
-// view factors are kept.
+// Takes at least one error; all must be 0 or more. The usual floor is half a unit in the last place of float32, in
+// which view factors are kept.
 ErrorFigures error_figures(const std::string& metric, std::vector<double> errors, double floor = 0x1p-25);
 
-// The figures of t_ulps; nothing where there is none. The floor is the half unit of rounding t itself.
+// Returns the figures of t_ulps, or nothing without any. The floor is the half unit of rounding t itself.
 std::optional<ErrorFigures> t_error(std::span<const ReferenceHit> references, std::span<const Hit> hits);
 
 // The quality of one accelerator's answers.
@@ -28,12 +28,12 @@ struct CheckResult {
     std::string example;                          // see Record::example
     std::optional<std::size_t> first_fault = {};  // its ray
 
-    CheckResult& operator+=(const CheckResult& other);  // which has rays of its own
+    CheckResult& operator+=(const CheckResult& other);  // the other has its own rays
 };
 CheckResult check(const ReferenceScene& reference, std::span<const Ray> rays, std::span<const Hit> hits,
                   Backend backend);
 
-// Writes them to `record`: counts, faults, bound and example.
+// Writes counts, faults, bound and example to `record`.
 void set_check_result(Record& record, const CheckResult& checked);
 
 }  // namespace twinray::suite

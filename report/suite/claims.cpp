@@ -7,7 +7,7 @@
 namespace twinray::suite {
 namespace {
 
-constexpr std::size_t aimed = 13;  // of the cases about any rays, the first
+constexpr std::size_t aimed = 13;  // the first ones of the cases about any rays
 constexpr std::array<std::string_view, 64> any = {
     "W01", "W02", "W03", "W04", "W05", "W06", "W07", "W08", "W09", "W10", "W11", "W16", "W17", "S02", "S03", "S04",
     "S05", "S06", "S07", "S08", "S09", "S10", "S11", "S12", "T01", "T02", "T03", "T06", "T07", "T08", "T09", "T10",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Triangles and instances that touch: classes that are known, or that arithmetic without error gives.
+// Triangles and instances that touch: their classes are known, or computed by exact arithmetic.
 #include <twinray/queries.h>
 
 #include <algorithm>
@@ -42,7 +42,7 @@ void coplanar(CaseRun& run) {
                       {base, {dvec3(3, 3, 0), dvec3(4, 3, 0), dvec3(3, 4, 0)}, separate}});
 }
 
-// A vertex above, on or below a face by so much.
+// Adds a pair with a vertex above, on or below a face by this gap.
 void add_gap(std::vector<KnownPair>& pairs, double level, double gap) {
     const WorldTriangle pointed = {dvec3(1, 1, level + gap), dvec3(1, 1.5, level + 1), dvec3(2, 1, level + 1)};
     pairs.push_back({moved_by(base, dvec3(0, 0, level)), pointed,
@@ -67,7 +67,7 @@ void colliding_gaps(CaseRun& run) {
     ask_classes(run, pairs);
 }
 
-// Triangles that cross at an angle of 10^-8, also as needles of that width, and the same a little apart.
+// Tests triangles that cross at an angle of 10^-8, also as needles of that width, and the same a little apart.
 void colliding_slivers(CaseRun& run) {
     std::vector<KnownPair> pairs;
     for (const double width : {1.0, 1e-4, 1e-8}) {
@@ -81,7 +81,7 @@ void colliding_slivers(CaseRun& run) {
     ask_classes(run, pairs);
 }
 
-// Turned, what was in one plane or on one line is so but for rounding.
+// After the turn, points that were in one plane or on one line are so but for rounding.
 void lattice(CaseRun& run) {
     std::vector<TrianglePair> pairs = lattice_pairs(run.amount(20'000, 1'000'000), run.seed());
     for (const std::size_t part : {64u, 16u, 4u, 1u})
@@ -105,7 +105,7 @@ void orders(CaseRun& run) {
     ask_classes(run, pairs, "exact");
 }
 
-// A mesh in which every triangle is a segment or a point.
+// Tests pairs with triangles that are segments or points.
 void degenerate(CaseRun& run) {
     std::vector<KnownPair> pairs;
     for (TrianglePair pair : lattice_pairs(run.amount(20'000, 1'000'000), run.seed() + 1)) {
@@ -201,7 +201,7 @@ void colliding_identical_boxes(CaseRun& run) {
     }
 }
 
-// Cubes of 10^-30 to 10^37 around points as far from 0 as they are large.
+// Makes cubes of 10^-30 to 10^37 around points as far from 0 as they are large.
 std::vector<Transform> cubes_of_all_sizes(std::size_t count, std::uint64_t seed) {
     Random random(seed);
     std::vector<Transform> cubes;
@@ -212,7 +212,7 @@ std::vector<Transform> cubes_of_all_sizes(std::size_t count, std::uint64_t seed)
     return cubes;
 }
 
-// Whether the boxes overlap that are around the cubes, larger by a share of their size and place.
+// Returns whether the cubes' boxes overlap after they grow by a share of their size and place.
 bool overlap(const Transform& a, const Transform& b, double margin) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto reach = [&](const Transform& cube) {
@@ -223,7 +223,7 @@ bool overlap(const Transform& a, const Transform& b, double margin) {
     return true;
 }
 
-// Overlapping pairs that were not found, and found ones that are apart by more than rounding.
+// Counts overlapping pairs that were not found, and found pairs that are apart by more than rounding.
 std::uint64_t wrong_pairs(const std::vector<Transform>& cubes, std::span<const InstancePair> found) {
     std::uint64_t wrong = 0;
     for (uint a = 0; a < cubes.size(); ++a)

@@ -106,7 +106,7 @@ void ask_contacts(CaseRun& run, const std::string& what, const std::vector<MeshV
     add_checked(run, record, found == known ? 0 : 1, "contacts: " + told(found) + "; known are " + told(known));
 }
 
-// Two triangles against two in the common wall, cut along the same diagonal or across it, and the walls around.
+// In the common wall, two triangles meet two, cut along the same diagonal or across it; the walls around also touch.
 ContactCounts wall_to_wall() {
     const Mesh box = make_box(vec3(-1), vec3(1));
     const auto placed = [&](const uvec3& t, double x) {

@@ -15,7 +15,7 @@ bool is_same_decision(const Hit& a, const Hit& b) {
     return a.hit == b.hit && a.instance_index == b.instance_index && a.primitive_index == b.primitive_index;
 }
 
-// Steps from one float to the other; both are positive or 0.
+// Returns the steps from one float to the other; both are positive or 0.
 double ulps_between(float a, float b) {
     return std::abs(double(std::bit_cast<std::int32_t>(a)) - double(std::bit_cast<std::int32_t>(b)));
 }

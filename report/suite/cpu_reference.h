@@ -11,7 +11,7 @@ using reference::cpu_reference_of;
 
 enum class Denormals : std::uint8_t { kept, flushed };  // flushed needs FlushDenormals::is_able()
 
-// Closest hits of all rays, on all cores.
+// Returns the closest hits of all rays, on all cores.
 std::vector<Hit> trace_cpu_reference(const reference::Scene& on_cpu, std::span<const Ray> rays, Level level,
                                      Denormals denormals = Denormals::kept);
 
@@ -19,7 +19,7 @@ std::vector<Hit> trace_cpu_reference(const reference::Scene& on_cpu, std::span<c
 struct Difference {
     std::uint64_t decisions = 0;  // hit or miss, instance, primitive
     std::uint64_t bits = 0;       // the same decision, but t, u, v or another field is not the same to the last bit
-    double worst_ulp = 0;         // of t, where the decision is the same
+    double worst_ulp = 0;         // of t, if the decision is the same
     std::string example;          // the first ray that differs, see hexadecimal()
 
     Difference& operator+=(const Difference& other);

@@ -42,13 +42,13 @@ void expect_refined_t(CaseRun& run, const Measured& measured, std::span<const Ra
         std::size_t compared = 0;
         CaseRun::Outcome outcome = ask_each(traced, rays, [&](std::size_t i, const Hit& hit) -> std::string {
             const std::optional<double> error = t_ulps(measured.references[i], hit);
-            if (!error) return "";  // of another triangle, or none: checked elsewhere
+            if (!error) return "";  // another triangle, or none: checked elsewhere
             ++compared;
             largest = std::max(largest, *error);
             return *error <= ulps ? "" : text("t is off by ", *error, " units in the last place");
         });
         outcome.n = compared;
-        if (compared == 0) {  // which measure has told of each ray
+        if (compared == 0) {  // measure has reported this for each ray
             outcome.n = outcome.faults = rays.size();
             outcome.what = "no ray hits the triangle that the reference names";
             if (!is_ours(traced.configuration.backend)) outcome.only_measured = outcome.what;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is near to points, against every triangle in float64. The GPU answers; no accelerator takes part.
+// Triangles near points, checked against every triangle in float64. The GPU answers; no accelerator takes part.
 #include <twinray/queries.h>
 
 #include <algorithm>
@@ -37,7 +37,7 @@ double nearest_of_all(const Mesh& mesh, const dvec3& point) {
     return nearest;
 }
 
-// Medians of times, and the case's record, of one question to many points.
+// Adds the case's record of one question about many points, with medians of times.
 void add_errors(CaseRun& run, const Values& params, const std::string& metric, std::vector<double> errors,
                 std::vector<double> times, std::uint64_t wrong, const std::string& what) {
     Record record = query_record(run, "f64");
@@ -48,7 +48,7 @@ void add_errors(CaseRun& run, const Values& params, const std::string& metric, s
     add_checked(run, record, wrong, what);
 }
 
-// Relative errors may be as large as what some roundings of the coordinates do to a distance.
+// Relative errors may be as large as the effect of some roundings of the coordinates on a distance.
 void measure_nearest(CaseRun& run, const Mesh& mesh, const std::vector<dvec3>& points, const Values& params) {
     PointQuery query(query_context(run));
     query.set(std::vector<MeshView>{mesh}, std::vector<MeshInstance>{{0, {}}});
@@ -103,7 +103,7 @@ void on_the_surface(CaseRun& run) {
 
 void distances_scaled(CaseRun& run) {
     Mesh soup = make_soup(500, static_cast<uint>(run.seed()), 0.2f);
-    for (vec3& p : soup.positions) p = (p + 16.0f) - 16.0f;  // so that denormals hold them, scaled
+    for (vec3& p : soup.positions) p = (p + 16.0f) - 16.0f;  // so that denormals hold them after scaling
     const std::vector<dvec3> points = random_points(run.amount(1'000, 100'000), 2, run.seed());
     PointQuery query(query_context(run));
     const std::vector<MeshInstance> instance = {{0, {}}};
@@ -180,7 +180,7 @@ void sides(CaseRun& run) {
 
 void signed_by_spheres(CaseRun& run) {
     std::vector<dvec3> points = random_points(run.amount(2'000, 200'000), 1.5, run.seed());
-    std::erase_if(points, [](const dvec3& p) { return length(p) > 0.75 && length(p) < 1; });  // of unknown sign
+    std::erase_if(points, [](const dvec3& p) { return length(p) > 0.75 && length(p) < 1; });  // their sign is unknown
     for (const uint subdivisions : {1u, 2u, 3u, 4u}) {
         const Mesh ball = make_icosphere(subdivisions);
         PointQuery query(query_context(run));
@@ -198,7 +198,7 @@ void signed_by_spheres(CaseRun& run) {
     }
 }
 
-// Van Oosterom and Strackee (1983), summed in long double.
+// Computes the winding number by Van Oosterom and Strackee (1983), summed in long double.
 double winding_number(const Mesh& mesh, const dvec3& point) {
     using Vector = Vec<3, long double>;
     long double sum = 0;
@@ -218,7 +218,7 @@ Mesh upper_half(Mesh ball) {
     return ball;
 }
 
-// Random ones, some beside edges, and some as far as coordinates may be.
+// Returns random points, points beside edges, and points as far as coordinates may be.
 std::vector<dvec3> points_about(const Mesh& mesh, CaseRun& run) {
     std::vector<dvec3> points = random_points(run.amount(1'000, 100'000), 1.5, run.seed());
     for (std::size_t i = 0; i < mesh.triangles.size() && i < 200; ++i) {
@@ -242,7 +242,7 @@ void winding_of_open_meshes(CaseRun& run) {
         parallel_for(points.size(),
                      [&](std::size_t i) { errors[i] = std::abs(found[i] - winding_number(half, points[i])); });
         const double border =
-            8 * std::ldexp(1.0, static_cast<int>(subdivisions));  // edges without a neighbour, or more
+            8 * std::ldexp(1.0, static_cast<int>(subdivisions));  // at least the number of edges without a neighbour
         std::uint64_t wrong = 0;
         for (const double error : errors) wrong += !(error <= 0x1p-50 * (border + 16));
         add_errors(run, {{"triangles", half.triangles.size()}}, "absolute", errors, times, wrong,

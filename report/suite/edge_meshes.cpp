@@ -18,7 +18,7 @@ class Lattice {
   public:
     explicit Lattice(const std::array<std::vector<float>, 3>& planes) : planes_(planes) {}
 
-    // The square of cells [i, i + 1] x [j, j + 1] across `axis`, at the first or the last of its planes.
+    // Adds the square of cells [i, i + 1] x [j, j + 1] across `axis`, at the first or the last of its planes.
     void add_square(uint axis, bool is_last, uint i, uint j) {
         const uint a = (axis + 1) % 3, b = (axis + 2) % 3;
         const auto vertex_at = [&](uint di, uint dj) {

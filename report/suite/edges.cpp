@@ -9,7 +9,7 @@
 namespace twinray::suite {
 namespace {
 
-// From around the centre of a closed sphere, wherever they go.
+// Traces rays from around the centre of a closed sphere, in any direction.
 void from_inside(CaseRun& run) {
     const std::size_t count = run.amount(4'096, 1'000'000);
     for (const uint subdivisions : {0u, 3u, 6u}) {
@@ -50,7 +50,7 @@ void leak_test(CaseRun& run) {
 void measure_both(CaseRun& run, const Mesh& mesh, std::span<const Ray> rays, const CaseRun::RightCount& right,
                   const Measurement& measurement) {
     Measurement closest = measurement;
-    closest.fast_is_control = false;  // the crossings are
+    closest.fast_is_control = false;  // the crossings are the control
     run.measure(world_of(mesh), rays, closest);
     run.count_crossings(world_of(mesh, {}, {.non_opaque = true}), rays, right, measurement);
 }

@@ -52,7 +52,7 @@ void straight_through_a_grid(CaseRun& run) {
     }
 }
 
-// From inside, to the wall, without leaving a plane in which the boxes of triangles end: 0 * infinity in the slab test.
+// Traces rays from inside to the wall within a plane in which boxes of triangles end: 0 * infinity in the slab test.
 void within_a_plane_of_boxes(CaseRun& run) {
     constexpr int size = 16;
     std::vector<float> planes(size + 1);
@@ -84,7 +84,7 @@ void random_winding(CaseRun& run) {
     measure_both(run, sphere, rays, is_one, {.params = {{"mesh", "icosphere"}}, .fast_is_control = true});
 }
 
-// Steeper than any of its triangles, so that each ray crosses it once.
+// Rays are steeper than any triangle of the grid, so that each ray crosses it once.
 void jittered_grid(CaseRun& run) {
     const Mesh grid = make_jittered_grid(grid_cells, 0.2f, run.seed());
     const auto inner = [&](Draws& draws) { return 4 + draws.below(grid_cells - 8); };
@@ -104,7 +104,7 @@ void jittered_grid(CaseRun& run) {
     measure_both(run, grid, rays, is_one, {.fast_is_control = true});
 }
 
-// A hub at a whole number is met exactly, one elsewhere as nearly as float32 can say.
+// Rays meet a hub at a whole number exactly, and one elsewhere as nearly as float32 can say.
 void fans(CaseRun& run) {
     std::vector<Fan> all;
     const auto add = [&](uint valence) {
@@ -127,8 +127,8 @@ void fans(CaseRun& run) {
     measure_both(run, make_fans(all, run.seed()), rays, is_one, {.fast_is_control = true});
 }
 
-// Corners of the mesh's box, points where boxes of triangles meet on its edges and on its faces. Planes lie at random
-// places, so that the t at which a ray reaches two of them is the same and rounds differently (Ize, "Robust BVH Ray
+// Aims at corners of the mesh's box, and at points where boxes of triangles meet on its edges and on its faces. Planes
+// lie at random places, so that a ray reaches two of them at the same t, which rounds differently (Ize, "Robust BVH Ray
 // Traversal", 2013).
 void through_corners_of_boxes(CaseRun& run) {
     constexpr uint size = 16;

@@ -14,7 +14,7 @@
 namespace twinray::suite {
 namespace {
 
-// Two triangles whose common edge has a vertex m on one side only: (a, b, c) against (a, m, d) and (m, b, d).
+// Two triangles with a common edge that has a vertex m on one side only: (a, b, c) against (a, m, d) and (m, b, d).
 struct TJunction {
     vec3 a, b, m;
 };
@@ -31,7 +31,7 @@ TJunction add_t_junction(Mesh& mesh, Draws& draws) {
     return {a, b, m};
 }
 
-// Edges of a convex mesh of shared vertices, with the triangles on both sides.
+// An edge of a convex mesh of shared vertices, with the triangles on both sides.
 struct ConvexEdge {
     dvec3 a, b;
     std::vector<Triangle64> faces;
@@ -56,7 +56,7 @@ bool shows_front(const Triangle64& face, const dvec3& eye) {
     return dot(cross(face[1] - face[0], face[2] - face[0]), eye - face[0]) > 0;
 }
 
-// From random points outside, through vertices and points of edges that separate what is seen from what is hidden.
+// Returns rays from random points outside, through vertices and points of edges on the silhouette.
 std::vector<Ray> silhouette_rays(const Mesh& mesh, std::size_t count, std::uint64_t seed) {
     constexpr std::size_t rays_an_eye = 64;
     const std::vector<ConvexEdge> edges = edges_of(mesh);
@@ -96,7 +96,7 @@ World world_of_parts(const std::vector<Part>& parts) {
     return {fill, ReferenceScene(views, instances)};
 }
 
-// Triangles for which `is_first` says so go to the first mesh.
+// Puts triangles for which `is_first` is true into the first mesh, the others into the second.
 template <class IsFirst>
 std::array<Mesh, 2> split(const Mesh& mesh, const IsFirst& is_first) {
     std::array<Mesh, 2> parts = {mesh, mesh};
@@ -117,13 +117,13 @@ Transform rotation(const dvec3& axis, double angle) {
     return result;
 }
 
-// A transform that rounds everything.
+// Returns a transform that rounds everything.
 Transform general_placement() {
     return Transform::translation({10.3f, -7.1f, 4.7f}) * rotation(normalize(dvec3(1, 2, 3)), 1.1) *
            Transform::scaling({1.3f, 0.7f, 1.9f});
 }
 
-// A sphere off the origin, so that its left half lies within other powers of two than its right.
+// Uses a sphere off the origin, so that its left half lies within other powers of two than its right.
 void with_one_matrix(CaseRun& run) {
     Mesh sphere = make_icosphere(3);
     for (vec3& position : sphere.positions) position.x += 3.5f;
@@ -142,8 +142,8 @@ void with_one_matrix(CaseRun& run) {
                             {.params = {{"split", name}, {"matrices", 1}}});
 }
 
-// Two halves of a square in the plane y = 0, on both sides of x = 0; the second is stored in a frame turned by another
-// rotation, which its matrix undoes.
+// Returns two halves of a square in the plane y = 0, on both sides of x = 0. The second is stored in a frame turned by
+// another rotation, which its matrix undoes.
 std::vector<Part> halves_by_two_matrices() {
     const Mesh left = make_quad(vec3(-1, 0, -1), vec3(0, 0, 2), vec3(1, 0, 0));
     Mesh right = make_quad(vec3(0, 0, -1), vec3(0, 0, 2), vec3(1, 0, 0));
@@ -152,7 +152,7 @@ std::vector<Part> halves_by_two_matrices() {
     return {{left, general_placement()}, {right, general_placement() * rotation(axis, 0.7)}};
 }
 
-// Rays whose exact meeting with the plane lies up to `reach` (object units) beside the common edge; that place.
+// A ray that meets the plane exactly up to `reach` (object units) beside the common edge, and that place.
 struct RayBeside {
     Ray ray;
     double x;
@@ -208,7 +208,7 @@ void with_two_matrices(CaseRun& run) {
 
 }  // namespace
 
-// The closest hits of both accelerators; where a ray slips through the classes say whether the gap allows it.
+// Measures the closest hits of both accelerators. If a ray slips through, the classes say whether the gap allows it.
 void t_junctions(CaseRun& run) {
     Mesh mesh;
     std::vector<TJunction> junctions;
@@ -237,8 +237,8 @@ void silhouettes(CaseRun& run) {
                      {.params = {{"mesh", name}}});
 }
 
-// Rounding of sheared vertices grows with their distance, that of boxes with the hit's: triangles far longer than what
-// is between them and the ray have to be hit beside their edges, too.
+// The rounding of sheared vertices grows with their distance, that of boxes with the hit's: triangles far longer than
+// their distance to the ray must also be hit beside their edges.
 void beside_long_edges(CaseRun& run) {
     std::vector<float> across;
     for (int i = 0; i <= 12; ++i) across.push_back(0.137f + 0.97f * static_cast<float>(i));
@@ -262,9 +262,10 @@ void across_instances(CaseRun& run) {
     with_two_matrices(run);
 }
 
-// Far from the origin, where products cancel. Cells are turned by 45 degrees, as a rounded point of such an edge is
-// still on it: their diagonals would do, too, but are edges within leaves, which are computed once. Every other cell
-// has its triangles in the other order, or all leaves would see the edges between them in the same direction.
+// The grid is far from the origin, where products cancel. Cells are turned by 45 degrees, because a rounded point of
+// such an edge is still on it. Their diagonals would also do, but are edges within leaves, which are computed once.
+// Every other cell has its triangles in the other order; otherwise all leaves would see the edges between them in the
+// same direction.
 void without_precise_on_a_grid(CaseRun& run) {
     constexpr uint cells = 32;
     Mesh grid = make_grid(cells, cells);

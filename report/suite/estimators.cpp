@@ -13,7 +13,7 @@
 namespace twinray::suite {
 namespace {
 
-// Meshes are groups, one instance each.
+// Meshes are groups, with one instance each.
 class Estimators {
   public:
     Estimators(AbstractAccel& accel, const FactorQuestion& question)
@@ -36,7 +36,7 @@ class Estimators {
         return {0, 0, rate_interval_95(0, row.rays).high, ms, row.rays};
     }
 
-    // Rounds of 64 rays for each two faces.
+    // Samples in rounds of 64 rays for each two faces.
     Estimate area(Sequence sequence, std::uint64_t rays, uint seed) {
         const PlannedPair pair = planned(question_, PairEstimator::area);
         PairSampler sampler(accel_, faces_, Sides::front, sequence, seed);
@@ -58,7 +58,7 @@ class Estimators {
         const ContourExchange exchange = planned(question, PairEstimator::automatic).contour;
         const double ms = start.ms(), area = area_of(question);
         const double value = question.of_open ? 1 - exchange.flow / area : exchange.flow / area;
-        // The truth may be known to no more than float64 holds.
+        // The truth may be known only as exactly as float64 allows.
         const double half = exchange.error / area + rounding_of(1);
         return {value, value - half, value + half, ms, 0};
     }
@@ -109,7 +109,7 @@ struct Series {
     }
 };
 
-// Whether 95 % of all intervals may hold the truth where `inside` of n do: the binomial tail is no less than 10^-6.
+// Returns whether 95 % of all intervals may hold the truth if `inside` of n do: the binomial tail is at least 10^-6.
 bool covers_enough(std::uint64_t inside, std::uint64_t n) {
     double chance = std::pow(0.05, static_cast<double>(n)), tail = chance;
     for (std::uint64_t k = 0; k < inside; ++k) {
@@ -155,8 +155,8 @@ void measure_sampled(CaseRun& run, Estimators& estimators, const Configuration& 
                       });
 }
 
-// Adds the time that an error takes by the law of error over time, if that falls, and up to a hundred times as much as
-// was measured.
+// Adds the time that an error takes by the law of error over time, if the error falls, and up to a hundred times the
+// measured time.
 void add_costs(Record& record, std::span<const double> ms, std::span<const double> errors) {
     const std::optional<PowerLaw> law = fit_power_law(ms, errors);
     if (!law || law->slope >= 0) return;

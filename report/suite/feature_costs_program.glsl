@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A trace program as users have: spheres in boxes, and hits that count in stripes. The scenes whose feature costs are
-// measured have neither.
+// A trace program like a user's: spheres in boxes, and hits that count in stripes. The scenes that measure feature
+// costs have neither.
 #include "twinray/glsl/program.h"
 
 bool intersect_primitive(Candidate candidate, Ray ray_local, inout float t, inout vec2 uv)

@@ -19,7 +19,7 @@ struct PixelPlanes {
     dvec3 at(std::size_t i) const { return {of[0][i], of[1][i], of[2][i]}; }
 };
 
-// White is that of linear sRGB.
+// The white of linear sRGB.
 const dvec3 white(0.950428545, 1, 1.088900371);
 
 dvec3 xyz_of(const dvec3& rgb) {
@@ -34,7 +34,7 @@ dvec3 rgb_of(const dvec3& xyz) {
             0.055639423 * xyz.x - 0.204011202 * xyz.y + 1.057148933 * xyz.z};
 }
 
-// Y, Cx, Cz: opponent colors that are linear.
+// Returns Y, Cx, Cz: linear opponent colors.
 dvec3 opponent_of(const dvec3& rgb) {
     const dvec3 scaled = xyz_of(rgb) / white;
     return {116 * scaled.y - 16, 500 * (scaled.x - scaled.y), 200 * (scaled.y - scaled.z)};
@@ -45,7 +45,7 @@ dvec3 rgb_of_opponent(const dvec3& opponent) {
     return rgb_of(dvec3(y + opponent.y / 500, y, y - opponent.z / 200) * white);
 }
 
-// CIELAB, whose colors count for less the darker they are (Hunt's effect).
+// Returns CIELAB with colors that count for less the darker they are (Hunt's effect).
 dvec3 hunt_lab_of(const dvec3& rgb) {
     const dvec3 scaled = xyz_of(rgb) / white;
     const auto root = [](double x) {
@@ -57,10 +57,10 @@ dvec3 hunt_lab_of(const dvec3& rgb) {
     return {l, l / 100 * a, l / 100 * b};
 }
 
-// Distance for which large steps of lightness do not outweigh all else (Abasi et al. 2020).
+// Returns a distance in which large steps of lightness do not outweigh all else (Abasi et al. 2020).
 double hyab(const dvec3& a, const dvec3& b) { return std::abs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z); }
 
-// sum of weights[i] * plane at distance i - radius, along x and then along y; the border repeats.
+// Sums weights[i] * plane at distance i - radius, along x and then along y; the border repeats.
 PixelPlane filtered(const PixelPlane& plane, int width, int height, const PixelPlane& along_x,
                     const PixelPlane& along_y) {
     const auto pass = [&](const PixelPlane& from, const PixelPlane& weights, int dx, int dy) {
@@ -78,7 +78,7 @@ PixelPlane filtered(const PixelPlane& plane, int width, int height, const PixelP
     return pass(pass(plane, along_x, 1, 0), along_y, 0, 1);
 }
 
-// exp(-rate x^2) at the pixels within `radius`, of sum 1.
+// Returns exp(-rate x^2) at the pixels within `radius`, with sum 1.
 PixelPlane gaussian(double rate, int radius) {
     PixelPlane weights;
     for (int i = -radius; i <= radius; ++i) weights.push_back(std::exp(-rate * i * i));
@@ -87,8 +87,8 @@ PixelPlane gaussian(double rate, int radius) {
     return weights;
 }
 
-// The resolution of the eye for each channel: contrast sensitivity as sums of gaussians a sqrt(pi / b) exp(-pi^2 x^2 /
-// b) over x in degrees (Johnson and Fairchild 2003).
+// Applies the resolution of the eye to each channel: contrast sensitivity as sums of gaussians a sqrt(pi / b) exp(-pi^2
+// x^2 / b) over x in degrees (Johnson and Fairchild 2003).
 PixelPlanes seen(const PixelPlanes& opponent, double pixels_per_degree) {
     constexpr double pi = 3.14159265358979;
     struct Gaussian {
@@ -120,7 +120,7 @@ PixelPlanes seen(const PixelPlanes& opponent, double pixels_per_degree) {
     return result;
 }
 
-// Edges (first derivative) or points (second) of a picture of lightness: the length of the gradient of gaussians
+// Finds edges (first derivative) or points (second) in a picture of lightness: the length of the gradient of gaussians
 // that match what the eye detects, normalised so that a step, or a point, of 1 gives at most 1.
 PixelPlane features(const PixelPlanes& opponent, double pixels_per_degree, bool is_points) {
     const double deviation = 0.5 * 0.082 * pixels_per_degree;
@@ -157,7 +157,7 @@ dvec3 color_seen(const PixelPlanes& planes, std::size_t i) {
     return hunt_lab_of(clamp(rgb_of_opponent(planes.at(i)), dvec3(0), dvec3(1)));
 }
 
-// Compressed: up to 0.4 of the largest difference fills 0.95 of the range.
+// Compresses the difference: up to 0.4 of the largest one fills 0.95 of the range.
 double color_difference(const dvec3& a, const dvec3& b) {
     constexpr double exponent = 0.7, knee = 0.4, filled = 0.95;
     static const double most = std::pow(hyab(hunt_lab_of({0, 1, 0}), hunt_lab_of({0, 0, 1})), exponent);

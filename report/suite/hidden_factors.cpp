@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// View factors of what is hidden, hollow, cut into many faces, of unlike areas or round.
+// View factors of hidden, hollow and round meshes, of many faces and of unlike areas.
 #include <twinray/analysis.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 constexpr std::array by_hits = {PairEstimator::hits};
 constexpr double most_sigma = 5;
 
-// 0, known without a doubt, where no ray told: a fault if it is wrong.
+// Returns a certain 0 if no ray met the target: a fault if it is wrong.
 ViewFactor factor_of(const ViewFactorRow& row, uint target) {
     for (const ViewFactor& factor : row.factors)
         if (factor.target == target) return factor;
@@ -73,8 +73,8 @@ void expect_nothing(CaseRun& run, const Scene& scene, const std::string& what) {
     }
 }
 
-// Of each point of a hole midway between unit squares at a distance of 1, the rectangle that is seen on either side is
-// as large: the integral over the hole of Howell's B-4, with 20 digits.
+// From each point of a hole midway between unit squares at a distance of 1, the visible rectangle is equally large on
+// either side. The value is the integral over the hole of Howell's B-4, with 20 digits.
 void blocked(CaseRun& run) {
     const auto squares_and = [](Mesh plate) {
         Scene scene = parallel_squares(1);
@@ -135,7 +135,7 @@ void refined(CaseRun& run) {
         measure_factor(run,
                        {.scene = parallel_squares(1, cells), .value = known, .params = {{"faces", 4 * cells * cells}}},
                        methods_of(by_hits));
-    // Each face sends some rays: many faces are slow, and asked once.
+    // Each face sends some rays: many faces are slow, and are measured once.
     const auto most = static_cast<uint>(run.amount(64, 224));
     const Scene scene = parallel_squares(1, most);
     for (const Configuration& configuration : analysis_configurations(run)) {
@@ -149,7 +149,7 @@ void refined(CaseRun& run) {
     }
 }
 
-// The floor of a closed room, with a patch of 2^-40 of its area let in.
+// The floor of a closed room contains a patch of 2^-40 of its area.
 void unlike_areas(CaseRun& run) {
     constexpr float side = 0x1p-20f;
     Mesh room = seen_from_inside(make_box(vec3(0), vec3(1)));
@@ -162,8 +162,8 @@ void unlike_areas(CaseRun& run) {
         FaceGrouping::mesh, {{"areas", "1 to 1e-12"}});
 }
 
-// Howell has no closed form of two spheres side by side: by quadrature, as radii of 1 and 1 at distances of 3 and 4, 1
-// and 2 at 6. Contour integrals are exact for polyhedra.
+// Howell has no closed form for two spheres side by side. The values are by quadrature, for radii of 1 and 1 at
+// distances of 3 and 4, and 1 and 2 at 6. Contour integrals are exact for polyhedra.
 void separate_spheres(CaseRun& run) {
     const auto ask = [&](float radius, float distance, double known) {
         for (const uint subdivisions : {0u, 1u}) {

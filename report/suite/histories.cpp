@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Many geometries that are pushed, moved and erased, saved and loaded between.
+// Many geometries that are pushed, moved and erased, and saved and loaded in between.
 #include <twinray/geometry.h>
 #include <twinray/tlas.h>
 
@@ -14,7 +14,7 @@
 namespace twinray::suite {
 namespace {
 
-// A small mesh of its own, where it stands, and its handle.
+// A small mesh of its own, its place and its handle.
 struct Placed {
     Mesh mesh;
     Transform place;
@@ -32,7 +32,7 @@ class History {
             all_.push_back(std::move(made));
         }
     }
-    // A few are moved, a few are bent, a few leave, and as many come.
+    // Moves a few, bends a few, erases a few, and adds as many.
     void edit(AbstractAccel& accel) {
         for (int i = 0; i < 8; ++i) {
             Placed& moved = any();
@@ -49,13 +49,13 @@ class History {
         push(accel, 8);
         accel.sync();
     }
-    // Another accelerator has them by other handles, in the same order.
+    // Takes the handles of another accelerator, which has the same order.
     void rename(const std::vector<AccelHandle>& handles, const std::vector<AccelHandle>& before) {
         std::unordered_map<AccelHandle, AccelHandle> names;
         for (std::size_t i = 0; i < handles.size(); ++i) names[before[i]] = handles[i];
         for (Placed& placed : all_) placed.handle = names.at(placed.handle);
     }
-    // In the order of their handles, which is that of pushes.
+    // Returns the scene in the order of handles, which is that of pushes.
     Scene scene() const {
         std::vector<Placed> ordered = all_;
         std::ranges::sort(ordered, {}, [](const Placed& placed) { return placed.handle.id; });
@@ -85,7 +85,7 @@ std::unique_ptr<AbstractAccel> saved_and_loaded(AbstractAccel& accel, History& h
     return std::move(loaded.accel);
 }
 
-// Hits after the edits; the scene that is left is `history`'s.
+// Returns the accelerator after the edits; `history` has the scene that is left.
 std::unique_ptr<AbstractAccel> edited(CaseRun& run, const Configuration& configuration, History& history,
                                       std::size_t count, std::size_t edits) {
     std::unique_ptr<AbstractAccel> accel = run.devices().make_accel(configuration);

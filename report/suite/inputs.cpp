@@ -13,8 +13,8 @@
 namespace twinray::suite {
 namespace {
 
-// Rays that hit and miss a sphere, of which `spoil(ray, i)` makes every second one special: it lies in one subgroup
-// with rays that must not notice.
+// Returns rays that hit and miss a sphere. `spoil(ray, i)` makes every second one special: it lies in one subgroup with
+// rays that must not notice.
 template <class Spoil>
 std::vector<Ray> every_second(const Mesh& mesh, std::size_t count, std::uint64_t seed, const Spoil& spoil) {
     std::vector<Ray> rays = random_rays(bounds_of(mesh), count, seed);
@@ -33,7 +33,7 @@ void spoil_component(Ray& ray, std::size_t i) {
     (i % 6 < 3 ? ray.origin : ray.direction)[static_cast<int>(i % 3)] = bad[i / 6 % 3];
 }
 
-// NaN, infinite and zero rays alone, in turns with as many normal ones: they may not be a way to stall a device.
+// Traces NaN, infinite and zero rays alone, in turns with as many normal ones: they must not stall a device.
 void time_of_bad_rays(CaseRun& run) {
     constexpr double limit = 2.5;
     const Mesh sphere = make_icosphere(5);
@@ -86,7 +86,7 @@ void zero_directions(CaseRun& run) {
     });
 }
 
-// NaN, 1e38 and denormal numbers in origins and directions, which also affect the order of the rays.
+// Puts NaN, 1e38 and denormal numbers into origins and directions, which also affects the order of the rays.
 void extreme_rays_in_order(CaseRun& run) {
     const Mesh sphere = make_icosphere(4);
     constexpr std::array numbers = {nan, inf, -inf, 1e38f, -1e38f, 1e-40f, -0.0f};
@@ -113,7 +113,7 @@ struct EndedRay {
     bool hits;
 };
 
-// Straight down onto z = 0 from heights that are exact in float32, so that t is also exact.
+// Returns rays straight down onto z = 0 from heights that are exact in float32, so that t is also exact.
 std::vector<EndedRay> rays_that_end_at_the_hit() {
     std::vector<EndedRay> rays;
     for (const float height : {0x1p-20f, 0.375f, 1.0f, 4.0f, 1000.0f, 0x1p20f})

@@ -15,7 +15,7 @@
 namespace twinray::suite {
 namespace {
 
-// A sphere as a kernel has written it, and as it is to be read: what must not count has a vertex that is NaN.
+// A sphere as a kernel has written it, and as it must be read: a triangle that must not count has a vertex that is NaN.
 struct Written {
     VertexFormat format;
     std::vector<float> wide;            // of float32
@@ -25,7 +25,7 @@ struct Written {
     Mesh read;
 };
 
-// Numbers that each format has exactly, but snorm16.
+// Makes a sphere of numbers that each format but snorm16 has exactly.
 Mesh coarse_sphere() {
     Mesh sphere = make_icosphere(3);
     for (vec3& position : sphere.positions) position = round(position * 256.0f) / 256.0f;
@@ -50,7 +50,7 @@ Written written_sphere(VertexFormat format) {
     for (const vec3& p : sphere.positions)
         for (int axis = 0; axis < 3; ++axis) write(written, p[axis]);
     const std::array<float, 3> bad = {inf, -inf, nan};
-    if (format != VertexFormat::snorm16)  // which has none
+    if (format != VertexFormat::snorm16)  // which has no such numbers
         for (std::size_t i = 0; i < bad.size(); ++i) {
             Written number{format, {}, {}, {}, 0, {}};
             write(number, bad[i]);
@@ -72,7 +72,7 @@ Written written_sphere(VertexFormat format) {
     return written;
 }
 
-// Its buffers are kept in `buffers`.
+// Pushes the mesh and keeps its buffers in `buffers`.
 void push(AbstractAccel& accel, const Written& written, std::vector<Buffer>& buffers) {
     const auto keep = [&](const auto& values) -> Buffer& {
         return buffers.emplace_back(uploaded(accel.context(), "written mesh", std::span(values)));

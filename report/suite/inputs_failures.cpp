@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Vulkan fails under the library, a call at a time, or for ever.
+// Vulkan fails under the library, one call at a time or for ever.
 #include <algorithm>
 
 #include "report/faults/fault_injection.h"
@@ -30,7 +30,7 @@ class Session {
         if (!context_) context_ = std::make_unique<Context>(desc_);
     }
 
-    // Makes what is not there yet.
+    // Makes what does not exist yet.
     std::vector<Hit> hits(const World& world, std::span<const Ray> rays) {
         make_context();
         if (!accel_) accel_ = Devices::make_accel(*context_, backend_, options_);
@@ -52,7 +52,7 @@ class Session {
     std::unique_ptr<AbstractAccel> accel_;
 };
 
-// During what calls fail.
+// The part of a run in which calls fail.
 enum class FailingPart : std::uint8_t {
     context,  // its creation
     session,  // all from the context to the hits
@@ -67,7 +67,7 @@ class FailingRuns {
     FailingRuns(CaseRun& run, const Configuration& configuration)
         : run_(run), configuration_(configuration), session_(run.devices(), configuration, vulkan_) {}
 
-    // Lets calls fail by `fault`, at most so many, evenly chosen among those of the part, and records what came of it.
+    // Lets calls fail by `fault`, at most `most`, evenly chosen among those of the part, and records the results.
     void fail(FailingPart part, Fault fault, std::size_t most) {
         if (most == 0) return;
         const std::uint64_t calls = count_calls(part, fault);
@@ -85,7 +85,7 @@ class FailingRuns {
         run_.expect(configuration_, outcome);
     }
 
-    // That without faults hits are right and nothing is left alive.
+    // Checks that without faults hits are right and nothing is left alive.
     void end() {
         const CheckResult checked =
             check(world_.reference, rays_, session_.hits(world_, rays_), configuration_.backend);
@@ -99,7 +99,7 @@ class FailingRuns {
     }
 
   private:
-    // The state at the beginning of the part.
+    // Makes the state at the beginning of the part.
     void prepare(FailingPart part) {
         if (part == FailingPart::trace) return static_cast<void>(session_.hits(world_, rays_));
         session_.end();
@@ -131,7 +131,7 @@ class FailingRuns {
             return what_is_wrong_with(hits);
         }
         if (said.empty()) return "an error without a word";
-        // Only another device can go on where one was lost.
+        // After a loss, only another device can go on.
         if (fault.result == VK_ERROR_DEVICE_LOST) session_.end();
         if (fault.result == VK_ERROR_DEVICE_LOST || part == FailingPart::context)
             if (const std::string left = what_is_left(); !left.empty()) return left;
@@ -160,8 +160,8 @@ class FailingRuns {
 
 }  // namespace
 
-// Sessions take time to compile their kernels: whole ones fail in the full suite alone, and at the least one device is
-// lost, the last one.
+// Sessions take time to compile their kernels. Whole ones fail only in the full suite; with the least effort, one
+// device is lost, the last one.
 void failing_calls(CaseRun& run) {
     const std::vector<Configuration> configurations = run.one_configuration_each();
     for (const Configuration& configuration : configurations) {

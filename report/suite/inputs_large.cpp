@@ -71,7 +71,7 @@ struct Plane {
             }
         return mesh;
     }
-    // Down from height 8 onto a triangle's inside.
+    // Returns a ray down from height 8 onto a triangle's inside.
     Ray onto(uint triangle) const {
         const uint square = triangle / 2;
         const float inside = triangle % 2 ? 0.75f : 0.25f;
@@ -96,7 +96,7 @@ struct Planes {
     BuildBytes bytes;
 };
 
-// As many as need more than `least` bytes of trees, at least two.
+// Returns as many as need more than `least` bytes of trees, at least two.
 Planes planes_beyond(std::uint64_t least, const Plane& plane, const AbstractAccel& accel) {
     for (std::size_t count = 2;; ++count) {
         const std::vector<GeometrySize> sizes(count, {plane.vertices(), plane.triangles()});
@@ -139,8 +139,8 @@ void expect_every_square(CaseRun& run, const Configuration& configuration, Abstr
 
 }  // namespace
 
-// In full as many triangles a geometry as Plane can have below 2^25, and more than 4 GiB of trees in all; half of the
-// heap is left to whoever else uses it.
+// In the full suite, a geometry has as many triangles as Plane can have below 2^25, and all trees take more than 4 GiB;
+// half of the heap is left to other users.
 void large_buffers(CaseRun& run) {
     const std::uint64_t least = run.is_whole() ? four_gib : 0;
     const Plane plane{run.is_whole() ? 4'096u : 16u};

@@ -18,7 +18,7 @@
 namespace twinray::suite {
 namespace {
 
-// One vertex in the middle of a grid, which six triangles share, has `value` on an axis.
+// Sets one vertex in the middle of a grid, which six triangles share, to `value` on an axis.
 void spoiled_vertex(CaseRun& run, int axis, float value, const char* setting) {
     Mesh grid = make_grid(16, 16, 0.05f, 3);
     grid.positions[8 * 17 + 8][axis] = value;
@@ -166,7 +166,7 @@ void empty_and_small(CaseRun& run) {
                 {.params = {{"instances", "of an empty mesh among others"}}, .reps = 1});
 }
 
-// `count` of them, all of their bytes 0, in memory that takes none until it is read: what is refused is not.
+// Returns `count` items with all bytes 0, in memory that takes no space until it is read: refused input is not read.
 template <class T>
 std::span<const T> zeros(std::size_t count, std::unique_ptr<void, decltype(&std::free)>& memory) {
     memory.reset(std::calloc(count, sizeof(T)));
@@ -195,7 +195,7 @@ void too_many(CaseRun& run) {
     expect_refused(run, uses);
 }
 
-// 24 unit squares in a row, facing +z before they are mirrored or turned.
+// Uses 24 unit squares in a row, which face +z before they are mirrored or turned.
 void masks_and_culling(CaseRun& run) {
     const Mesh square = make_quad(vec3(0), vec3(1, 0, 0), vec3(0, 1, 0));
     constexpr std::array<std::uint8_t, 3> masks = {0x00, 0x01, 0xfe};

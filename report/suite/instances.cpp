@@ -24,7 +24,7 @@ void measure_instances(CaseRun& run, const Scene& scene, std::size_t rays, const
     run.measure(world, mixed_rays(world, bounds_of(scene), rays, run.seed()), {.params = params});
 }
 
-// Turned at random, and moved to places in a box.
+// Returns random rotations, moved to places in a box.
 std::vector<Transform> rotations(std::uint64_t seed, std::size_t count, float extent) {
     Random random(seed);
     std::vector<Transform> transforms(count);
@@ -33,7 +33,7 @@ std::vector<Transform> rotations(std::uint64_t seed, std::size_t count, float ex
     return transforms;
 }
 
-// Scaled between two rotations.
+// Returns scales between two rotations.
 std::vector<Transform> stretches(std::uint64_t seed, std::size_t count, vec3 factors) {
     Random random(seed);
     std::vector<Transform> transforms(count);
@@ -56,7 +56,7 @@ void instances_stretched(CaseRun& run) {
     }
 }
 
-// Which side is the front is decided in object space: mirroring an instance does not exchange the sides.
+// The front is decided in object space: mirroring an instance does not exchange the sides.
 void mirrored(CaseRun& run) {
     const Mesh sphere = make_icosphere(2);
     std::vector<Transform> transforms;
@@ -80,7 +80,7 @@ void mirrored(CaseRun& run) {
                                      .reference = "f64"};
             for (std::size_t i = 0; i < rays.size(); ++i) {
                 const ReferenceHit expected = world.reference.closest_hit(rays[i], {0xff, flags_of(cull)});
-                // Not the primitive, on which rays at an edge may differ.
+                // The primitive does not count, because it may differ for rays at an edge.
                 const bool is_right = (hits[i].hit != 0) == expected.hit &&
                                       (!expected.hit || hits[i].instance_index == expected.instance) &&
                                       (!expected.hit || std::abs(hits[i].t - expected.t) < 1e-3 * expected.t + 1e-4);
@@ -119,7 +119,7 @@ void refused_transforms(CaseRun& run) {
     }
 }
 
-// A cube is met at t = 2.
+// A ray meets the cube at t = 2.
 void axes_far_apart(CaseRun& run) {
     const Mesh cube = make_box(vec3(-1), vec3(1));
     for (const float most : {14.0f, 20.0f, 36.0f}) {
@@ -150,7 +150,7 @@ void axes_far_apart(CaseRun& run) {
     }
 }
 
-// The upper and the lower half of a sphere as meshes of their own, and the edges that they share.
+// The upper and the lower half of a sphere as separate meshes, and the edges that they share.
 struct Halves {
     Mesh upper, lower;
     std::vector<std::pair<uint, uint>> seam;  // vertices of both
@@ -176,8 +176,8 @@ Transform transposed(const Transform& rotation) {
     return result;
 }
 
-// From the middle to the seam, at its vertices and along its edges. Each half sees a ray rounded by its own transform:
-// where that is the same, so is the ray, and none passes between.
+// Traces rays from the middle to the seam, at its vertices and along its edges. Each half sees a ray rounded by its own
+// transform: if both are the same, so is the ray, and none passes between.
 void shared_seam(CaseRun& run) {
     const Halves halves = halves_of(make_icosphere(3));
     const std::size_t count = run.amount(2'048, 200'000);
@@ -230,7 +230,7 @@ void many_instances(CaseRun& run) {
     measure_instances(run, instances_of(tiny, shell), rays, {{"instances", count}, {"placed", "on a shell"}});
 }
 
-// The camera is a few units beside it.
+// The camera is a few units beside the instance.
 void instances_far_away(CaseRun& run) {
     for (const float distance : {1e3f, 1e5f, 1e7f}) {
         const Scene scene =
@@ -239,7 +239,7 @@ void instances_far_away(CaseRun& run) {
     }
 }
 
-// A flat geometry's box has no thickness until it is rotated; what of it rounding takes away loses rays.
+// A flat geometry's box has no thickness until it is rotated; if rounding takes any of it away, rays are lost.
 void flat_and_rotated(CaseRun& run) {
     measure_instances(run, instances_of(make_grid(4, 4), rotations(run.seed(), 100, 20)), run.amount(8'192, 1'000'000));
 }
@@ -252,7 +252,7 @@ void box_touched_by_rounding(CaseRun& run) {
     run.measure(world, edge_aimed_rays(world.reference, run.amount(8'192, 1'000'000), run.seed()));
 }
 
-// Scaling instance and rays by a power of two changes nothing but the unit: the same ids, u and v, and t to the bit.
+// Scaling instance and rays by a power of two changes only the unit: ids, u, v and t are the same to the bit.
 void instances_by_powers_of_two(CaseRun& run) {
     const Mesh sphere = make_icosphere(3);
     const Scene unit = instances_of(sphere, {Transform()});
@@ -280,7 +280,7 @@ void instances_by_powers_of_two(CaseRun& run) {
     }
 }
 
-// With an empty second instance there is a top level.
+// An empty second instance makes a top level.
 void with_and_without_top_level(CaseRun& run) {
     const Mesh mesh = make_soup(static_cast<uint>(run.amount(2'000, 100'000)), 23, 0.1f);
     const World world = world_of(mesh);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Light and centroids that are known in closed form.
+// Light and centroids with known closed forms.
 #include <twinray/analysis.h>
 #include <twinray/geometry.h>
 
@@ -16,7 +16,7 @@ constexpr std::array<std::uint64_t, 4> grid_sides = {32, 64, 128, 256}, sky_samp
 constexpr float shade = 0.3f;
 constexpr double lit = 1 - double{shade} * double{shade};
 
-// A unit square at z = 0 that looks up, and one of shade^2 above its corner.
+// Makes a unit square at z = 0 that faces up, and one of area shade^2 above its corner.
 Scene shaded_square(float size = 1) {
     Mesh roof = make_quad(vec3(0, 0, size), vec3(shade * size, 0, 0), vec3(0, shade * size, 0));
     return scene_of({make_quad(vec3(0), vec3(size, 0, 0), vec3(0, size, 0)), std::move(roof)});
@@ -32,7 +32,7 @@ struct Stage {
     Faces faces;
 };
 
-// Area of the first mesh that light reaches, seen along the light.
+// Returns the area of the first mesh that light reaches, seen along the light.
 Estimate lit_area(Stage& stage, const dvec3& direction, std::uint64_t side, std::uint64_t seed) {
     const Stopwatch start;
     const Illumination light = illuminate(
@@ -43,7 +43,7 @@ Estimate lit_area(Stage& stage, const dvec3& direction, std::uint64_t side, std:
     return {found.area, found.interval.low / rounding, found.interval.high * rounding, start.ms(), light.ray_count};
 }
 
-// On all configurations: `estimate` takes the stage, the amount and a seed.
+// Measures on all configurations: `estimate` takes the stage, the amount and a seed.
 template <class Of>
 void measure_light(CaseRun& run, const Scene& scene, const Values& params, double truth, const char* amount_name,
                    std::span<const std::uint64_t> amounts, const Of& estimate) {
@@ -69,10 +69,10 @@ void shadows(CaseRun& run) {
 }
 
 void grazing_light(CaseRun& run) {
-    // The front of a block, half as high as long, and its top.
+    // The scene is the front of a block, half as high as long, and its top.
     const Scene scene = scene_of({make_quad(vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)),
                                   make_quad(vec3(0, 0, -0.5f), vec3(0, 0, 0.5f), vec3(0, 1, 0))});
-    for (const double slope : {0x1p-10, 0x1p-20, 0x1p-30, 0x1p-40})  // which rays in float32 have, too
+    for (const double slope : {0x1p-10, 0x1p-20, 0x1p-30, 0x1p-40})  // rays in float32 also have these
         measure_lit_area(run, scene, {1, 0, -slope}, slope / std::sqrt(1 + slope * slope), {{"slope", slope}});
 }
 
@@ -81,7 +81,7 @@ void light_on_all_sizes(CaseRun& run) {
         measure_lit_area(run, shaded_square(size), {0, 0, -1}, lit * double{size} * double{size}, {{"size", size}});
 }
 
-// The mean of the first two faces: triangles of one area, which are the square. `light` computes the SkyLight.
+// Measures the mean of the first two faces: triangles of one area, which are the square. `light` computes the SkyLight.
 template <class Light>
 void measure_sky(CaseRun& run, const Scene& scene, double truth, const Light& light) {
     measure_light(
@@ -96,7 +96,7 @@ void measure_sky(CaseRun& run, const Scene& scene, double truth, const Light& li
         });
 }
 
-// 1 minus the view factor of parallel squares (Howell C-11), one of which hides the sky from the other.
+// The truth is 1 minus the view factor of parallel squares (Howell C-11), one of which hides the sky from the other.
 void hidden_sky(CaseRun& run) {
     constexpr double hidden = 0.199824895698387383;
     const Scene scene = scene_of({square(0, true), square(1, false)});
@@ -105,7 +105,7 @@ void hidden_sky(CaseRun& run) {
     });
 }
 
-// The sun above for an hour, then aslant for two: as much of the square is lit each time.
+// The sun is above for an hour, then aslant for two: as much of the square is lit each time.
 void hours_of_sun(CaseRun& run) {
     const Scene scene = shaded_square();
     const std::array<SunPosition, 2> positions = {SunPosition{{0, 0, -1}, 1}, SunPosition{{1, 0, -2}, 2}};
@@ -114,7 +114,7 @@ void hours_of_sun(CaseRun& run) {
     });
 }
 
-// The roof is seen at height 1, and around it the square at 0.
+// The roof is seen at height 1, and the square around it at 0.
 void mean_height(CaseRun& run) {
     const Scene scene = shaded_square();
     measure_light(run, scene, {}, 1 - lit, "side", grid_sides,

@@ -34,7 +34,7 @@ FlatPicture checked(const HdrImage& picture, double truth) {
     return result;
 }
 
-// Some hundred pictures of any seed shall all pass: the spread of few pixels is itself a guess.
+// Some hundred pictures of any seed must all pass: the spread of few pixels is itself a guess.
 constexpr double most_standard_errors = 6;
 
 void check(Record& record, const FlatQuestion& question, std::span<const FlatPicture> pictures) {
@@ -167,7 +167,7 @@ void measure_flat(CaseRun& run, const Configuration& configuration, const FlatQu
             variances.push_back(picture.variance / (question.value * question.value));
         }
         record.error = error_figures("relative", errors);
-        if (variances.front() > 0) record.error->floor = 0;  // noise is what bounds it
+        if (variances.front() > 0) record.error->floor = 0;  // noise bounds it
         record.time = time_figures("ms_per_picture", ms[i]);
         check(record, question, pictures[i]);
         set_efficiency(record, variances, ms[i]);

@@ -18,15 +18,15 @@ struct RenderDesc {
     RenderSettings settings = {.width = 16, .height = 16};
 };
 
-// A pinhole camera whose picture is 2 half_height high at distance 1.
+// Returns a pinhole camera with a picture that is 2 half_height high at distance 1.
 path_tracer::CameraRays look(vec3 from, vec3 at, float half_height);
-// The built-in Cornell box in so many pixels a side.
+// Returns the built-in Cornell box, with this many pixels per side.
 RenderDesc cornell_box_shot(uint side);
-// The mean of the green channel, in which grey light is told.
+// Returns the mean of the green channel, which represents grey light.
 double mean_of(const HdrImage& picture);
 // Adds an instance of a mesh of one material.
 void add(Scene& scene, Mesh mesh, const Material& material);
-// Nothing but Lambert: an index of refraction of 1 reflects nothing.
+// Returns a purely Lambertian material: an index of refraction of 1 reflects nothing.
 Material lambert(float albedo);
 Material lamp(float radiance);
 
@@ -35,7 +35,7 @@ inline constexpr std::array all_strategies = {path_tracer::STRATEGY_MIS, path_tr
                                               path_tracer::STRATEGY_BSDF};
 std::string name_of_strategy(uint strategy);
 
-// The values that no pixel may have. Each record of a picture has it in its counts, and case P10 sums them up.
+// The values that no pixel may have. The counts of each record of a picture include them, and case P10 sums them up.
 struct Census {
     std::uint64_t pixels = 0;
     std::uint64_t not_finite = 0;
@@ -57,7 +57,7 @@ class RenderFixture {
     // Renders once, so that everything is compiled.
     RenderFixture(CaseRun& run, const Configuration& configuration, const RenderDesc& desc);
 
-    // A picture for each of `spp`, which ascend: the first samples of those that follow.
+    // Returns a picture for each of `spp`, which ascend: each has the first samples of those that follow.
     std::vector<Exposure> expose(std::uint64_t seed, std::span<const uint> spp);
     Exposure expose(std::uint64_t seed, uint spp);
 
@@ -77,7 +77,7 @@ class RenderFixture {
     Census census_;
 };
 
-// Pictures all of whose pixels have the same expectation.
+// Pictures in which all pixels have the same expectation.
 struct FlatQuestion {
     RenderDesc desc = {};
     double value = 1;  // the truth
@@ -85,14 +85,14 @@ struct FlatQuestion {
     std::size_t seeds = 4;
     Values params = {};
     std::string variant = {};
-    bool is_swept = true;  // over spp, which then stands among the parameters
+    bool is_swept = true;  // over spp, which is then a parameter
 };
-// Records a row for each number of samples: the root mean square of the pixels' relative errors, one a seed; the mean
+// Records a row for each number of samples: the root mean square of the pixels' relative errors, one per seed; the mean
 // of all pixels and its z-score, which must not be beyond 6 (plus what float32 rounds); the efficiency.
 void measure_flat(CaseRun& run, const Configuration& configuration, const FlatQuestion& question);
 
-// 1 / (variance * seconds) of a series of pictures, with its interval by bootstrap over the seeds: `variances` and `ms`
-// are one a seed. Nothing where no picture varies.
+// Sets 1 / (variance * seconds) of a series of pictures, with its interval by bootstrap over the seeds: `variances` and
+// `ms` have one value per seed. Sets nothing if no picture varies.
 void set_efficiency(Record& record, std::span<const double> variances, std::span<const double> ms);
 
 }  // namespace twinray::suite

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Pictures whose light is known: furnaces, lights over a floor, light that is scaled.
+// Pictures with known light: furnaces, lights over a floor, light that is scaled.
 #include <cmath>
 #include <numbers>
 
@@ -22,7 +22,7 @@ Mesh flat_sphere(uint subdivisions, float radius = 1) {
     return mesh;
 }
 
-// Seen from above, where nothing is in the way, a point of it per picture.
+// Adds a floor that is seen from above, where nothing is in the way, one point of it per picture.
 void add_floor(Scene& scene, float y = 0) { add(scene, make_quad({-5, y, -5}, {0, 0, 10}, {10, 0, 0}), lambert(1)); }
 
 void white_furnace(CaseRun& run) {
@@ -39,7 +39,7 @@ void white_furnace(CaseRun& run) {
         }
 }
 
-// From inside a sphere that emits 1 everywhere; of each bounce one more is left out of what depth bounds.
+// The camera is inside a sphere that emits 1 everywhere. The value is the sum over the bounces that the depth allows.
 FlatQuestion closed_furnace(double albedo, uint depth) {
     FlatQuestion question{.value = (1 - std::pow(albedo, depth + 1)) / (1 - albedo), .params = {{"albedo", albedo}}};
     Material wall = lambert(static_cast<float>(albedo));
@@ -81,7 +81,7 @@ void deep_paths(CaseRun& run) {
     }
 }
 
-// A light one above the middle of a floor: its form factor is the answer (numbers from Lambert's polygon sum).
+// A light is 1 above the middle of a floor: its form factor is the answer (numbers from Lambert's polygon sum).
 void lights_over_a_floor(CaseRun& run) {
     Mesh triangle;
     triangle.positions = {{1, 1, 0}, {0, 1, 1}, {-1, 2, -1}};
@@ -114,7 +114,8 @@ void lights_over_a_floor(CaseRun& run) {
             }
 }
 
-// The light that a small mesh so far above the origin sends there, over pi: the areas it shows, in float64.
+// Returns the light, over pi, that a small mesh at this height above the origin sends there: the areas it shows, in
+// float64.
 double seen_over_pi(const Mesh& mesh, double height) {
     double sum = 0;
     for (const uvec3& triangle : mesh.triangles) {
@@ -127,7 +128,7 @@ double seen_over_pi(const Mesh& mesh, double height) {
     return sum / std::numbers::pi;
 }
 
-// The floor moves to where the light is the origin: there floats are finest.
+// The floor moves so that the light is at the origin, where floats are finest.
 void tiny_lights(CaseRun& run) {
     const struct {
         const char* name;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Pictures against others: of the other accelerator, of more samples.
+// Pictures compared with others: of the other accelerator, of more samples.
 #include <cmath>
 
 #include <twinray/scene.h>
@@ -17,7 +17,7 @@
 namespace twinray::suite {
 namespace {
 
-// Of disagreeing rays, those that SwTlas is wrong about.
+// Counts the disagreeing rays that SwTlas is wrong about.
 std::uint64_t faults_of_ours_in(const Scene& scene, std::span<const path_tracer::Disagreement> rays) {
     if (rays.empty()) return 0;
     const ReferenceScene reference = ReferenceScene::of(scene);
@@ -56,7 +56,7 @@ void by_both_accelerators(CaseRun& run) {
                      " pixels differ without a ray that does; of the rays, SwTlas is wrong about ", ours));
 }
 
-// How pictures are sampled: a curve of the plots.
+// A way of sampling pictures: a curve of the plots.
 struct Method {
     uint strategy;
     uint block_size;
@@ -82,8 +82,8 @@ struct Reference {
     double noise = 0;  // what its own variance adds to the relMSE of a picture
 };
 
-// The mean of the pictures with the most samples by both light and surface sampling, of all other seeds and methods of
-// the first configuration: none shares a random number with what is compared.
+// Returns the mean of the pictures with the most samples by both light and surface sampling, of all other seeds and
+// methods of the first configuration: none shares a random number with the compared picture.
 Reference reference_without(std::span<const ExposureSeries> of_configuration, std::size_t method, std::size_t seed) {
     std::vector<const HdrImage*> pictures;
     for (std::size_t m = 0; m < of_configuration.size(); ++m)
@@ -106,7 +106,7 @@ Reference reference_without(std::span<const ExposureSeries> of_configuration, st
     return reference;
 }
 
-// Mean over pixels of the variance between seeds, of luminance.
+// Returns the mean over pixels of the variance of luminance between seeds.
 std::vector<double> squared_deviations(std::span<const std::vector<Exposure>> seeds, std::size_t at) {
     const std::size_t pixels = seeds[0][at].picture.rgb.size();
     std::vector<double> mean(pixels), result;

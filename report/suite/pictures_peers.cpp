@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The path tracer's pictures against those of another renderer.
+// The path tracer's pictures, compared with those of another renderer.
 #include <cmath>
 #include <fstream>
 
@@ -24,7 +24,7 @@ struct Scores {
     double mean = 0, rms = 0, largest = 0, relative_mse = 0;
 };
 
-// Compares runs with different seeds with means that have standard errors.
+// Compares runs of different seeds with means that have standard errors.
 Scores scores_of(std::span<const std::vector<double>> runs, std::span<const double> mean,
                  std::span<const double> error) {
     Scores scores;
@@ -43,7 +43,7 @@ Scores scores_of(std::span<const std::vector<double>> runs, std::span<const doub
     return scores;
 }
 
-// Of a file with this text, all of which is in it.
+// Loads the scene of a file with this text, which contains all its data.
 Scene scene_of_gltf(std::string_view gltf) {
     const TemporaryFolder folder;
     const std::filesystem::path file = folder.path() / "scene.gltf";
@@ -53,7 +53,7 @@ Scene scene_of_gltf(std::string_view gltf) {
 
 }  // namespace
 
-// Pictures of tests/samples/peers, 12,288 samples a pixel, which are part of this program.
+// Compares with pictures of tests/samples/peers, with 12,288 samples per pixel, which are part of this program.
 void by_mitsuba(CaseRun& run) {
     const nlohmann::json json = nlohmann::json::parse(cornell_box_json);
     const std::vector<double> mean = json["mean"], error = json["error"];
@@ -73,7 +73,7 @@ void by_mitsuba(CaseRun& run) {
             ms.push_back(exposure.ms);
         }
         const Scores scores = scores_of(runs, mean, error);
-        // Channels of a block go together: a third as many independent scores, of Student's variance.
+        // The channels of a block are correlated: a third as many scores are independent, with Student's variance.
         const double independent = static_cast<double>(mean.size()) / 3, n = static_cast<double>(seeds);
         const double expected = std::sqrt((n - 1) / (n - 3)), allowed = 4 / std::sqrt(independent);
         Record record = run.record(configuration);

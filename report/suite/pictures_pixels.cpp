@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What pixels are made of: sums, outliers, random numbers; and scenes that lack something.
+// Pixels: sums, outliers, random numbers; and scenes that lack something.
 #include <algorithm>
 #include <cmath>
 
@@ -55,7 +55,7 @@ void fireflies(CaseRun& run) {
     }
 }
 
-// Nothing lights the floor but from below, where only tilted shading normals look.
+// The floor is lit only from below, where only tilted shading normals face.
 void tilted_normals(CaseRun& run) {
     for (const Configuration& configuration : analysis_configurations(run))
         for (const float height : {0.5f, 0.05f, 1e-3f}) {
@@ -91,7 +91,7 @@ void tilted_normals(CaseRun& run) {
         }
 }
 
-// Of multiples of 2^-24, of which float64 adds up 2^29 without an error.
+// Sums multiples of 2^-24; float64 adds up 2^29 of them without an error.
 void sums_of_films(CaseRun& run) {
     path_tracer::Film film = path_tracer::Film::empty(1, 1, 1, {});
     constexpr uint blocks = 1'000'000;
@@ -135,7 +135,7 @@ void add_correlation(CaseRun& run, Record record, const char* between, std::span
     add_judged(run, std::move(record), text("of a correlation of ", found));
 }
 
-// A floor below a light, which all pixels see alike: what differs is noise.
+// All pixels see the same of a floor below a light: differences are noise.
 void seeds(CaseRun& run) {
     const auto spp = static_cast<uint>(run.amount(2, 16));
     for (const Configuration& configuration : analysis_configurations(run)) {
@@ -168,7 +168,7 @@ void seeds(CaseRun& run) {
     add_correlation(run, record, "dimensions 1 and 2", dimensions[1], dimensions[2]);
 }
 
-// A mean of all pixels that must lie within [low, high].
+// Expects a mean of all pixels within [low, high].
 void expect_within(CaseRun& run, const Configuration& configuration, const char* what, const RenderDesc& desc,
                    double low, double high) {
     RenderFixture fixture(run, configuration, desc);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What surfaces scatter, by the functions that kernels share with the CPU.
+// Scattering at surfaces, by the functions that kernels share with the CPU.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -57,13 +57,14 @@ void add_value(CaseRun& run, Record record, double value, double truth, double a
     add_judged(run, std::move(record), text("off by more than ", allowed));
 }
 
-// The mean weight of samples, by the midpoint rule over u: 1 - u.x is s^4, for few microfacets stand upright, near 1.
+// Returns the mean weight of samples, by the midpoint rule over u: 1 - u.x is s^4, because few microfacets stand
+// upright, near 1.
 double albedo_of(const Bsdf& bsdf, float cosine, uint side) {
     double sum = 0;
     for (uint i = 0; i < side; ++i)
         for (uint j = 0; j < side; ++j) {
             const double s = (i + 0.5) / side;
-            const vec2 u(std::min(1 - s * s * s * s, 1 - 0x1p-24), (j + 0.5) / side);  // below 1 in float32, too
+            const vec2 u(std::min(1 - s * s * s * s, 1 - 0x1p-24), (j + 0.5) / side);  // also below 1 in float32
             const BsdfSample sample = path_tracer::sample_bsdf(bsdf, direction(cosine), 0.5f, u);
             sum += 4 * s * s * s * static_cast<double>(sample.weight.x);
         }
@@ -83,7 +84,7 @@ void microfacet_albedo(CaseRun& run) {
                   albedo_of(mirror(row.alpha), row.cosine, static_cast<uint>(run.amount(256, 512))), row.albedo, 1e-4);
 }
 
-// Cosine-weighted mean of Fresnel's reflectance, by the midpoint rule over the squared cosine.
+// Returns the cosine-weighted mean of Fresnel's reflectance, by the midpoint rule over the squared cosine.
 double mean_fresnel(float eta) {
     constexpr uint steps = 1 << 20;
     double sum = 0;
@@ -131,7 +132,7 @@ void nearly_smooth(CaseRun& run) {
     }
 }
 
-// Chance of a larger value of chi-squared (Wilson and Hilferty 1931).
+// Returns the chance of a larger value of chi-squared (Wilson and Hilferty 1931).
 double chance_of_chi_squared(double chi_squared, double freedom) {
     const double part = 2 / (9 * freedom);
     const double z = (std::cbrt(chi_squared / freedom) - (1 - part)) / std::sqrt(part);
@@ -146,7 +147,7 @@ std::size_t bin_of(vec3 w) {
     return band * sectors + std::min(static_cast<uint>(turns * sectors), sectors - 1);
 }
 
-// The expected share of each bin in all samples, by the midpoint rule over the density.
+// Returns the expected share of each bin in all samples, by the midpoint rule over the density.
 std::vector<double> expected_shares(const Bsdf& bsdf, vec3 wo) {
     constexpr uint fine = 96;
     std::vector<double> shares(std::size_t{bands} * sectors);
@@ -161,7 +162,7 @@ std::vector<double> expected_shares(const Bsdf& bsdf, vec3 wo) {
     return shares;
 }
 
-// Chi-squared over bins of 5 samples or more; the others are one bin, as are samples that are nothing.
+// Takes chi-squared over bins of 5 samples or more. The others form one bin, and so do samples that are nothing.
 double chance_of_samples(const Bsdf& bsdf, vec3 wo, uint samples, uint seed) {
     const std::vector<double> shares = expected_shares(bsdf, wo);
     std::vector<double> counts(shares.size());

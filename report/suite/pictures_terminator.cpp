@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Where light of smooth normals ends on coarse meshes. Shadow rays leave by the geometric normal, so that facets that
-// look away from a light are black however their vertices' normals lie; those that look to it are lit no further than
-// these normals do.
+// The shadow terminator: where light of smooth normals ends on coarse meshes. Shadow rays leave by the geometric
+// normal, so that facets that face away from a light are black whatever their vertices' normals are. Facets that face
+// it are lit no further than these normals allow.
 #include <twinray/geometry.h>
 #include <twinray/scene.h>
 
@@ -17,7 +17,7 @@ namespace {
 constexpr uint finest = 6;  // subdivisions of an icosahedron: 81,920 triangles
 constexpr uint triangles_of(uint subdivisions) { return 20u << 2 * subdivisions; }
 
-// Unit spheres in a row along y, turned so that no edges lie where light ends, one of the finest and then from 1 to
+// Makes unit spheres in a row along y, turned so that no edges lie where light ends: one of the finest, then from 1 to
 // `coarse` subdivisions. Light comes along -x, from a square half a degree wide.
 Scene spheres_lit_from_the_side(uint coarse, std::uint64_t seed) {
     Scene scene;
@@ -31,7 +31,7 @@ Scene spheres_lit_from_the_side(uint coarse, std::uint64_t seed) {
     return scene;
 }
 
-// The middle of a sphere's side, half of which is lit.
+// Looks at the middle of a sphere's side, half of which is lit.
 path_tracer::CameraRays look_at_sphere(uint i) {
     const float y = 3 * static_cast<float>(i);
     return look({0, y, 4}, {0, y, 0}, 0.15f);
@@ -51,7 +51,7 @@ void shadow_terminator(CaseRun& run) {
     desc.settings.width = desc.settings.height = static_cast<uint>(run.amount(24, 256));
     desc.settings.max_depth = 1;  // light that nothing else has reflected
     std::vector<Configuration> configurations = analysis_configurations(run);
-    // All show the same, and each compiles the path tracer.
+    // All configurations show the same, and each compiles the path tracer.
     if (!run.is_whole() && configurations.size() > 1) configurations.resize(1);
     for (const Configuration& configuration : configurations) {
         RenderFixture fixture(run, configuration, desc);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Classes of triangles by signs as plain arithmetic gives them: what exactness is measured against.
+// Classes of triangles by signs of plain arithmetic, with which exact arithmetic is compared.
 #pragma once
 
 #include "engine/collide/pair_class.h"
@@ -9,7 +9,7 @@ namespace twinray::suite {
 PairClass class_by_float32(const WorldTriangle& a, const WorldTriangle& b);
 PairClass class_by_float64(const WorldTriangle& a, const WorldTriangle& b);
 
-// Of det(a - d, b - d, c - d).
+// Returns the sign of det(a - d, b - d, c - d).
 template <class Real>
 int plain_volume_sign(const dvec3& a, const dvec3& b, const dvec3& c, const dvec3& d) {
     using Vector = Vec<3, Real>;
@@ -18,7 +18,7 @@ int plain_volume_sign(const dvec3& a, const dvec3& b, const dvec3& c, const dvec
     return (volume > 0) - (volume < 0);
 }
 
-// Of det(a - c, b - c) as seen along an axis.
+// Returns the sign of det(a - c, b - c) as seen along an axis.
 template <class Real>
 int plain_area_sign(const dvec3& a, const dvec3& b, const dvec3& c, uint axis) {
     using Vector = Vec<3, Real>;

@@ -13,7 +13,7 @@
 
 namespace twinray::suite {
 
-// From 1e7 on the cells are smaller than the spacing of floats: what rounding leaves of them is a mesh like any other.
+// From 1e7 on, the cells are smaller than the spacing of floats: after rounding, they are a mesh like any other.
 void far_from_the_origin(CaseRun& run) {
     for (const float offset : {1.0f, 1e2f, 1e4f, 1e6f, 1e7f, 1e8f}) {
         const Mesh grid = moved(scaled(make_grid(16, 16, 0.02f, 5), 16), vec3(offset, -offset, offset));
@@ -25,8 +25,8 @@ void far_from_the_origin(CaseRun& run) {
 
 namespace {
 
-// From about `distance` away and above, in the fewest steps of the direction's last places with which the line passes
-// within `tolerance` of the target, though the origin is rounded to units far larger than that.
+// Returns a ray from about `distance` away and above. It takes the fewest steps of the direction's last places with
+// which the line passes within `tolerance` of the target, although the origin is rounded to units far larger than that.
 Ray far_ray(Random& random, const dvec3& target, double distance, double tolerance) {
     vec3 direction = random.direction();
     direction.y = -std::max(std::abs(direction.y), 0.3f);
@@ -50,10 +50,10 @@ dvec3 point_of(const Mesh& mesh, uint primitive, double u, double v) {
     return (1 - u - v) * a + u * b + v * c;
 }
 
-// Far cameras lose the triangle, and the point that u and v give without the coarse t. From level refined on, u and v
-// are rounded once (2^-24 each) from float64, whose roundings at the distance are 2^-53 each. Another triangle than the
-// reference's is right within what float32 rounding does to a ray that begins two sizes of the field away, as
-// ErrorBounds tell, on a surface that it meets at a slope of up to 4.
+// At far cameras, the triangle is lost, and so is the point that u and v give without the coarse t. From level refined
+// on, u and v are rounded once (2^-24 each) from float64, which itself rounds by 2^-53 each at the distance. Another
+// triangle than the reference's is right within what float32 rounding does to a ray that begins two sizes of the field
+// away, by ErrorBounds, on a surface that it meets at a slope of up to 4.
 void expect_right_points(CaseRun& run, const Measured& measured, const Mesh& mesh, std::span<const Ray> rays,
                          double distance, double size) {
     const double same_bound = 0x1p-22 + distance * 0x1p-50, other_bound = 4 * 16 * 0x1p-24 * 3 * size;
@@ -99,8 +99,8 @@ void far_camera(CaseRun& run) {
     }
 }
 
-// Rays in float64 that begin within 1e-4 of a plane, where float32 has steps of 6e-5 and more: the rounded ones begin
-// on its other side, or far along it. A second plane lies behind.
+// Traces rays in float64 that begin within 1e-4 of a plane, where float32 has steps of 6e-5 and more: the rounded ones
+// begin on its other side, or far along it. A second plane lies behind.
 void rays_of_double(CaseRun& run) {
     const Mesh plane = make_quad(vec3(-100, -100, 0), vec3(200, 0, 0), vec3(0, 200, 0));
     for (const double height : {1e3, 1e6, 1e9}) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Costs and worth of each level on scenes of an ordinary size, and what features of the kernel cost a
-// scene that does not need them.
+// The cost and worth of each level on scenes of an ordinary size, and the cost of kernel features in a scene that does
+// not need them.
 #include "report/suite/case_run.h"
 
 #include <algorithm>
@@ -41,7 +41,7 @@ std::vector<Step> steps_of(const AbstractAccel& accel, Query query) {
     return steps;
 }
 
-// All steps in turn, each round.
+// Traces all steps in turn, in each round.
 void trace_rounds(AbstractAccel& accel, std::span<const Ray> rays, Query query, std::size_t rounds,
                   std::vector<Step>& steps) {
     Context& context = accel.context();
@@ -90,8 +90,8 @@ void add_records(CaseRun& run, const char* rays, const std::vector<Step>& steps)
     }
 }
 
-// A record for each feature that is added, of closest and of any hits: the time over that of the kernel with what is
-// needed alone (of_needed, the median over rounds in which all take turns, with its 95 % interval of_needed_low and
+// Adds a record for each added feature, for closest and for any hits: the time over that of the kernel with only what
+// is needed (of_needed, the median over rounds in which all take turns, with its 95 % interval of_needed_low and
 // of_needed_high). A fault is a ray that finds another hit.
 void feature_costs(CaseRun& run) {
     const std::vector<Configuration> able = run.configurations();
@@ -108,7 +108,7 @@ void feature_costs(CaseRun& run) {
     }
 }
 
-// 65,536 and 2^20 of them.
+// Returns 65,536 to 2^20 rays.
 std::vector<Ray> camera_rays(CaseRun& run, const Bounds& bounds) {
     return primary_rays(bounds, static_cast<uint>(run.amount(256, 1024)));
 }

@@ -8,7 +8,7 @@
 namespace twinray::suite {
 namespace {
 
-constexpr Backend query_backend = Backend::software;  // whose context answers
+constexpr Backend query_backend = Backend::software;  // its context answers
 
 }  // namespace
 

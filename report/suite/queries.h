@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// For cases in which no accelerator takes part: the GPU answers, and the host where it is in doubt.
+// Helpers of cases in which no accelerator takes part: the GPU answers, and the host where the GPU is in doubt.
 #pragma once
 
 #include <functional>
@@ -8,19 +8,19 @@
 
 namespace twinray::suite {
 
-// The device that answers. Throws NotRun where it has no float64.
+// Returns the device that answers. Throws NotRun if it has no float64.
 Context& query_context(CaseRun& run);
 
-// A record without a backend and a level.
+// Returns a record without a backend and a level.
 Record query_record(CaseRun& run, const std::string& reference, const std::string& variant = {});
-// The same of what the host computes.
+// Returns the same for results of the host.
 Record cpu_record(CaseRun& run, const std::string& reference, const std::string& variant = {});
-// With the ray_result: any fault is twinray's, and `what` it was.
+// Adds the record with its result: any fault is twinray's, and `what` describes it.
 void add_checked(CaseRun& run, Record record, std::uint64_t faults, const std::string& what);
-// The same for a record whose faults are set; the bound of their rate stays as it is.
+// Does the same for a record whose faults are set; the bound of their rate stays as it is.
 void add_judged(CaseRun& run, Record record, const std::string& what);
 
-// Wall time of each repetition, in nanoseconds a thing of `count`.
+// Returns the wall time of each repetition, in nanoseconds per thing of `count`.
 std::vector<double> ns_each(int reps, std::size_t count, const std::function<void()>& work);
 
 }  // namespace twinray::suite

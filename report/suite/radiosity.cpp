@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Light between the walls of a cube, of which one shines: known in closed form.
+// Light between the walls of a cube, one of which shines: known in closed form.
 #include <twinray/analysis.h>
 
 #include <algorithm>
@@ -13,14 +13,14 @@
 namespace twinray::suite {
 namespace {
 
-// Six walls of one mesh each that look inwards; 0 and 1 face each other.
+// Makes six walls of one mesh each that face inwards; 0 and 1 face each other.
 Scene cube() {
     const vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
     return scene_of({make_quad(vec3(0), x, y), make_quad(z, y, x), make_quad(vec3(0), y, z), make_quad(x, z, y),
                      make_quad(vec3(0), z, x), make_quad(y, x, z)});
 }
 
-// B of the wall that emits 1, of the one that faces it, and of the four beside, all of which reflect rho.
+// Returns B of the wall that emits 1, of the one that faces it, and of the four beside; all reflect rho.
 std::array<double, 3> known_radiosities(double rho) {
     constexpr double facing = 0.199824895698387383, beside = 0.200043776075403154;
     // The sum of all is 1 / (1 - rho); emitter and facing wall differ by their own exchange alone.
@@ -66,7 +66,7 @@ void set_solution(Record& record, const Solution& last, std::vector<double> erro
                       {"iterations", last.light.iterations}};
 }
 
-// The error of B by that of the view factors, over rays, with the time of both.
+// Measures the error of B from that of the view factors, over rays, with the time of both.
 void by_rays(CaseRun& run) {
     constexpr double rho = 0.9;
     const Scene scene = cube();
@@ -100,7 +100,7 @@ void by_rays(CaseRun& run) {
     }
 }
 
-// With view factors that are exact but for float32: what the solver loses where hardly anything is absorbed.
+// Measures what the solver loses if hardly anything is absorbed, with view factors that are exact but for float32.
 void by_reflectance(CaseRun& run) {
     const std::vector<Configuration> configurations = analysis_configurations(run);
     if (configurations.empty()) return;

@@ -75,7 +75,7 @@ void ends_of_float32(CaseRun& run) {
     }
 }
 
-// A closed, toothed disc about the y axis, of radius and height 1, which its centre sees all of.
+// Returns a closed, toothed disc about the y axis, of radius and height 1; its centre sees all of it.
 Mesh make_gear(uint teeth) {
     Mesh gear;
     const uint vertices = 4 * teeth;
@@ -97,7 +97,7 @@ Mesh make_gear(uint teeth) {
     return gear;
 }
 
-// From around the middle of the gear, aimed at its vertices and edges.
+// Returns rays from around the middle of the gear, aimed at its vertices and edges.
 std::vector<Ray> rays_inside(const Mesh& gear, std::size_t count, std::uint64_t seed) {
     Random random(seed);
     const vec3 middle = bounds_of(gear).center();
@@ -165,7 +165,7 @@ void mixed_sizes(CaseRun& run) {
     expect_refined_t(run, measured, rays, 1, {});
 }
 
-// A triangle of 1e-18 above one of 1e18: rays at the small one, then beside it.
+// A triangle of 1e-18 lies above one of 1e18. Rays aim at the small one, then beside it.
 void smallest_beside_largest(CaseRun& run) {
     Mesh small, large;
     add_triangle(small, vec3(-1e-18f, -1e-18f, 0), vec3(1e-18f, -1e-18f, 0), vec3(0, 1e-18f, 0));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Scale: how long directions are, how far hits, and what is denormal.
+// Scale: lengths of directions, distances of hits, and denormals.
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -18,7 +18,7 @@ std::vector<Ray> stretched(std::vector<Ray> rays, float length) {
     return rays;
 }
 
-// Those whose directions keep all their bits at a length of 2^-100.
+// Returns rays with directions that keep all their bits at a length of 2^-100.
 std::vector<Ray> rays_of_any_length(const World& world, const Bounds& bounds, std::size_t count, std::uint64_t seed) {
     std::vector<Ray> rays = mixed_rays(world, bounds, count, seed);
     std::erase_if(rays, [](const Ray& ray) {
@@ -29,8 +29,8 @@ std::vector<Ray> rays_of_any_length(const World& world, const Bounds& bounds, st
     return rays;
 }
 
-// Those that hit at a t which is a normal float when directions are so long: devices may flush others to 0, where a ray
-// has not begun.
+// Leaves out hits at a t that is not a normal float when directions are this long: devices may flush it to 0, where a
+// ray has not begun.
 std::vector<Ray> with_normal_t(std::span<const Ray> rays, std::span<const ReferenceHit> references, float length) {
     std::vector<Ray> kept;
     for (std::size_t i = 0; i < rays.size(); ++i)
@@ -56,7 +56,7 @@ void lengths_by_powers_of_two(CaseRun& run, const World& world, std::span<const 
     }
 }
 
-// Answers to `rays` in `world`, which have zeros where those of `expected` have denormal numbers.
+// Compares answers to `rays` with `expected`, the answers with zeros in place of denormal numbers.
 void expect_those_of_zeros(CaseRun& run, const Measured& measured, std::span<const Traced> expected,
                            std::span<const Ray> rays, Values params) {
     params.insert_or_assign("measured", "beside zeros");
@@ -74,7 +74,7 @@ void expect_those_of_zeros(CaseRun& run, const Measured& measured, std::span<con
     }
 }
 
-// A flat fan of which the hub is at (hub, -hub, 0).
+// Returns a flat fan with its hub at (hub, -hub, 0).
 Mesh fan_about(float hub) {
     Mesh fan;
     fan.positions.push_back(vec3(hub, -hub, 0));
@@ -105,7 +105,7 @@ void lengths_of_directions(CaseRun& run) {
         expect_defined(run, world, stretched(rays, length), {{"length", length}});
 }
 
-// Down at the vertices and edges of a grid, whose x they keep, and between them.
+// Rays go down at the vertices and edges of a grid, whose x they keep, and between them.
 void nearly_zero_components(CaseRun& run) {
     const Mesh grid = scaled(make_grid(16, 16), 16);
     const World world = world_of(grid);
@@ -132,7 +132,7 @@ void nearly_zero_components(CaseRun& run) {
     }
 }
 
-// A square across the ray at `depth`, as wide as that; the ray covers `speed` along z in a unit of t.
+// The square lies across the ray at `depth` and is as wide as that; the ray covers `speed` along z in a unit of t.
 void largest_distances(CaseRun& run) {
     struct Setting {
         float depth, speed;

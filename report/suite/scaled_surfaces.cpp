@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Points and normals of hits on instances whose axes are scaled apart.
+// Points and normals of hits on instances with unequally scaled axes.
 #include <twinray/geometry.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr double most_angle = 1e-5, most_length_error = 1e-6;
 
-// The matrix by which normals go through a transform.
+// Returns the matrix by which normals go through a transform.
 using NormalRule = glm::dmat3 (*)(const Transform&);
 
 double angle_between(const dvec3& a, const dvec3& b) {
@@ -23,7 +23,7 @@ double angle_between(const dvec3& a, const dvec3& b) {
     return std::atan2(length(cross(u, v)), dot(u, v));
 }
 
-// A sphere that has normals, under a transform of its own for each ray.
+// A sphere with normals, under another transform for each ray.
 struct Scaled {
     Mesh mesh;
     std::vector<Transform> transforms;

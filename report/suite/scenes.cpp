@@ -8,7 +8,7 @@
 namespace twinray::suite {
 namespace {
 
-// More vertices than these have entries are to come.
+// Drops the attributes, because the mesh gets vertices without entries in them.
 void drop_attributes(Mesh& mesh) {
     mesh.normals.clear();
     mesh.uvs.clear();
@@ -34,7 +34,8 @@ vec3 Random::direction() {
     }
 }
 
-// Of a random unit quaternion (rejection, as uniform on the sphere of dimension 4), evaluated in float64.
+// Returns the rotation of a random unit quaternion (by rejection, as uniform on the sphere of dimension 4), evaluated
+// in float64.
 Transform Random::rotation() {
     for (;;) {
         const double w = between(-1, 1), x = between(-1, 1), y = between(-1, 1), z = between(-1, 1);

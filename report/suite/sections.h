@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Cases that stand in other files than the catalogue of their section, by section and file, and what these share.
+// Cases that are in other files than the catalogue of their section, by section and file, and what these share.
 #pragma once
 
 #include "engine/core/error.h"
@@ -8,13 +8,13 @@
 namespace twinray::suite {
 
 // W, edges.cpp.
-// Whether it is 1, or even.
+// Return whether it is 1, or even.
 inline bool is_one(const Ray&, uint count) { return count == 1; }
 inline bool is_even(const Ray&, uint count) { return count % 2 == 0; }
-// Closest hits checked by the reference, and crossings by `right`.
+// Checks closest hits by the reference, and crossings by `right`.
 void measure_both(CaseRun& run, const Mesh& mesh, std::span<const Ray> rays, const CaseRun::RightCount& right,
                   const Measurement& measurement = {});
-// edges_exact.cpp: what arithmetic does not round, or what meets exactly.
+// edges_exact.cpp: arithmetic that does not round, and exact meetings.
 void slanted_through_a_grid(CaseRun& run);
 void straight_through_a_grid(CaseRun& run);
 void within_a_plane_of_boxes(CaseRun& run);
@@ -22,7 +22,7 @@ void random_winding(CaseRun& run);
 void jittered_grid(CaseRun& run);
 void fans(CaseRun& run);
 void through_corners_of_boxes(CaseRun& run);
-// edges_limits.cpp: where a gap is allowed, and controls.
+// edges_limits.cpp: gaps that are allowed, and controls.
 void t_junctions(CaseRun& run);
 void silhouettes(CaseRun& run);
 void beside_long_edges(CaseRun& run);

@@ -41,8 +41,8 @@ void expect_targets(CaseRun& run, const Mesh& mesh, const AimedRays& aimed, Valu
     }
 }
 
-// Slivers of length 1 in three planes, as high as `height`, with rays that stay at one height above the long edge: the
-// differences that decide are exact.
+// Uses slivers of length 1 in three planes, as high as `height`, with rays that stay at one height above the long edge:
+// the differences that decide are exact.
 void slivers(CaseRun& run, float height) {
     Mesh mesh;
     for (int axis = 0; axis < 3; ++axis)
@@ -61,7 +61,7 @@ void slivers(CaseRun& run, float height) {
     expect_targets(run, mesh, aimed, {{"aspect", 1 / height}});
 }
 
-// Turned slivers of random places, aimed at points inside; rounding moves rays out of the thinner ones.
+// Aims at points inside turned slivers at random places; rounding moves rays out of the thinner ones.
 void turned_slivers(CaseRun& run, float height) {
     Random random(run.seed());
     Mesh mesh;
@@ -85,7 +85,7 @@ void thin_triangles(CaseRun& run) {
     for (const float height : {1e-2f, 1e-4f, 1e-6f}) turned_slivers(run, height);
 }
 
-// A shallow cone of needles, aimed at the hub and less than a float's spacing beside it.
+// Aims at the hub of a shallow cone of needles, and less than a float's spacing beside it.
 void fan_of_needles(CaseRun& run) {
     const std::size_t needles = run.amount(1'000, 100'000);
     const vec3 hub(0.1f, 0.3f, -0.2f);
@@ -107,13 +107,14 @@ void fan_of_needles(CaseRun& run) {
     run.measure(world_of(fan), rays, {.params = {{"needles", needles}}, .fast_is_control = true});
 }
 
-// Points, lines, two equal vertices, two equal indices, among the triangles of a sphere; aimed at all of them.
+// Puts points, lines, two equal vertices and two equal indices among the triangles of a sphere, and aims at all of
+// them.
 void degenerate_triangles(CaseRun& run) {
     Mesh mesh = make_icosphere(3);
     Random random(run.seed());
     const std::size_t sound = mesh.triangles.size();
     for (std::size_t i = 0; i < run.amount(200, 20'000); ++i) {
-        // On a lattice, so that the points of a line are exactly on it.
+        // On a lattice, the points of a line are exactly on it.
         const vec3 a = round(random.in_box(32)) / 64.0f, step = round(random.in_box(8)) / 64.0f;
         if (i % 4 == 0) add_triangle(mesh, a, a, a);
         if (i % 4 == 1) add_triangle(mesh, a, a + step, a + 3.0f * step);
@@ -126,7 +127,7 @@ void degenerate_triangles(CaseRun& run) {
         const vec3 a = mesh.positions[triangle.x], b = mesh.positions[triangle.y];
         rays.push_back(ray_to(dvec3(a * 0.25f + b * 0.75f), dvec3(random.in_box(i % 2 ? 0.4f : 3))));
     }
-    // Those of the sphere come last, so that indices are seen to stay.
+    // The sphere's triangles come last, which shows that indices stay.
     std::reverse(mesh.triangles.begin(), mesh.triangles.end());
     run.measure(world_of(mesh), rays);
     expect_sound_tree(run, mesh, {});
@@ -136,7 +137,7 @@ struct LatticeVector {
     std::int64_t x, y;
 };
 
-// (x, y) with a.x y - a.y x = 1 and 0 <= x < a.x, for coprime a: the next point of the lattice beside the line to a.
+// Returns (x, y) with a.x y - a.y x = 1 and 0 <= x < a.x, for coprime a: the next lattice point beside the line to a.
 LatticeVector next_to(const LatticeVector& a) {
     std::int64_t r0 = a.x, r1 = a.y, s0 = 0, s1 = 1;  // r = s a.y modulo a.x
     while (r1 != 0) {
@@ -149,9 +150,9 @@ LatticeVector next_to(const LatticeVector& a) {
     return {x, (1 + a.y * x) / a.x};
 }
 
-// Triangles between the origin and two points of the lattice of integers with a determinant of 1: their doubled area is
-// 1e-13 of the square of their length, and the products that decide about a ray through a point of the lattice of
-// quarters are equal when rounded. Each lies in a plane of its own, and its ray ends before the next.
+// Uses triangles between the origin and two points of the lattice of integers with a determinant of 1: their doubled
+// area is 1e-13 of the square of their length, and the products that decide about a ray through a point of the lattice
+// of quarters are equal when rounded. Each lies in its own plane, and its ray ends before the next.
 void lattice_needles(CaseRun& run) {
     Mesh mesh;
     AimedRays aimed;
@@ -174,7 +175,7 @@ void lattice_needles(CaseRun& run) {
     expect_targets(run, mesh, aimed, {{"area", "1e-13"}});
 }
 
-// As the slivers of T01, of a doubled area of 1e-40 of the square of their length.
+// Uses slivers like those of T01, with a doubled area of 1e-40 of the square of their length.
 void nearly_degenerate(CaseRun& run) {
     lattice_needles(run);
     constexpr float length = 0x1p33f, height = 0x1p-100f;
@@ -183,7 +184,7 @@ void nearly_degenerate(CaseRun& run) {
     Random random(run.seed());
     AimedRays aimed;
     for (std::size_t i = 0; i < run.amount(512, 50'000); ++i) {
-        // On a lattice, so that heights keep their bits where a unit makes them denormal.
+        // On a lattice, heights keep their bits if a unit makes them denormal.
         const float up = std::ceil(random.between(0, 63)) / 64,
                     along = 0.75f * up + (1 - up) * random.between(0.05f, 0.95f);
         aimed.rays.push_back({vec3(along * length, up * height, length), 0, vec3(0, 0, -1), inf});
@@ -193,8 +194,8 @@ void nearly_degenerate(CaseRun& run) {
                    "in the unit that hardware meshes are built in, the heights are denormal");
 }
 
-// Three triangles of 1e18 across the axes, with a small sphere between them, in one mesh or in two. Rays meet them
-// along their axes, nearly: those that meet them aslant are beyond what float64 knows of t, 1e18 * 2^-53.
+// A triangle of 1e18 lies behind a small sphere, in one mesh with it or in two. Rays meet it nearly along an axis: for
+// others, even float64 is too coarse for t, 1e18 * 2^-53.
 void huge_triangles(CaseRun& run) {
     constexpr float size = 1e18f;
     Mesh large;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Triangles that share their place, or nearly: which of them is hit.
+// Triangles in the same place, or nearly: which of them is hit.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -16,7 +16,7 @@ namespace {
 
 const char* const driver_chooses = "of triangles at one t the driver chooses";
 
-// `copies` of each triangle, in an order that is not that of places.
+// `copies` of each triangle, in an order that does not follow places.
 struct Copies {
     Mesh mesh;
     std::vector<uint> lowest;  // of each triangle: its first copy
@@ -58,7 +58,7 @@ void expect_lowest(CaseRun& run, const char* what, const Mesh& mesh, std::size_t
     }
 }
 
-// How many answers name a farther triangle than the nearest; told apart: those whose t would differ as a float.
+// Counts answers that name a farther triangle than the nearest. A fault is one whose t would differ as a float.
 void expect_order(CaseRun& run, const Measured& measured, const Mesh& mesh, std::span<const Ray> rays, Values params) {
     const World world = world_of(mesh);
     params.insert_or_assign("measured", "order");
@@ -71,7 +71,7 @@ void expect_order(CaseRun& run, const Measured& measured, const Mesh& mesh, std:
             const auto other = line.intersect(world.reference.geometry(0).find(hit.primitive_index)->vertices64());
             if (!other || other->t <= nearest.t) return "";
             ++farther;
-            // From certified on 2^-46 of what t is made of can be told apart, else what a float of it can.
+            // Level certified tells apart 2^-46 of the terms of t, lower levels what t as a float can.
             const bool is_certified = traced.configuration.level == Level::certified;
             const double reach = length(dvec3(rays[i].origin)) / length(dvec3(rays[i].direction));
             if (is_certified ? other->t - nearest.t <= 0x1p-46 * (reach + other->t)
@@ -91,8 +91,8 @@ void expect_order(CaseRun& run, const Measured& measured, const Mesh& mesh, std:
 
 }  // namespace
 
-// Copies of one triangle alone are met in the order of their ids, because their boxes are equal. Those of different
-// triangles whose boxes have one centre share a Morton code, and lie in nodes whose boxes differ.
+// Copies of one triangle alone are met in the order of their ids, because their boxes are equal. Copies of different
+// triangles with one centre of their boxes share a Morton code, and lie in nodes with different boxes.
 void duplicates(CaseRun& run) {
     const Mesh soup = make_soup(200, 17, 0.4f);
     for (const std::size_t copies : {2, 4}) expect_lowest(run, "soup", soup, copies, run.amount(1'024, 100'000));
@@ -107,7 +107,7 @@ void duplicates(CaseRun& run) {
     expect_lowest(run, "one centre", centred, run.amount(8, 256), run.amount(1'024, 20'000));
 }
 
-// Alone, either says what t it would report: together, the smaller t counts, then the one that comes first.
+// Alone, either mesh shows which t it would report; together, the smaller t counts, then the one that comes first.
 void coplanar_tessellations(CaseRun& run) {
     const Mesh coarse = make_grid(5, 7), fine = make_grid(8, 8);
     Mesh both = coarse;

@@ -13,7 +13,7 @@
 
 namespace twinray::suite {
 
-// The plane contains two axes, so that heights above it are exact however small; another is turned, and there the
+// The plane contains two axes, so that heights above it are exact however small. Another plane is turned, and there the
 // roundings of its vertices and of the rays limit the cosine.
 void grazing(CaseRun& run) {
     const Mesh flat = moved(scaled(make_grid(16, 16), 4), vec3(-2, 0, -2));
@@ -42,7 +42,7 @@ void grazing(CaseRun& run) {
     }
 }
 
-// Planes in which the vertices and the rays lie exactly, and still do when seen along the ray: z = 0.375, and x = y.
+// Vertices and rays lie exactly in these planes, also when seen along the ray: z = 0.375, and x = y.
 void in_the_plane(CaseRun& run) {
     Random random(run.seed());
     for (const char* plane : {"z = 0.375", "x = y"}) {
@@ -68,7 +68,7 @@ void in_the_plane(CaseRun& run) {
                 traced, rays, [](std::size_t, const Hit& hit) { return hit.hit ? text("hit at t = ", hit.t) : ""; });
             outcome.params = {{"plane", plane}};
             outcome.reference = "exact";
-            // Seen along the ray, x - y is 0 where a quotient of equal numbers is 1.
+            // Seen along the ray, x - y is 0 if a quotient of equal numbers is 1.
             if (*plane == 'x' && outcome.only_measured.empty())
                 outcome.only_measured = why_bits_may_differ(run, traced.configuration);
             run.expect(traced.configuration, outcome);
@@ -76,8 +76,8 @@ void in_the_plane(CaseRun& run) {
     }
 }
 
-// From outside, in the plane of a face and through the edges at its rim: whether the ray is in or out is decided alike
-// by all faces, so it leaves as often as it enters.
+// Rays come from outside, in the plane of a face and through the edges at its rim. All faces decide alike whether a ray
+// is in or out, so it leaves as often as it enters.
 void in_the_plane_of_a_face(CaseRun& run) {
     Random random(run.seed());
     std::vector<Ray> rays;
@@ -90,7 +90,8 @@ void in_the_plane_of_a_face(CaseRun& run) {
         rays.push_back(
             {turned(edge - direction, static_cast<int>(i % 3)), 0, turned(direction, static_cast<int>(i % 3)), inf});
     }
-    // In the lower planes the rule for ties lets the box begin, in the upper ones it has ended, or the other way round.
+    // In the lower planes, the rule for ties lets the box begin, and in the upper ones it has ended, or the other way
+    // round.
     std::size_t met = 0;
     const auto is_even = [&](const Ray&, uint count) {
         met += count == 2;
@@ -100,7 +101,7 @@ void in_the_plane_of_a_face(CaseRun& run) {
     if (met == 0) fail("no ray was counted to cross the box twice");
 }
 
-// A sphere whose vertices have whole numbers of 16, so that rays through vertices and middles of edges are exact.
+// Uses a sphere with vertices at multiples of 16, so that rays through vertices and middles of edges are exact.
 void tied_axes(CaseRun& run) {
     Mesh sphere = make_icosphere(2, 64);
     for (vec3& position : sphere.positions) position = round(position) * 16.0f;
@@ -113,7 +114,7 @@ void tied_axes(CaseRun& run) {
         vec3 direction(sign(), sign(), 0);
         direction.z = sign() * (i % 2 ? 1.0f : 0.5f);
         direction = turned(direction, static_cast<int>(i % 3));
-        // Towards the middle, so that it is no silhouette that the ray meets.
+        // The ray goes towards the middle, so that it does not meet a silhouette.
         const vec3 target = i % 4 < 2 ? a : (a + b) * 0.5f;
         if (dot(direction, target) > 0) direction = -direction;
         rays.push_back({target - 512.0f * direction, 0, direction, inf});
@@ -121,7 +122,7 @@ void tied_axes(CaseRun& run) {
     run.measure(world_of(sphere), rays);
 }
 
-// Their length is that of the edge or diagonal, so that the far end is at t = 1.
+// Each ray is as long as the edge or diagonal, so that the far end is at t = 1.
 void along_edges(CaseRun& run) {
     const World world = world_of(make_box(vec3(1), vec3(2)));
     std::vector<Ray> rays;
@@ -151,7 +152,8 @@ void along_edges(CaseRun& run) {
 
 namespace {
 
-// A triangle of whole numbers, and a ray from within it, or from 2^-4 off its plane, that its line meets inside.
+// A triangle of whole numbers, and a ray from within it, or from 2^-4 off its plane; its line meets the triangle
+// inside.
 struct Departing {
     std::array<vec3, 3> corners;
     Ray ray;
@@ -173,7 +175,7 @@ std::optional<Departing> departing(Random& random, vec3 at) {
         const float u = random.between(-1, 1), v = random.between(-1, 1);
         way = u * first + v * second + 10.0f * way;
     }
-    // From here on in float64, where all of it is exact but the division.
+    // From here on, all is exact in float64 but the division.
     const dvec3 normal = cross(dvec3(first), dvec3(second));
     const double above = -dot(normal, dvec3(from)), along = dot(normal, dvec3(way));
     if (dot(normal, normal) == 0 || std::abs(along) < 1e-3 * length(normal) * length(dvec3(way))) return {};
@@ -192,7 +194,7 @@ void from_the_plane(CaseRun& run) {
     std::vector<Ray> rays;
     std::vector<bool> hits;
     for (std::size_t i = 0; i < run.amount(2'048, 65'536); ++i) {
-        // Too far apart for a ray to meet another one.
+        // They are too far apart for a ray to meet another one.
         const vec3 at = 16'384.0f * vec3(i % 40, i / 40 % 40, i / 1'600);
         const std::optional<Departing> made = departing(random, at);
         if (!made) continue;

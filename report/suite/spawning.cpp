@@ -25,7 +25,7 @@ Values prices_of(std::span<const SpawnPrice> prices) {
 struct Tally {
     std::map<SpawnOutcome, std::uint64_t> outcomes = {};
     std::string example = {};  // the first fault
-    bool is_exact = false;     // of SPAWN_BOUND: the reference shows one of the faults, too
+    bool is_exact = false;     // of SPAWN_BOUND: the reference also shows one of the faults
 
     std::uint64_t count(SpawnOutcome outcome) const {
         const auto found = outcomes.find(outcome);
@@ -71,7 +71,7 @@ void set_tallies(Record& record, const Tallies& tallies) {
     set_faults(record, bound.faults(), record.n);
     record.example = bound.example;
     record.results.emplace("flagged", bound.count(SpawnOutcome::flagged));
-    // These tell no offset, so that nothing of theirs is flagged.
+    // These methods report no offset, so that none of their faults is flagged.
     const auto faults = [&](uint method) {
         return tallies[method].faults() + tallies[method].count(SpawnOutcome::flagged);
     };
@@ -80,7 +80,7 @@ void set_tallies(Record& record, const Tallies& tallies) {
     record.results.emplace("faults_integer_offset", faults(SPAWN_INTEGER));
 }
 
-// Faults of hardware are the driver's where the rays are right by the reference.
+// Faults of hardware are the driver's if the rays are right by the reference.
 void decide(Record& record, const Departures& departures, const Tallies& tallies, Backend backend) {
     const Tally& without_offset = tallies[SPAWN_NONE];
     const bool sees_nothing = departures.must_show && is_ours(backend) && without_offset.faults() == 0;
@@ -91,7 +91,7 @@ void decide(Record& record, const Departures& departures, const Tallies& tallies
     record.fault_of = is_drivers ? "driver" : "twinray";
 }
 
-// Away from the triangle on the side of its normal; every second one grazing, at a cosine of 1 to 10^-4.
+// Returns a ray away from the triangle on the side of its normal; every second one grazes, at a cosine of 1 to 10^-4.
 SpawnItem leaving(Random& random, const Mesh& mesh, const glm::dmat3& normals) {
     SpawnItem item{};
     item.primitive = random.below(mesh.triangles.size());
@@ -117,7 +117,7 @@ SpawnOutcome meets_itself(const SpawnItem& item, const Hit& hit) {
     return hit.hit && hit.primitive_index == item.primitive ? SpawnOutcome::false_hit : SpawnOutcome::right;
 }
 
-// Departures whose rays may meet other triangles.
+// Measures departures whose rays may meet other triangles.
 void measure_self_hits(CaseRun& run, const Spawner& spawner, Departures departures) {
     departures.outcome_of = [&](std::size_t i, const Hit& hit, const SpawnPrice&) {
         return meets_itself(departures.items[i], hit);
@@ -134,7 +134,7 @@ struct Kind {
     Transform transform = {};
 };
 
-// 128 separate triangles within a few sizes of the centre.
+// Makes 128 separate triangles within a few sizes of the centre.
 Mesh triangles_of(Random& random, const Kind& kind) {
     Mesh mesh;
     for (uint i = 0; i < 128; ++i) {
@@ -168,7 +168,7 @@ std::vector<Kind> kinds(Random& random) {
         {.name = "size 1e6", .size = 1e6f},
         {.name = "size 2^-60", .size = 0x1p-60f},
         {.name = "size 2^60", .size = 0x1p60f},
-        // Across x the inverse has small entries, which are differences of large ones, times the large translation.
+        // Across x, the inverse has small entries, which are differences of large ones, times the large translation.
         {.name = "across x, rotated by 1e-4, translation 1e4",
          .extent = vec3(0, 1, 1),
          .transform = Transform::translation({0, 1e4f, 0}) * nearly_unturned()},
@@ -229,7 +229,7 @@ void measure_departures(CaseRun& run, const Spawner& spawner, const Departures& 
     }
 }
 
-// A convex body: whatever a ray that leaves it meets is its own surface.
+// The body is convex: a ray that leaves it can only meet its own surface.
 void leave_a_sphere(CaseRun& run) {
     const Spawner spawner(run.devices().context(Backend::software));
     Random random(run.seed());

@@ -12,12 +12,12 @@ namespace twinray::suite {
 #include "twinray/glsl/cpp_end.h"
 
 struct SpawnedRays {
-    std::vector<Ray> rays;           // of every method, one an item
+    std::vector<Ray> rays;           // of every method, one per item
     std::vector<SpawnPrice> prices;  // of the items by SPAWN_BOUND
 };
 
-// A kernel lets rays leave points of a mesh, by the function that users call. Compiled once; the same rays for all
-// accelerators, as the kernel traces nothing.
+// A kernel that lets rays leave points of a mesh, by the function that users call. It is compiled once, and the rays
+// are the same for all accelerators, because it traces nothing.
 class Spawner {
   public:
     explicit Spawner(Context& context);
@@ -42,16 +42,16 @@ struct Departures {
     std::vector<SpawnItem> items = {};  // of instance 0
     Values params = {};
     std::function<SpawnOutcome(std::size_t item, const Hit& hit, const SpawnPrice& price)> outcome_of = {};
-    // Negative control: without an offset there have to be faults on software, or the case sees nothing.
+    // Negative control: without an offset, software must show faults; otherwise the case sees nothing.
     bool must_show = true;
     std::string fault_of = "twinray";  // "" = by the backend
 };
 
-// Spawns every item by every method, traces the closest hits on each backend and records what came of them: by the
-// public function there have to be no faults; those of the other methods are results.
+// Spawns every item by every method, traces the closest hits on each backend and records the outcomes. The public
+// function must have no faults; those of the other methods are results.
 void measure_departures(CaseRun& run, const Spawner& spawner, const Departures& departures);
 
-// Linear part of a transform and, for normals, its inverse transposed; in float64.
+// Return the linear part of a transform and, for normals, its inverse transposed, in float64.
 glm::dmat3 linear_of(const Transform& transform);
 glm::dmat3 normals_of(const Transform& transform);
 

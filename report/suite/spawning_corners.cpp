@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rays that leave a surface close to another one, which they have to meet, or not.
+// Rays that leave a surface close to another one, which they must meet, or must not.
 #include <algorithm>
 #include <cmath>
 
@@ -11,14 +11,14 @@
 namespace twinray::suite {
 namespace {
 
-// Triangles 0 and 1, and 2 and 3.
+// Joins two quads: triangles 0 and 1, and 2 and 3.
 Mesh two_quads(Mesh both, const Mesh& second) {
     append(both, second);
     return both;
 }
 bool is_second_quad(const Hit& hit) { return hit.hit && hit.primitive_index >= 2; }
 
-// The point (x, y) of make_quad(0, (1, 0, 0), (0, 1, 0)).
+// Returns the point (x, y) of make_quad(0, (1, 0, 0), (0, 1, 0)).
 SpawnItem at(float x, float y) {
     SpawnItem item{};
     item.primitive = y < x ? 0 : 1;
@@ -26,24 +26,25 @@ SpawnItem at(float x, float y) {
     return item;
 }
 
-// A rigid place where coordinates are rounded in all components.
+// Returns a rigid transform that rounds all components of coordinates.
 Transform somewhere(Random& random) { return Transform::translation(random.in_box(1)) * random.rotation(); }
 
-// Points x from the corner, between a floor along x and a wall at `dihedral` to it, both 1 long. A ray either ends on
-// the wall, or leads away from it.
+// Points at x from the corner, between a floor along x and a wall at `dihedral` to it, both 1 long. A ray either ends
+// on the wall or leads away from it.
 struct Corner {
     Departures departures;
     std::vector<bool> ends_on_wall;
-    std::vector<double> distance;  // how far the ray may be moved at least before it meets what it did not, or no more
+    std::vector<double> distance;  // how far the ray can move before what it meets changes
 };
 
-// The distance of the line through p along `way` from the line through `corner` along `edge`.
+// Returns the distance of the line through p along `way` from the line through `corner` along `edge`.
 double distance_of_lines(const dvec3& p, const dvec3& way, const dvec3& corner, const dvec3& edge) {
     const dvec3 across = cross(way, edge);
     return std::abs(dot(corner - p, normalize(across)));
 }
 
-// Of a ray that ends on the wall from the wall's edges; where the wall is nearly flat to the floor, that is little.
+// Returns the distance of a ray that ends on the wall from the wall's edges: little if the wall is nearly flat to the
+// floor.
 double distance_from_edges(const dvec3& p, const dvec3& way, const dvec3& up_wall) {
     const dvec3 y(0, 1, 0);
     return std::min({distance_of_lines(p, way, dvec3(0), y), distance_of_lines(p, way, up_wall, y),
@@ -80,7 +81,7 @@ Corner concave_corner(Random& random, double degrees, std::size_t count) {
 
 }  // namespace
 
-// From the middle of a plate upwards, so steeply that all rays end on the plate above.
+// Rays leave the middle of a plate upwards, so steeply that all end on the plate above.
 void leave_between_plates(CaseRun& run) {
     const Spawner spawner(run.devices().context(Backend::software));
     Random random(run.seed());

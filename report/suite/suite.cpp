@@ -33,7 +33,7 @@ class SuiteRun {
         }
     }
 
-    // The cases for which the seconds suffice.
+    // Improves the cases for which the seconds suffice.
     void improve(bool quiet) {
         samples::Progress progress("report: what is least certain",
                                    static_cast<std::uint64_t>(std::max(1.0, seconds_left())), quiet);

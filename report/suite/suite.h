@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The suite of stiff and extreme cases: what there is to run, on what, and how much of it.
+// The suite of stiff and extreme cases: what runs, on which accelerators, and how much of it.
 #pragma once
 
 #include <filesystem>
@@ -23,11 +23,12 @@ struct Settings {
     std::vector<Level> levels = {all_levels.begin(), all_levels.end()};
     std::vector<std::string> only = {};  // patterns of case ids with * and ?; empty: all
     std::uint64_t seed = 1;
-    // Every case runs with this effort, however long it takes; what is left of these seconds goes to the least certain.
+    // Every case runs with this effort, however long it takes; the rest of these seconds goes to the least certain
+    // cases.
     double seconds = 0;
     bool is_whole = false;    // the full suite: set by run()
     bool takes_times = true;  // false: answers are checked, and nothing is repeated to be timed
-    // Folder of the report, into whose folder "replays" the first faulty ray of each record goes; "": none is written.
+    // Folder of the report. Its folder "replays" gets the first faulty ray of each record; "": none is written.
     std::filesystem::path replays_in = {};
 };
 
@@ -61,15 +62,16 @@ std::vector<SuiteCase> picture_scattering_cases();
 std::vector<SuiteCase> picture_error_cases();
 std::vector<SuiteCase> picture_pixel_cases();
 std::vector<SuiteCase> catalogue();  // all of them
-// The same as L for scenes of the user's, from L11 on.
+// Returns the same as L for the user's scenes, from L11 on.
 std::vector<SuiteCase> scene_cases(std::span<const std::filesystem::path> files);
-// The section of a case id, by its letter: "edges, vertices, watertightness". K are those of validation/conformance.
+// Returns the section of a case id, by its letter: "edges, vertices, watertightness". K are those of
+// report/conformance.
 std::string_view section_of(std::string_view id);
 
 // Runs the cases that settings.only names and `state` does not have yet, the first of each section first; one that
-// throws is recorded as our fault, and the rest goes on. With the seconds that are left, those whose rate of faults is
-// least certain run again with more effort: their new records take the place of the old ones. Returns the case in which
-// the device was lost, or hung (see ContextDesc::most_wait_seconds), after which none is run; "" where it was not.
+// throws is recorded as our fault, and the rest goes on. In the seconds that are left, the cases with the least certain
+// rate of faults run again with more effort: their new records replace the old ones. Returns the case in which the
+// device was lost or hung (see ContextDesc::most_wait_seconds), after which none is run, or "" without a loss.
 std::string run(std::span<const SuiteCase> cases, const Settings& settings, Devices& devices, Recorder& recorder,
                 SuiteState& state, bool quiet);
 

@@ -64,7 +64,7 @@ Timing trace_once(const Stage& stage, const Configuration& configuration, const 
     return {total_ms(timings), start.ms(), !timings.empty()};
 }
 
-// The first trace, which compiles; the hits are its.
+// Runs the first trace, which compiles, and keeps its hits.
 Traced trace_first(const Stage& stage, const Configuration& configuration, const Tracing& tracing, const Buffer& hits) {
     Traced traced{.configuration = configuration, .hits = {}, .ns_per_ray = {}, .phases_ms = {}};
     traced.phases_ms["build"] = stage.build_ms;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// View factors that are known in closed form, by every estimator.
+// View factors with known closed forms, by every estimator.
 #include <twinray/analysis.h>
 
 #include <cmath>
@@ -18,7 +18,8 @@ constexpr std::array hits_and_contour = {PairEstimator::hits, PairEstimator::con
 constexpr std::array far = {PairEstimator::area, PairEstimator::contour};
 constexpr std::array all = {PairEstimator::hits, PairEstimator::area, PairEstimator::contour};
 
-// Howell, "A Catalog of Radiation Heat Transfer Configuration Factors", C-11, C-14 and C-41, with 30 digits.
+// The values are from Howell, "A Catalog of Radiation Heat Transfer Configuration Factors", C-11, C-14 and C-41, with
+// 30 digits.
 void squares(CaseRun& run) {
     const auto ask = [&](float distance, double value, float side = 1) {
         measure_factor(
@@ -106,7 +107,7 @@ void tiny_faces(CaseRun& run) {
                    methods_of(far));
 }
 
-// A closed room and things in it: every ray must meet a face, and a front.
+// In a closed room with things in it, every ray must meet a face, and its front.
 void closed_room(CaseRun& run) {
     const Scene scene = scene_of({seen_from_inside(make_box(vec3(-2), vec3(2))), make_icosphere(2)}, vec3(0.5f));
     for (const Configuration& configuration : analysis_configurations(run)) {
