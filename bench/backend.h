@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Whatever builds scenes and traces rays, so that it can be measured beside others; our accelerators as such.
+// The interface to backends that build scenes and trace rays, and twinray's accelerators behind it.
 #pragma once
 
 #include <cstdint>
@@ -19,10 +19,10 @@
 
 namespace twinray::bench {
 
-// Rays that backends trace, on the host and on the devices of those that want them there.
+// Rays for backends to trace, on the host and, where a backend wants them there, on its device.
 class RayBatch {
   public:
-    // `is_coherent`: neighbours go the same way, which some backends want to be told.
+    // `is_coherent`: neighbours go the same way, a hint that some backends take.
     RayBatch(std::vector<Ray> rays, Query query, bool is_coherent)
         : rays_(std::move(rays)), query_(query), is_coherent_(is_coherent) {}
 
@@ -32,9 +32,9 @@ class RayBatch {
 
     struct DeviceBuffers {
         Buffer rays;
-        Buffer hits;  // of the last trace there
+        Buffer hits;  // of the last trace on this device
     };
-    // Uploaded when first asked for. The context must outlive the batch.
+    // Uploads them on the first call. The context must outlive the batch.
     const DeviceBuffers& on(Context& context) const;
 
   private:
@@ -44,23 +44,23 @@ class RayBatch {
     mutable std::map<Context*, DeviceBuffers> on_devices_;
 };
 
-// The name that records give this backend; "" if there is no such choice.
+// The names by which records describe a backend; "" where it has no such choice.
 struct Labels {
-    std::string name = {};     // unique among those that run: "sw compressed4 watertight"
+    std::string name = {};     // unique in the line-up: "sw compressed4 watertight"
     std::string backend = {};  // "sw", "hw", "embree"
     std::string path = {};     // "compute", "ray query", "ray tracing pipeline", "packets of 8", "stream"
-    std::string order = {};    // in which triangles go to a driver: "sorted", "input"
+    std::string order = {};    // the order in which triangles go to a driver: "sorted", "input"
     std::string layout = {};
     std::string builder = {};
     std::string level = {};
-    std::string ray_order = {};  // in which it traces rays: "given", "sorted"
+    std::string ray_order = {};  // the order in which it traces rays: "given", "sorted"
 };
 
 struct BuildFigures {
     double ms = 0;       // GPU time of a sync(); elsewhere the time of the build call
     double wall_ms = 0;  // from the scene in host memory until rays can be traced: with copies and work of the host
-    std::uint64_t bytes = 0;          // of what was built
-    std::uint64_t scratch_bytes = 0;  // that the build took beyond that
+    std::uint64_t bytes = 0;          // size of what was built
+    std::uint64_t scratch_bytes = 0;  // memory that the build took beyond that
 };
 
 class Backend {
@@ -71,11 +71,11 @@ class Backend {
     Backend& operator=(const Backend&) = delete;
 
     const Labels& labels() const { return labels_; }
-    // From nothing; what was built before is freed first.
+    // Frees what was built before, then builds from scratch.
     virtual BuildFigures build(const Scene& scene) = 0;
-    // In ms, from rays to hits as 32-byte records. After build().
+    // Returns the time in ms from rays to hits as 32-byte records. build() comes first.
     virtual double trace(const RayBatch& batch) = 0;
-    // Those of the last trace, which was of this batch.
+    // Returns the hits of the last trace, which was of this batch.
     virtual std::vector<Hit> hits(const RayBatch& batch) const = 0;
 
   private:
@@ -84,14 +84,14 @@ class Backend {
 
 using LineUp = std::vector<std::unique_ptr<Backend>>;
 
-// Of all passes; what the watch says, once the GPU is done, where its queue has no timestamps.
+// Returns the time of all passes, or, where the GPU's queue has no timestamps, that of the watch once the GPU is done.
 double total_ms(const std::vector<PassTiming>& timings, const Stopwatch& watch);
 
-// Traces the batch by `desc`, whose rays, hits and query are the batch's. In ms, of the GPU's passes.
+// Traces the batch by `desc` with the batch's own rays, hits and query. Returns the ms of the GPU's passes.
 double trace_ms(AbstractAccel& accel, const std::string& name, const RayBatch& batch, TraceDesc desc);
 std::vector<Hit> download_hits(AbstractAccel& accel, const RayBatch& batch);
 
-// An accelerator of ours. Times are those of the GPU's passes.
+// One of twinray's accelerators. Its times are those of the GPU's passes.
 class AccelBackend : public Backend {
   public:
     using Make = std::function<std::unique_ptr<AbstractAccel>()>;

@@ -17,7 +17,7 @@
 namespace twinray::bench {
 namespace {
 
-// The devices and who runs on them.
+// The devices and the backends that run on them.
 struct Setup {
     std::unique_ptr<Context> context, pipeline;  // the latter is null where the former needs the pipeline itself
     LineUp line_up;
@@ -44,12 +44,12 @@ void record_traces(const Session& session, const nlohmann::json& base, const Res
     for (const auto& [kind, traces] : measured.traces) record_all(session, records_of(base, results, kind, traces));
 }
 
-// It is of one backend on one scene, in ns; what was not measured is NaN.
+// The figures of one backend on one scene, in ns; NaN if not measured.
 struct GrowthPoint {
     std::size_t triangles = 0;
     double build_ms = NAN;
-    double build = NAN;                      // a triangle
-    double primary = NAN, incoherent = NAN;  // a ray
+    double build = NAN;                      // per triangle
+    double primary = NAN, incoherent = NAN;  // per ray
 };
 
 struct RayColumn {
@@ -77,7 +77,7 @@ std::vector<double> sizes_of(std::span<const GrowthPoint> points) {
     return sizes;
 }
 
-// The line is over log2 of the sizes; there is none for fewer than two, or where a point was not measured.
+// Fits a line over log2 of the sizes. Returns nothing for fewer than two sizes, or if a point was not measured.
 std::optional<Line> line_of(std::span<const GrowthPoint> points, const RayColumn& column) {
     std::vector<double> x = sizes_of(points);
     const std::vector<double> y = values_of(points, column.value);
@@ -102,8 +102,8 @@ GrowthPoint growth_point(const BenchScene& scene, const Measured& measured, std:
     return point;
 }
 
-// A row for each point, then how times grow with the number n of triangles: builds with a power of n, rays with log2 n
-// (what each doubling adds), by least squares.
+// Prints a row for each point, then how times grow with the number n of triangles, by least squares: builds with a
+// power of n, rays with log2 n (what each doubling adds).
 void print_growth(std::ostream& out, const std::string& backend, std::span<const GrowthPoint> points) {
     std::vector<std::vector<std::string>> rows = {{backend, "build ms", "ns/triangle"}};
     for (const RayColumn& column : ray_columns) rows.back().emplace_back(column.heading);
@@ -121,7 +121,7 @@ void print_growth(std::ostream& out, const std::string& backend, std::span<const
     print_table(out, rows);
 }
 
-// The growth alone, added to the fields of `base`.
+// Returns the growth alone, added to the fields of `base`.
 nlohmann::json growth_record(const nlohmann::json& base, const Labels& labels, std::span<const GrowthPoint> points) {
     nlohmann::json growth = {{"build_ms", nullptr}};
     if (const std::optional<PowerLaw> power = build_power_of(points)) growth["build_ms"] = {{"power", power->slope}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What `twinray bench` measures and tells, one function for each of its modes.
+// The modes of `twinray bench`: one function for each measures and reports.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -37,20 +37,20 @@ struct Measured {
 
 Measured measure(Context& context, LineUp& line_up, const BenchScene& scene, const RunOptions& options);
 
-// On what is measured, and where it goes.
+// What to measure, and where the results go.
 struct Session {
     ContextDesc device;
     std::string version;  // of twinray, for records
     RunOptions run;
-    std::ostream& out;  // tables
+    std::ostream& out;  // for tables
     std::function<void(const nlohmann::json&)> record;
 };
 
-// Build times, trace rates and errors of every backend.
+// Measures build times, trace rates and errors of every backend.
 void bench_scene(const Session& session, const BenchScene& scene);
-// How they grow with the number of triangles of displaced spheres.
+// Measures how these grow with the number of triangles of displaced spheres.
 void bench_growth(const Session& session, std::span<const double> sizes);
-// Refit of instances that move, against a rebuild.
+// Compares a refit of moving instances with a rebuild.
 void bench_moves(const Session& session, std::size_t count);
 // Measures what each feature costs that the scene does not need, in time and, with RunOptions::times_builds, in memory,
 // on the first layout and level. Throws Error where programs with more features find other hits.
@@ -58,7 +58,7 @@ void bench_feature_costs(const Session& session, const BenchScene& scene);
 // Prints properties of the trees of each layout and build quality: counts, not times.
 void bench_trees(const Session& session, const BenchScene& scene);
 
-// The modes share these. Fields of every record.
+// The modes share these. This one returns the fields of every record.
 nlohmann::json base_record(const Session& session);
 nlohmann::json base_record(const Session& session, const Context& context);
 void record_all(const Session& session, const std::vector<nlohmann::json>& records);

@@ -10,7 +10,7 @@
 namespace twinray::bench {
 namespace {
 
-// In [-1, 1), one for each point of the integer lattice.
+// Returns a number in [-1, 1) for each point of the integer lattice.
 double lattice_value(int x, int y, int z) {
     const auto part = [](int i, int shift) { return static_cast<std::uint64_t>(i + (1 << 20)) << shift; };
     return Draws(0, part(x, 0) | part(y, 21) | part(z, 42)).between(-1, 1);
@@ -41,7 +41,7 @@ double radius(const dvec3& direction) {
     return 1 + 0.25 * relief;
 }
 
-// One face of the icosahedron at a time, in rows; vertices on its edges are shared with its neighbours.
+// Builds one face of the icosahedron at a time, in rows. Faces share the vertices on their edges.
 class Geodesic {
   public:
     explicit Geodesic(uint frequency) : n_(frequency), icosahedron_(make_icosphere(0)) {
@@ -58,7 +58,7 @@ class Geodesic {
         return static_cast<uint>(points.size() - 1);
     }
 
-    // The vertices from corner a to corner b, n + 1 of them.
+    // Returns the n + 1 vertices from corner a to corner b.
     std::vector<uint> edge(uint a, uint b) {
         std::vector<uint>& kept = edges_[std::minmax(a, b)];
         if (kept.empty()) {

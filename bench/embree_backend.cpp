@@ -154,12 +154,12 @@ BuildFigures EmbreeScene::build(const Scene& scene) {
     return {ms, wall_ms, static_cast<std::uint64_t>(bytes_ - before), static_cast<std::uint64_t>(peak_bytes_ - bytes_)};
 }
 
-// Rays and hits of ours, which go through Embree's calls for many rays.
+// Rays and hits of a trace by Embree's calls for many rays.
 struct EmbreeTrace {
     RTCScene scene;
     Query query;
     std::span<const Ray> rays;
-    std::span<Hit> hits;  // as many
+    std::span<Hit> hits;  // one for each ray
 };
 
 constexpr std::size_t packet = 8;

@@ -9,10 +9,10 @@
 
 namespace twinray::bench {
 
-// Embree 3 on count_cpu_threads() threads, in the variants whose name is_wanted; empty where this program was built
-// without it.
+// Returns Embree 3 on count_cpu_threads() threads, in the variants whose name is_wanted; nothing if this program was
+// built without it.
 LineUp embree_line_up(const std::function<bool(const std::string&)>& is_wanted);
-// "" if this program was built with Embree.
+// Returns "" if this program was built with Embree.
 std::string why_no_embree();
 
 }  // namespace twinray::bench

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `twinray bench` of what each feature of shaders/shared/features.h costs a scene that does not need it: time and
-// memory.
+// Measures what each feature of shaders/shared/features.h costs a scene that does not need it, in time and memory, for
+// `twinray bench`.
 #include "bench/command.h"
 
 #include <algorithm>
@@ -19,8 +19,8 @@
 namespace twinray::bench {
 namespace {
 
-// One set of rays, traced by programs for the same scene that bits of FEATURES are added to, one after the other. The
-// first has those alone that the trace needs.
+// One set of rays, traced by several programs for the same scene. The first program has only the bits of FEATURES that
+// the trace needs; the others add bits, one after the other.
 struct FeatureCosts {
     struct Step {
         std::string name;  // "needed", "+ masks"
@@ -30,9 +30,9 @@ struct FeatureCosts {
     RayKind kind;
     std::vector<Step> steps;
 
-    // Median over the rounds of its time over that of the first.
+    // Returns the median over the rounds of a step's time over that of the first step.
     double ratio(std::size_t step) const { return speed_up(steps.front().rounds, steps[step].rounds); }
-    // Whether all of them found the same.
+    // Returns whether all steps found the same hits.
     bool agrees() const {
         return std::ranges::all_of(steps,
                                    [&](const Step& step) { return step.rounds.hash == steps.front().rounds.hash; });
@@ -101,7 +101,7 @@ FeatureCosts measure_costs(AbstractAccel& accel, RayKind kind, std::vector<Ray>&
     return costs;
 }
 
-// SwTlas traces scenes whose instances do not move. Throws Error naming the scene if no primary ray meets it.
+// Measures SwTlas with instances that do not move. Throws Error naming the scene if no primary ray meets it.
 std::vector<FeatureCosts> measure_feature_costs(Context& context, const BenchScene& scene, const RunOptions& run,
                                                 std::size_t rounds) {
     auto rays = make_rays(context, scene, run.width, run.seed);
@@ -127,7 +127,7 @@ void print_feature_costs(std::ostream& out, const FeatureCosts& costs) {
     print_table(out, rows);
 }
 
-// One for each step, added to the fields of `base`.
+// Returns a record for each step, added to the fields of `base`.
 std::vector<nlohmann::json> records_of(const nlohmann::json& base, const FeatureCosts& costs) {
     std::vector<nlohmann::json> records;
     for (std::size_t i = 0; i < costs.steps.size(); ++i) {
@@ -154,7 +154,7 @@ std::vector<nlohmann::json> records_of(const nlohmann::json& base, const Feature
 struct MemoryCost {
     std::string name;  // "needed", "may move", "vertices moved", "layout bvh2", "level refined"
     MemoryUsage usage;
-    std::vector<double> build_ms;  // of each round: the sync that led to it
+    std::vector<double> build_ms;  // by round, of the sync that led to `usage`
 };
 
 struct Configuration {
@@ -211,7 +211,7 @@ void measure_round(Context& context, const Scene& scene, const Configuration& co
     cost.usage = accel.memory_usage();
 }
 
-// In the order of the columns.
+// Returns the shares in the order of the columns.
 std::vector<std::pair<const char*, double>> shares_of(const MemoryUsage& usage, std::size_t triangles) {
     const auto share = [&](std::uint64_t bytes) { return static_cast<double>(bytes) / static_cast<double>(triangles); };
     return {{"structures", share(usage.structures())}, {"instances", share(usage.instances + usage.blocks)},
@@ -219,8 +219,8 @@ std::vector<std::pair<const char*, double>> shares_of(const MemoryUsage& usage, 
             {"total", share(usage.total())},           {"host", share(usage.host)}};
 }
 
-// SwTlas keeps the scene as it is, at level watertight in layout compressed4, whose instances may not move, then the
-// same with one thing more. Levels that the device lacks are left out.
+// Measures SwTlas with the scene as it is, at level watertight in layout compressed4, with instances that may not move,
+// then with one thing more each time. Leaves out levels that the device lacks.
 std::vector<MemoryCost> measure_memory_costs(Context& context, const BenchScene& scene, std::size_t rounds) {
     const std::vector<Configuration> configurations = configurations_on(context.properties());
     std::vector<MemoryCost> costs;
@@ -234,7 +234,7 @@ std::vector<MemoryCost> measure_memory_costs(Context& context, const BenchScene&
     return costs;
 }
 
-// Bytes a triangle of all meshes, instances not counted.
+// Prints bytes per triangle of all meshes, each counted once whatever its instances.
 void print_memory_costs(std::ostream& out, std::span<const MemoryCost> costs, std::size_t triangles) {
     std::vector<std::vector<std::string>> rows = {{"bytes/triangle"}};
     for (const auto& [name, _] : shares_of({}, triangles)) rows.front().emplace_back(name);
@@ -249,7 +249,7 @@ void print_memory_costs(std::ostream& out, std::span<const MemoryCost> costs, st
     print_table(out, rows);
 }
 
-// One for each, added to the fields of `base`.
+// Returns a record for each, added to the fields of `base`.
 std::vector<nlohmann::json> records_of(const nlohmann::json& base, std::span<const MemoryCost> costs,
                                        std::size_t triangles) {
     std::vector<nlohmann::json> records;
@@ -293,7 +293,7 @@ void bench_feature_costs(const Session& session, const BenchScene& scene) {
     }
     if (run.times_builds) {
         const std::size_t triangles = std::max<std::size_t>(count_mesh_triangles(scene.scene), 1);
-        // Each round builds every one of them: beyond 9 the medians stand.
+        // Each round builds all of them. The medians are stable beyond 9 rounds.
         const std::vector<MemoryCost> costs = measure_memory_costs(context, scene, std::min<std::size_t>(rounds, 9));
         session.out << '\n';
         print_memory_costs(session.out, costs, triangles);

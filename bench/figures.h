@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What rounds come to, and columns of text: pure functions.
+// Statistics of rounds, and columns of text: pure functions.
 #pragma once
 
 #include <optional>
@@ -19,12 +19,12 @@ struct Spread {
 // `values` must not be empty.
 Spread spread_of(std::span<const double> values);
 
-// Millions of rays a second.
+// Returns millions of rays per second.
 Spread mrays_per_s(const TraceRounds& rounds);
 
-// Median over the rounds of how many times as fast it was as the baseline in the same round.
+// Returns the median over the rounds of how many times as fast as the baseline it was in the same round.
 double speed_up(const TraceRounds& rounds, const TraceRounds& baseline);
-// Nothing where the baseline does not run.
+// Returns nothing if the baseline does not run.
 std::optional<double> speed_up(const LineUp& line_up, std::span<const TraceRounds> all, std::size_t index,
                                Baseline baseline);
 
@@ -35,11 +35,11 @@ struct Line {
 // `x` and `y` are equally long and hold two different x at least.
 Line fit_line(std::span<const double> x, std::span<const double> y);
 
-// Rows of as many cells; the first is the heading. The first column is flush left, all others right.
+// Prints rows with equal numbers of cells; the first is the heading. The first column is flush left, all others right.
 void print_table(std::ostream& out, const std::vector<std::vector<std::string>>& rows);
 
 std::string fixed_text(double value, int decimals);
-// With so many significant digits, never in powers of ten: 3 of them give "1234", "12.3", "0.00123". "-" unless finite.
+// Returns so many significant digits and no power of ten: 3 give "1234", "12.3", "0.00123"; "-" unless finite.
 std::string number_text(double value, int digits);
 
 }  // namespace twinray::bench

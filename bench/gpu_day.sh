@@ -1,19 +1,19 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Measures what is told of a GPU in some ten minutes: the contract, verify, report, builds, rays, and the same rays by
-# other packages with how many of a million answers are wrong. Prints a table of the parts and writes
+# Measures a GPU in some ten minutes: the contract, verify, report, builds, rays, and the same rays by other packages
+# with how many of a million answers are wrong. Prints a table of the parts and writes
 #   FOLDER/DEVICE.jsonl          builds and rays of twinray and the driver, appended
 #   FOLDER/DEVICE-report.jsonl   the records of the report
 #   FOLDER/DEVICE-peers.json     rays beside other packages
 #   bench/gpu_day.sh [-b BUILD] [-p PYTHON] [-m MESH] [-c PROGRAMS] [-o FOLDER] [--cuda] [--small]
 #     -b BUILD      the build whose programs and tests are run: build/release
-#     -p PYTHON     an interpreter with twinray, trimesh and what of the peers there is: python3
+#     -p PYTHON     an interpreter with twinray, trimesh and the peers that are installed: python3
 #     -m MESH       a closed mesh for verify and rays, beside spheres; none if not given
-#     -c PROGRAMS   what bench/peers/programs.sh has made; none if not given
+#     -c PROGRAMS   the programs that bench/peers/programs.sh has made; none if not given
 #     -o FOLDER     bench/history
 #     --cuda        peers use the GPU
 #     --small       a rehearsal: a hundredth of the rays
-# It names and leaves out each part that is not there.
+# It names the parts that are missing and leaves them out.
 set -uo pipefail
 
 here=$(realpath "$(dirname "${BASH_SOURCE[0]}")")
@@ -52,7 +52,7 @@ PYTHON
 ) || exit 1
 
 rows=()
-# Runs a part within its time; says its last line that has the words.
+# Runs a part within its time and reports the last line of its output that has the words.
 part() { # name, seconds at most, words, command...
     local start=$SECONDS status said log=$logs/${1// /-}
     echo "== $1 =="

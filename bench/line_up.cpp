@@ -31,7 +31,7 @@ class LineUpFactory {
             accel.level, [&context, accel] { return std::make_unique<SwTlas>(context, accel); });
     }
 
-    // All that the device can do, from the first level on.
+    // Adds everything that the device can do, from the first level on.
     void add_hardware(Context& context) {
         if (!missing_for_hardware(context.properties()).empty()) return;
         for (const Level level : options_.levels) add_hardware(context, BuildOrder::automatic, level);

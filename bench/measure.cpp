@@ -22,7 +22,7 @@ class Turn {
         if (tiles < count_tiles(rays.rays().size())) part_ = part_of(rays, tiles);
     }
 
-    // The first trace: its time does not count, its hits do.
+    // Makes the first trace: its time does not count, its hits do.
     TraceRounds warm_up(const HitCheck* hit_check) {
         backend_.trace(batch());
         const std::vector<Hit> hits = backend_.hits(batch());
@@ -43,7 +43,7 @@ class Turn {
     std::optional<RayBatch> part_;
 };
 
-// One of every so many, `HitCheck::sample` of all.
+// Returns items at even steps, `HitCheck::sample` of all.
 template <class T>
 std::vector<T> some_of(std::span<const T> all) {
     std::vector<T> some;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rounds in which each backend has its turn, so that what slows the machine down slows all of them; and how right hits
-// are, beside how fast they came.
+// Measures in rounds in which each backend has its turn, so that whatever slows the machine down slows all of them.
+// Also checks how right the hits are.
 #pragma once
 
 #include <functional>
@@ -12,7 +12,7 @@
 namespace twinray::bench {
 
 struct Soundness {
-    std::size_t n = 0;       // checked, of all rays evenly
+    std::size_t n = 0;       // rays checked, evenly chosen from all
     double sound = 0;        // the share of them that agrees or ties with the float64 reference
     std::size_t faults = 0;  // leaks, false hits and errors of t, u, v beyond rounding
 };
@@ -40,7 +40,7 @@ struct BuildRounds {
     BuildFigures last;
 };
 
-// Builds everybody once to warm up, then `rounds` times; what was built last stays. One for each backend.
+// Builds with each backend once to warm up, then `rounds` times; the last build stays. Returns one result per backend.
 std::vector<BuildRounds> measure_builds(LineUp& line_up, const Scene& scene, std::size_t rounds, const Step& step);
 
 // One backend's traces of a set of rays.
@@ -60,20 +60,20 @@ struct TraceSettings {
 std::vector<TraceRounds> measure_traces(LineUp& line_up, const RayBatch& rays, const TraceSettings& settings,
                                         const Step& step);
 
-// FNV-1a of 64 bits (Fowler, Noll and Vo) over the hits in their order, to see at once whether two traces answered
-// alike. Of closest hits hit, primitive_index, instance_index and the bits of t, u and v count; of any hits `hit`
-// alone, as which one is found is free.
+// Returns FNV-1a of 64 bits (Fowler, Noll and Vo) over the hits in their order, which shows at once whether two traces
+// agree. For closest hits it covers hit, primitive_index, instance_index and the bits of t, u and v; for any hits only
+// `hit`, since any of them may be found.
 std::uint64_t hash_of(std::span<const Hit> hits, Query query);
 
 // Rays come in tiles of 8 x 8 pixels, one after the other; the last may be smaller. Slow backends trace some of them.
 inline constexpr std::size_t rays_a_tile = 64;
-// Tiles of `count` rays.
+// Returns the number of tiles of `count` rays.
 std::size_t count_tiles(std::size_t count);
-// `wanted` whole tiles (all if there are no more) spread evenly over all, in their order.
+// Returns `wanted` whole tiles (all if there are no more), spread evenly over all, in their order.
 std::vector<Ray> even_tiles(std::span<const Ray> rays, std::size_t wanted);
 
-// How many of all tiles a backend traces within max_ms, at least 4: from traces of growing numbers of tiles, the
-// first of which compiles kernels and does not count.
+// Returns how many of all tiles a backend traces within max_ms, at least 4. It traces growing numbers of tiles; the
+// first trace compiles kernels and does not count.
 std::size_t affordable_tiles(Backend& backend, const RayBatch& rays, double max_ms);
 
 }  // namespace twinray::bench

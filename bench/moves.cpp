@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `twinray bench` of instances that a kernel moves.
+// Measures instances that a kernel moves, for `twinray bench`.
 #include "bench/command.h"
 
 #include <cmath>
@@ -22,7 +22,7 @@ struct MoveTimes {
     double refit_ms = 0, rebuild_ms = 0;
 };
 
-// They stand in a cube, `phase` along their ways.
+// Returns transforms that place instances in a cube, each `phase` along its way.
 std::vector<Transform> placed(std::size_t count, float phase) {
     const auto side = static_cast<std::size_t>(std::ceil(std::cbrt(static_cast<double>(count))));
     std::vector<Transform> transforms;
@@ -41,12 +41,12 @@ double sync_ms(AbstractAccel& accel) {
     return sum;
 }
 
-// The times are of `count` instances of a sphere in an empty accelerator, whose transforms come from device memory.
+// Measures `count` instances of a sphere in an empty accelerator. Their transforms come from device memory.
 MoveTimes measure_moves(AbstractAccel& accel, std::size_t count, std::size_t rounds) {
     const AccelHandle handle = accel.push(make_icosphere(1), placed(count, 0));
     accel.push(make_icosphere(1));
     accel.sync();
-    accel.set_rebuild_ratio(INFINITY);  // each is asked for by itself
+    accel.set_rebuild_ratio(INFINITY);  // refits and rebuilds are requested separately
     std::vector<double> refits, rebuilds;
     for (std::size_t round = 0; round < rounds + 2; ++round) {
         const std::vector<Transform> transforms = placed(count, 0.1f * static_cast<float>(round));

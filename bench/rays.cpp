@@ -14,7 +14,7 @@
 namespace twinray::bench {
 namespace {
 
-// The point of ray i of `count`.
+// Returns the point of ray i of `count`.
 const Surface& point_of(std::span<const Surface> points, std::size_t i, std::size_t count) {
     return points[i * points.size() / count];
 }
@@ -28,7 +28,7 @@ std::vector<Hit> primary_hits(Context& context, const Scene& scene, std::span<co
     return accel.closest_hits(rays, {.level = level});
 }
 
-// Above and beside the box, a quarter of its diagonal a side, clear of it.
+// Returns a box above and beside `bounds`, clear of it, with sides of a quarter of its diagonal.
 Bounds light_of(const Bounds& bounds) {
     const float diagonal = length(bounds.size());
     const vec3 center = bounds.center() + vec3(-0.4f, 0.9f, 0.4f) * diagonal;

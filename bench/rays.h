@@ -15,43 +15,43 @@ namespace twinray::bench {
 
 enum class RayKind : std::uint8_t {
     primary,     // a camera's
-    incoherent,  // from where those meet the scene, into the hemisphere on their side, uniform over solid angle
+    incoherent,  // from where primary rays meet the scene, into the hemisphere on their side, uniform over solid angle
     occlusion,   // from the same points to random points of a light above and beside the scene
-    shuffled,    // the incoherent ones in random order
+    shuffled,    // the incoherent rays in random order
 };
 inline constexpr std::array all_ray_kinds = {RayKind::primary, RayKind::incoherent, RayKind::occlusion,
                                              RayKind::shuffled};
-// In the order in which a renderer traces them.
+// The kinds in the order in which a renderer traces them.
 inline constexpr std::array usual_ray_kinds = {RayKind::primary, RayKind::incoherent, RayKind::occlusion};
 constexpr std::string_view name_of(RayKind kind) {
     constexpr std::string_view names[] = {"primary", "incoherent", "occlusion", "shuffled"};
     return names[static_cast<std::size_t>(kind)];
 }
-// Any hits for occlusion, else closest hits.
+// Returns any hits for occlusion, else closest hits.
 constexpr Query query_of(RayKind kind) { return kind == RayKind::occlusion ? Query::any : Query::closest; }
 
-// The points where rays met the scene.
+// A point where a ray met the scene.
 struct Surface {
-    vec3 front, back;  // where rays start that leave to this side of the triangle, clear of it
+    vec3 front, back;  // where rays that leave to this side of the triangle start, clear of it
     vec3 normal;       // unit, of the front
-    bool is_front;     // the ray came from there
+    bool is_front;     // the ray came from the front
 };
 
-// The points that the hits name, in their order; misses are left out.
+// Returns the points that the hits name, in their order; leaves out misses.
 std::vector<Surface> surfaces_of(const Scene& scene, std::span<const Ray> rays, std::span<const Hit> hits);
 
-// `count` rays from the points in their order, each point as often as any other within one. Ray i depends on
-// (seed, i) and its point alone. Directions have length 1. The points must not be none.
+// Returns `count` rays from the points in their order, each point equally often within one. Ray i depends only on
+// (seed, i) and its point. Directions have length 1. There must be a point.
 std::vector<Ray> incoherent_rays(std::span<const Surface> points, std::size_t count, std::uint64_t seed);
-// The same; t_max is the last float before the light's point. The light is a cube outside `bounds`.
+// Does the same towards a light, a cube outside `bounds`. t_max is the last float before the light's point.
 std::vector<Ray> occlusion_rays(std::span<const Surface> points, const Bounds& bounds, std::size_t count,
                                 std::uint64_t seed);
 
-// The same rays in an order that depends on their number and the seed alone.
+// Returns the same rays in an order that depends only on their number and the seed.
 std::vector<Ray> shuffled_rays(std::vector<Ray> rays, std::uint64_t seed);
 
-// Each `width` * `width` rays, but for shuffled ones in tiles of 8 x 8 pixels of the picture of primary rays. One for
-// each RayKind. Surface points are found by SwTlas, refined where the device has float64. `width` is a multiple of 8.
+// Returns `width` * `width` rays of each RayKind, all but the shuffled ones in tiles of 8 x 8 pixels of the picture of
+// primary rays. SwTlas finds the surface points, refined where the device has float64. `width` is a multiple of 8.
 // Throws Error naming the scene if no primary ray meets it.
 std::array<std::vector<Ray>, all_ray_kinds.size()> make_rays(Context& context, const BenchScene& scene, uint width,
                                                              std::uint64_t seed);

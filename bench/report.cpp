@@ -15,7 +15,7 @@ struct BaselineNames {
     const char* field;
     const char* heading;
 };
-// The last has no column.
+// The last baseline has no column.
 constexpr BaselineNames baselines[] = {{Baseline::sorted_query, "vs_ray_query_presorted", "vs query sorted"},
                                        {Baseline::input_query, "vs_ray_query", "vs query input"},
                                        {Baseline::pipeline, "vs_pipeline", "vs pipeline"},

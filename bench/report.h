@@ -25,7 +25,7 @@ void print_builds(std::ostream& out, const Results& results);
 void print_traces(std::ostream& out, const Results& results, std::string_view title,
                   std::span<const TraceRounds> traces);
 
-// One for each backend, added to the fields of `base`. Values that were not measured are null.
+// Returns a record for each backend, added to the fields of `base`. Values that were not measured are null.
 std::vector<nlohmann::json> records_of(const nlohmann::json& base, const Results& results, RayKind kind,
                                        std::span<const TraceRounds> traces);
 

@@ -43,7 +43,7 @@ Scene of_mesh(Mesh&& mesh) {
     return scene;
 }
 
-// A uniform random rotation: of the quaternion q, uniform on the unit sphere in 4 dimensions.
+// Returns a uniform random rotation: its quaternion q is uniform on the unit sphere in 4 dimensions.
 glm::dmat3 random_rotation(Draws& draws) {
     for (;;) {
         const double w = draws.between(-1, 1), x = draws.between(-1, 1), y = draws.between(-1, 1),

@@ -14,7 +14,7 @@ namespace twinray::bench {
 struct BenchScene {
     std::string name;
     Scene scene;
-    Bounds framed;  // what the camera of primary rays sees
+    Bounds framed;  // the box that the camera of primary rays sees
 };
 
 // "sphere:N": make_displaced_sphere of about N triangles.
@@ -25,14 +25,14 @@ struct BenchScene {
 // Throws Error naming what is not a number or out of range.
 BenchScene make_scene(const std::string& name);
 
-// Edges of the icosahedron are cut into as many: 20 frequency^2 triangles. The nearest to a number of triangles.
+// Returns into how many parts edges of the icosahedron are cut, so that 20 frequency^2 is nearest to `triangles`.
 uint geodesic_frequency(double triangles);
 
-// A geodesic sphere about the origin, displaced along its radius by five octaves of noise: radii of 0.75 to 1.25.
-// Closed: vertices are shared, triangles face outwards. The same bits everywhere. `frequency` is at least 1.
+// Makes a geodesic sphere about the origin, displaced along its radius by five octaves of noise: radii of 0.75 to 1.25.
+// It is closed: vertices are shared, triangles face outwards. Its bits are the same everywhere. `frequency` >= 1.
 Mesh make_displaced_sphere(uint frequency);
 
-// Triangles of all meshes, whatever the number of their instances: what is built.
+// Returns how many triangles are built: those of all meshes, whatever the number of their instances.
 std::size_t count_mesh_triangles(const Scene& scene);
 
 }  // namespace twinray::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `twinray bench` of trees of each layout and build quality: counts, which no device changes.
+// Measures trees of each layout and build quality for `twinray bench`, by counts that are the same on every device.
 #include "bench/command.h"
 
 #include <algorithm>
@@ -30,8 +30,8 @@ struct RaySteps {
 struct TreeFigures {
     Layout layout;
     BuildQuality quality;
-    double bytes = 0;       // a triangle, of what is kept of the tree and its triangles
-    double used_bytes = 0;  // the same, of what a traversal can reach
+    double bytes = 0;       // per triangle, of what is kept of the tree and its triangles
+    double used_bytes = 0;  // the same for what a traversal can reach
     double sah = 0;         // surface-area cost of its boxes as rays meet them, over that of the root
     double overlap = 0;     // end-point overlap
     std::map<RayKind, RaySteps> steps;
@@ -103,8 +103,8 @@ Followed follow(const reference::Scene& scene, std::span<const Ray> rays, Query 
     return {{a_ray(all.nodes), a_ray(all.boxes), a_ray(all.leaves), a_ray(all.primitives)}, hits};
 }
 
-// Trees are of every layout and quality. SwTlas builds and measures them; its CPU reference follows rays, at level
-// watertight. Throws Error where trees differ in how many rays hit.
+// Measures trees of every layout and quality. SwTlas builds and measures them; its CPU reference follows rays, at level
+// watertight. Throws Error if trees differ in how many rays hit.
 std::vector<TreeFigures> measure_trees(Context& context, const BenchScene& scene, std::span<const RayKind> kinds,
                                        uint width, std::uint64_t seed) {
     const Mesh mesh = joined(scene.scene, scene.name);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What commands that compute over a scene share: its pictures, groups of its faces, the scene in an accelerator, a grid
-// of parallel rays and tables.
+// Shared by commands that compute over a scene: pictures, groups of faces, the scene in an accelerator, a grid of
+// parallel rays and tables.
 #pragma once
 
 #include <twinray/analysis.h>
@@ -16,27 +16,27 @@
 
 namespace twinray::cli {
 
-// --picture and those that need it: the scene in colours, as .png, .html or .glb. `shows`: what colours tell.
+// Returns --picture and what needs it: the scene in colours, as .png, .html or .glb. `shows`: what colours tell.
 Section picture_options(PictureOptions& options, const std::string& shows);
-// For commands whose colours show values.
+// Returns the option of commands whose colours show values.
 Option color_scale_option(PictureOptions& options);
-// Throws Error where a file has no folder: before the work, not after it.
+// Throws Error if a file has no folder. Call it before the work, not after it.
 void check_pictures(const PictureOptions& options);
 
-// What commands put faces together by: --by, or --groups with a file.
+// The way in which commands group faces: --by, or --groups with a file.
 struct FaceGroupOptions {
     FaceGrouping by = FaceGrouping::face;
     std::filesystem::path file;  // of custom groups
 
-    // Reads the file. Throws Error that names it, and where it does not tell the group of each face once.
+    // Reads the file. Throws Error naming it, also if it does not give the group of each face exactly once.
     void set_groups(Faces& faces) const;
 };
 
-// `of_what`: "one row". Both need the options `needs`.
+// `of_what`: "one row". Both options need the options `needs`.
 std::vector<Option> face_group_options(FaceGroupOptions& options, const std::string& of_what,
                                        const std::vector<std::string>& needs = {});
 
-// --sides: which of faces do what, such as "receive light".
+// Returns --sides: which sides of faces do something, such as "receive light".
 Option sides_option(Sides& sides, const std::string& do_what);
 
 struct AnalysisOptions {
@@ -56,7 +56,7 @@ struct RayGridOptions {
     RayGridDesc desc(const CommonOptions& common) const;
     nlohmann::json record() const;
 };
-// --direction, then the others, which need it.
+// Returns --direction, then the other options, which need it.
 std::vector<Option> ray_grid_options(RayGridOptions& options);
 
 // A scene in an accelerator.
@@ -68,20 +68,20 @@ struct Analysed {
 
     explicit Analysed(const AnalysisOptions& options);
     nlohmann::json record(const char* schema, const AnalysisOptions& options) const;
-    // "illumination house.glb: 12 faces, by SwTlas (...), on llvmpipe".
+    // Returns "illumination house.glb: 12 faces, by SwTlas (...), on llvmpipe".
     std::string head(const char* command, const AnalysisOptions& options) const;
 };
 
-// "1000000 rays in 0.5 s with copies, 2 million a second".
+// Returns "1000000 rays in 0.5 s with copies, 2 million a second".
 std::string speed_text(std::uint64_t rays, double seconds);
-// "(1, 0, 0)".
+// Returns "(1, 0, 0)".
 std::string text_of(const dvec3& v);
 
 // A table of numbers. Throws Error if it cannot be written.
 class CsvFile {
   public:
     CsvFile(const std::filesystem::path& file, const std::string& header);
-    // Numbers in as few digits as give the same float64; those that are missing are empty.
+    // Writes numbers in as few digits as give the same float64; missing ones are empty.
     void row(std::initializer_list<std::uint64_t> first, std::initializer_list<std::optional<double>> rest);
     void close();
 

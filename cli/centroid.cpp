@@ -18,7 +18,7 @@ struct CentroidOptions : AnalysisOptions {
     RayGridOptions grid;
 };
 
-// In the file's coordinates.
+// Writes the file's coordinates.
 void write(const std::filesystem::path& file, const Centroid& result, const dvec3& origin) {
     CsvFile csv(file, "x,y,z");
     for (const dvec3& point : result.points) {
@@ -40,7 +40,7 @@ void print(const CentroidOptions& options, const Analysed& analysed, const Centr
     }
 }
 
-// Some of the points, evenly chosen, and their mean, which most often lies inside of what they are on.
+// Shows some of the points, evenly chosen, and their mean, which most often lies inside the object.
 ScenePicture picture_of(const CentroidOptions& options, const Analysed& analysed, const Centroid& result) {
     constexpr std::size_t most_points = 4000;
     constexpr float radius = 7;

@@ -23,14 +23,14 @@ struct CollideOptions : AnalysisOptions {
     std::uint64_t max_pairs = default_max_pairs;
 };
 
-// One a class, from the most harmless to the worst, which is also their order.
+// One colour for each class, from the most harmless to the worst, which is also the order of the classes.
 constexpr std::array<Rgb, all_pair_classes.size()> class_colors = {plain_color,         categorical::sky_blue,
                                                                    categorical::green,  categorical::yellow,
                                                                    categorical::purple, categorical::vermilion};
 
 Rgb color_of(PairClass pair_class) { return class_colors[static_cast<std::size_t>(pair_class)]; }
 
-// Each face is in the colour of its worst contact, and lines are where crossing triangles meet.
+// Shows each face in the colour of its worst contact, and lines where crossing triangles meet.
 ScenePicture picture_of_contacts(const Scene& scene, const Contacts& contacts) {
     const std::vector<std::size_t> first = first_faces(scene);
     std::vector<PairClass> worst(count_triangles(scene), PairClass::separate);
@@ -53,7 +53,7 @@ ScenePicture picture_of_contacts(const Scene& scene, const Contacts& contacts) {
     return picture;
 }
 
-// Each instance is in the colour of how many others its box overlaps.
+// Shows each instance in the colour of how many others its box overlaps.
 ScenePicture picture_of_pairs(const PictureOptions& options, const Scene& scene,
                               const std::vector<InstancePair>& pairs) {
     std::vector<double> overlaps(scene.instances.size());
@@ -64,7 +64,7 @@ ScenePicture picture_of_pairs(const PictureOptions& options, const Scene& scene,
     return picture_of_values(options, values, "overlaps");
 }
 
-// The title goes onto the picture here.
+// Draws the picture with its title.
 void draw(const CollideOptions& options, AbstractAccel& accel, const Scene& scene, ScenePicture picture,
           const std::string& found) {
     picture.page.title = options.scene.filename().string() + ": collisions";

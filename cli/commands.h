@@ -6,7 +6,7 @@
 
 namespace twinray::cli {
 
-// In the order of the list.
+// Returns the commands in the order of the list.
 std::vector<Command> all_commands();
 
 #ifdef TWINRAY_HAS_BENCH

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the commands share: options, making an accelerator, coordinates of files, JSON lines.
+// Shared by the commands: options, making an accelerator, coordinates of files, JSON lines.
 #pragma once
 
 #include <filesystem>
@@ -38,26 +38,26 @@ struct CommonOptions {
 Section common_options(CommonOptions& options);
 
 Option json_option(std::filesystem::path& file);
-// The positional SCENE, of which every question is about.
+// Returns the positional SCENE, which every command asks about.
 Option scene_argument(std::filesystem::path& file);
-// "-o, --output".
+// Returns "-o, --output".
 Option output_option(Value value, const std::string& help);
-// --accel auto|sw|hw, for choose_accel(). `what`: "what traces".
+// Returns --accel auto|sw|hw, for choose_accel(). `what`: "what traces".
 Option accel_option(std::string& request, const std::string& what = "accelerator that traces");
-// --level, which says what each costs.
+// Returns --level, which says what each level costs.
 Option level_option(Level& level, const std::string& help = "precision of the triangle test");
-// --layout and --build-quality
+// Returns --layout and --build-quality.
 std::vector<Option> tree_options(AccelOptions& options);
 
-// A context for these options; TWINRAY_DISABLE (a comma-separated list of ray_query, ray_tracing_pipeline) leaves
-// features of the device unused.
+// Describes a context for these options; TWINRAY_DISABLE (a comma-separated list of ray_query, ray_tracing_pipeline)
+// leaves features of the device unused.
 ContextDesc context_desc(const CommonOptions& options);
 std::unique_ptr<Context> make_context(const CommonOptions& options);
-// The same for commands that check drivers, which may hang: nothing that they submit takes so many seconds.
+// These are for commands that check drivers, which may hang: nothing that they submit takes so many seconds.
 inline constexpr double most_suite_seconds = 300, most_conformance_seconds = 60;
 ContextDesc watched_context_desc(const CommonOptions& options, double most_wait_seconds);
 
-// Holds the scene, built.
+// Makes an accelerator that holds the scene, built.
 std::unique_ptr<AbstractAccel> make_accel(Context& context, const AccelChoice& choice, const Scene& scene,
                                           Level level = Level::watertight);
 
@@ -65,22 +65,22 @@ std::unique_ptr<AbstractAccel> make_accel(Context& context, const AccelChoice& c
 Scene load_scene(const std::filesystem::path& file, const CommonOptions& options);
 void heed_warnings(const Scene& scene, const std::string& name, const CommonOptions& options);
 
-// "(1, 0, 0)": where this point of the scene is in its file, with the digits that large coordinates need.
+// Returns "(1, 0, 0)": where this point of the scene is in its file, with the digits that large coordinates need.
 std::string coordinate_text(const dvec3& point, const dvec3& origin);
 std::string coordinate_text(double coordinate, double origin);
 nlohmann::json list_of(const dvec3& v);  // [x, y, z]
 
-void check_writable(const std::filesystem::path& file);  // its folder exists: before the work, not after it
+void check_writable(const std::filesystem::path& file);  // its folder exists; call it before the work, not after it
 
-// Does nothing for an empty path.
+// Writes a file; does nothing for an empty path.
 void write_text(const std::filesystem::path& file, const std::string& text);
 // Appends one line; does nothing for an empty path.
 void append_json(const std::filesystem::path& file, const nlohmann::json& record);
-// The fields with which records of a scene begin: "schema", "device", "scene" and "origin".
+// Returns the fields with which records of a scene begin: "schema", "device", "scene" and "origin".
 nlohmann::json base_record(const char* schema, const Context& context, const std::filesystem::path& file,
                            const Scene& scene);
 nlohmann::json describe(const AccelChoice& choice);  // "backend" and "backend_why"
-// "by SwTlas (device 'llvmpipe' is a CPU, without hardware for rays)".
+// Returns "by SwTlas (device 'llvmpipe' is a CPU, without hardware for rays)".
 std::string text_of(const AccelChoice& choice);
 
 }  // namespace twinray::cli

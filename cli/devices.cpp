@@ -38,7 +38,7 @@ nlohmann::json describe_capabilities(const DeviceProperties& device, CapabilityO
     return all;
 }
 
-// One line for each kind of support, with notes.
+// Prints a line for each kind of support, with notes.
 void print_capabilities(const DeviceProperties& device, CapabilityOn capability_on) {
     for (const Support support : {Support::native, Support::emulated, Support::unsupported}) {
         std::vector<std::string> features;
@@ -52,12 +52,12 @@ void print_capabilities(const DeviceProperties& device, CapabilityOn capability_
     }
 }
 
-// The choice of --accel auto; null if no accelerator works.
+// Returns the choice of --accel auto; null if no accelerator works.
 nlohmann::json auto_choice(const DeviceProperties& device) {
     return missing_for_software(device).empty() ? describe(choose_accel(device, "auto")) : nlohmann::json();
 }
 
-// Without what TWINRAY_DISABLE leaves unused.
+// Returns the devices without the features that TWINRAY_DISABLE leaves unused.
 std::vector<DeviceProperties> usable_devices() {
     const ContextDesc desc = context_desc({});
     std::vector<DeviceProperties> devices = list_devices();
@@ -119,9 +119,9 @@ nlohmann::json describe_requirements(std::size_t index, const DeviceProperties& 
     return {{"index", index}, {"name", device.name}, {"requirements", all}};
 }
 
-// `--requirements`: what twinray needs, by its parts, and which device has it.
+// Prints what twinray needs, by its parts, and which device has it, for `--requirements`.
 void print_requirements(std::span<const DeviceProperties> devices, const std::filesystem::path& json) {
-    // One column for each; without any, the rows of one that has nothing.
+    // Each device has a column; without any, the rows are those of one that has nothing.
     std::vector<std::vector<Requirement>> columns;
     if (!devices.empty()) std::cout << "Devices, from left to right\n";
     for (const DeviceProperties& device : devices) {

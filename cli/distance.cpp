@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `twinray distance`: what of a scene is near to points, as a table or as a picture of a plane.
+// `twinray distance`: the parts of a scene that are near points, as a table or as a picture of a plane.
 #include <twinray/queries.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ constexpr std::uint64_t most_cells = 640;
 struct QueryBox {
     dvec3 lo, size;
 };
-// Throws Error where there is no triangle.
+// Throws Error if there is no triangle.
 QueryBox query_box(const Scene& scene) {
     const Bounds bounds = bounds_of(scene);
     if (bounds.is_empty())
@@ -44,7 +44,7 @@ struct DistanceOptions {
     CommonOptions common;
     ShardOptions shards;
     std::filesystem::path scene, output;
-    std::filesystem::path points;  // or `random` of them, or a grid of `grid` along each side
+    std::filesystem::path points;  // or `random` points, or a grid with `grid` of them along each side
     std::uint64_t random = 0, grid = 0;
     std::filesystem::path slice;  // .png; empty: none
     SliceDesc slice_desc = {};    // in the file's coordinates
@@ -55,8 +55,8 @@ struct DistanceOptions {
     bool has_points() const { return !points.empty() || random > 0 || grid > 0; }
 };
 
-// Those at random and of a grid are in query_box(): of a grid, the centres of its cells, x fastest. None if nothing was
-// asked for. Throws Error naming the file and the line.
+// Returns the points of the file, or points in query_box(): random ones, or the centres of a grid's cells, x fastest.
+// Returns none if none were asked for. Throws Error naming the file and the line.
 std::vector<dvec3> points_of(const DistanceOptions& options, const Scene& scene) {
     if (!options.points.empty()) return read_points(options.points, scene.origin);
     if (!options.has_points()) return {};
@@ -101,7 +101,7 @@ void write_csv(const std::filesystem::path& file, const std::vector<NearTriangle
     });
 }
 
-// Arrays by point: of a grid, distance[z, y, x].
+// Writes arrays by point; a grid's are distance[z, y, x].
 void write_npz(const DistanceOptions& options, const std::vector<dvec3>& points, const std::vector<ClosestPoint>& found,
                const dvec3& origin) {
     constexpr std::uint32_t none = 0xffffffffu;
@@ -127,7 +127,7 @@ void write_npz(const DistanceOptions& options, const std::vector<dvec3>& points,
     npz.write(options.output);
 }
 
-// Searches, with what every record says.
+// A search, with the data of every record.
 struct Search {
     Scene scene;
     std::unique_ptr<Context> context;
@@ -194,7 +194,7 @@ void run_within(const Shards& shards, const DistanceOptions& options, Search& se
     append_json(options.common.json, record);
 }
 
-// Inside, distances are below 0, or -0.
+// With --signed, distances inside are below 0, or -0.
 std::vector<ClosestPoint> closest(const DistanceOptions& options, Search& search, Rows rows) {
     std::vector<ClosestPoint> found = search.query.closest(points_in(search, rows), options.max_distance);
     if (!options.is_signed) return found;
@@ -231,7 +231,7 @@ void run_closest(const Shards& shards, const DistanceOptions& options, Search& s
     append_json(options.common.json, record);
 }
 
-// Throws Error for a scene without triangles. With --signed negative inside, as signed_distances() tells.
+// Throws Error for a scene without triangles. With --signed, values are negative inside, as signed_distances() says.
 void write_slice(const DistanceOptions& options, Search& search) {
     const dvec3& origin = search.scene.origin;
     const QueryBox box = query_box(search.scene);
@@ -270,7 +270,7 @@ void run(DistanceOptions options) {
     if (!options.slice.empty()) write_slice(options, search);
 }
 
-// --points, --random, --grid: at most one of them.
+// Returns --points, --random and --grid; at most one of them may be given.
 std::vector<Option> query_point_options(DistanceOptions& options) {
     return {
         {.name = "--points",

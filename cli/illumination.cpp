@@ -32,7 +32,7 @@ struct IlluminationOptions : AnalysisOptions {
     std::string measure = "area";
 };
 
-// The divisor of areas; 0 if there is nothing to divide.
+// Returns the divisor of areas; 0 if there is nothing to divide.
 double unit_of(const LitArea& lit, const std::string& measure) {
     if (measure == "fraction") return lit.unobstructed;
     return measure == "irradiance" ? lit.surface : 1;
@@ -53,7 +53,7 @@ void write(const IlluminationOptions& options, const Illumination& result) {
     csv.close();
 }
 
-// The value of its group for each face.
+// Shows each face with the value of its group.
 ScenePicture picture_of(const IlluminationOptions& options, const Faces& faces, const Illumination& result) {
     const std::string& what = options.measure;
     std::vector<double> values;
@@ -81,7 +81,7 @@ void print(const IlluminationOptions& options, const Analysed& analysed, const I
     std::cout << ", without shadows " << total.unobstructed << '\n';
 }
 
-// Rows are pairs of rays, whose counts are added up. Nothing where other processes go on.
+// Computes rows, which are pairs of rays, and adds up their counts. Returns nothing if another process goes on.
 std::optional<Illumination> compute(const Shards& shards, const IlluminationOptions& options, const Analysed& analysed,
                                     const Faces& faces, const RayGridDesc& grid) {
     samples::Progress progress("illumination", std::uint64_t{grid.side} * grid.side, options.common.quiet);
@@ -154,7 +154,7 @@ void write(const std::filesystem::path& file, const std::string& what, const Sky
     csv.close();
 }
 
-// The mean is by area.
+// Returns the mean by area.
 double mean_of(const SkyLight& light, const std::vector<double>& areas) {
     double sum = 0, area = 0;
     for (std::size_t face = 0; face < areas.size(); ++face) {
@@ -175,7 +175,7 @@ ScenePicture picture_of(const IlluminationOptions& options, const SkyLight& ligh
     return picture;
 }
 
-// --sky and --sun, and those that need them.
+// Returns --sky and --sun, and the options that need them.
 std::vector<Option> sky_options(IlluminationOptions& options) {
     return {
         {.name = "--sky",
@@ -192,7 +192,7 @@ std::vector<Option> sky_options(IlluminationOptions& options) {
          .needs = {"--sun"}}};
 }
 
-// Of faces in `rows`.
+// Computes what the faces in `rows` receive.
 std::vector<Received> receive(const Analysed& analysed, const Faces& faces, const IlluminationOptions& options,
                               std::span<const SunPosition> sun, SkyRaysDesc desc, Rows rows) {
     desc.first_face = rows.first, desc.last_face = rows.last;

@@ -51,7 +51,7 @@ int compile(const KernelsOptions& options, const std::string& family) {
     return check(compiled.rows, options.against);
 }
 
-// One after the other, each in a process of its own: a shim stands in for one GPU, from a process's first moment.
+// Compiles one family after the other, each in its own process: a shim stands in for one GPU from a process's start.
 int compile_families(const KernelsOptions& options) {
     int status = 0;
     for (const std::string& family : options.families) try {

@@ -96,7 +96,7 @@ void append_record(const LeaksOptions& options, const Context& context, const Ac
     append_json(options.common.json, record);
 }
 
-// Returns the faults of twinray.
+// Returns the number of twinray's faults.
 std::uint64_t run(const LeaksOptions& options) {
     if (!options.state.empty()) check_writable(options.state);
     const std::string file = options.scene.filename().string();

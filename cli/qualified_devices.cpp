@@ -46,7 +46,7 @@ std::vector<QualifiedDevice> devices_to_qualify(std::span<const DeviceProperties
                 all.push_back({text(i, '-', name, '-', width),
                                std::to_string(i),
                                {{"LP_NATIVE_VECTOR_WIDTH", width},
-                                {"MESA_SHADER_CACHE_DISABLE", "true"}}});  // whose keys lack the width
+                                {"MESA_SHADER_CACHE_DISABLE", "true"}}});  // its keys lack the width
     }
     if (!has_swiftshader && !swiftshader.empty())
         all.push_back({"swiftshader", "0", {{"VK_DRIVER_FILES", swiftshader.string()}}});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which devices `twinray qualify --devices all` checks, and how it starts itself on each.
+// The devices that `twinray qualify --devices all` checks, and how it starts itself on each.
 #pragma once
 
 #include <filesystem>
@@ -19,8 +19,8 @@ struct QualifiedDevice {
     std::map<std::string, std::string> environment = {};
 };
 
-// A pure function of what the loader has, of whether the CPU has vectors of 512 bits, and of a manifest of SwiftShader
-// ("": none). lavapipe below Mesa 26 is checked with each width of its vectors.
+// Chooses by what the loader has, whether the CPU has vectors of 512 bits, and a manifest of SwiftShader ("": none).
+// Pure. lavapipe below Mesa 26 is checked with each width of its vectors.
 std::vector<QualifiedDevice> devices_to_qualify(std::span<const DeviceProperties> devices, bool has_512_bit_vectors,
                                                 const std::filesystem::path& swiftshader);
 std::vector<QualifiedDevice> devices_to_qualify();  // of this machine

@@ -28,7 +28,7 @@ struct QualifyOptions {
     std::vector<std::string> only;
 };
 
-// On the device of this process.
+// Makes the records of this process's device.
 std::vector<Record> records_here(const QualifyOptions& options) {
     std::filesystem::create_directories(options.folder);
     frame::Devices devices(watched_context_desc(options.common, most_suite_seconds));
@@ -49,7 +49,7 @@ std::vector<Record> records_here(const QualifyOptions& options) {
     return recorder.records();
 }
 
-// Each in a process of its own, whose driver reads its environment once.
+// Makes the records of each device in a process of its own, since a driver reads its environment once.
 std::vector<Record> records_of_all(const QualifyOptions& options) {
     std::vector<Record> records;
     for (const QualifiedDevice& device : devices_to_qualify()) {
@@ -73,7 +73,7 @@ std::vector<Record> records_of_all(const QualifyOptions& options) {
     return records;
 }
 
-// Exit status: 1 where a check fails.
+// Returns the exit status: 1 if a check fails.
 int run(const QualifyOptions& options) {
     check_choice(options.only, cases_of_report(), "`twinray report --list`");
     for (const std::filesystem::path& file : {options.junit, options.tap, options.sarif}) check_writable(file);

@@ -35,11 +35,11 @@ struct ReportOptions {
     std::vector<Level> levels;
     std::vector<std::filesystem::path> scenes;
     std::filesystem::path baseline;
-    std::vector<std::filesystem::path> compared;  // reports of before, in place of a run
+    std::vector<std::filesystem::path> compared;  // earlier reports, in place of a run
     AccelOptions trees = {};
 };
 
-// With a budget, a full suite begins as a quick one does, and gets as far as the time is enough for.
+// A full suite with a budget begins as a quick one does, and gets as far as the time is enough for.
 suite::Settings settings_of(const ReportOptions& options) {
     const bool is_full = options.suite == "full";
     suite::Settings settings{.effort = is_full && !options.budget ? 1.0 : 0.0,
@@ -52,7 +52,7 @@ suite::Settings settings_of(const ReportOptions& options) {
     return settings;
 }
 
-// Cases about the driver's own structures, those asked for, if the driver takes part.
+// Runs the chosen cases about the driver's own structures, if the driver takes part.
 void run_conformance(const ReportOptions& options, Recorder& recorder) {
     const auto is_twinrays = [](frame::Backend backend) { return is_ours(backend); };
     if (!options.accels.empty() && std::ranges::all_of(options.accels, is_twinrays)) return;
@@ -72,14 +72,14 @@ std::string key_of(const ReportOptions& options, const RecordedDevice& device) {
     return key;
 }
 
-// Where the run stands: what is done of it where it is to go on, else nothing.
+// Returns the state of the run: what is done of it if it is resumed, else nothing.
 suite::SuiteState state_of(const ReportOptions& options, const RecordedDevice& device) {
     const std::filesystem::path file = options.folder / "progress.json";
     if (options.resume) return suite::read_state(file, key_of(options, device));
     return {.file = file, .key = key_of(options, device)};
 }
 
-// The records of what is done.
+// Returns the records of what is done.
 std::vector<Record> kept_records(const ReportOptions& options, const suite::SuiteState& state) {
     if (!options.resume) return {};
     std::vector<Record> records = read_json_lines(options.folder / "report.jsonl").records;
@@ -99,7 +99,7 @@ std::vector<std::pair<report::Figure, std::string>> drawn_figures(const ReportOp
     return drawn;
 }
 
-// Writes them for the first fault of each class of the driver; returns the classes.
+// Writes a reproducer for the first fault of each class of the driver; returns the classes.
 std::vector<std::string> write_reproducers(const ReportOptions& options, std::span<const Record> records,
                                            frame::Devices& devices) {
     const std::filesystem::path folder = options.folder / "reproducers";
@@ -115,7 +115,7 @@ std::vector<std::string> write_reproducers(const ReportOptions& options, std::sp
     return classes;
 }
 
-// Exit status: 1 where there is a fault of twinray.
+// Returns the exit status: 1 if there is a fault of twinray.
 int run(const ReportOptions& options) {
     const std::vector<frame::Case> all = cases_of_report(options.scenes);
     check_choice(options.only, all, "`twinray report --list`");
@@ -177,8 +177,8 @@ nlohmann::json json_of(const report::NamedReport& before, const report::NamedRep
             {"is_worse", comparison.is_worse()}, {"changes", changes},        {"times", times}};
 }
 
-// `--compare`: prints what changed from the first report (a folder, or its JSON lines) to each of the others, and
-// appends it to `json` unless that is empty. Exit status: 1 where one is worse.
+// Prints for `--compare` what changed from the first report (a folder, or its JSON lines) to each of the others, and
+// appends it to `json` unless that is empty. Returns the exit status: 1 if one is worse.
 int compare_reports(std::span<const std::filesystem::path> paths, const std::filesystem::path& json) {
     std::vector<report::NamedReport> reports;
     for (const std::filesystem::path& path : paths) reports.push_back(report::read_report(path));

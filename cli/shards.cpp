@@ -19,7 +19,7 @@ namespace {
 constexpr uint most_parts = 1'000'000;
 constexpr std::string_view kind = "twinray shard 1\n";
 
-// "1/3".
+// Reads "1/3".
 bool read_part(const std::string& word, ShardOptions& options) {
     const char* const last = word.data() + word.size();
     const auto [slash, error] = std::from_chars(word.data(), last, options.index);

@@ -16,11 +16,11 @@
 namespace twinray::cli {
 
 struct ShardOptions {
-    uint index = 0, count = 0;  // --shard; count is 0 where there is none
+    uint index = 0, count = 0;  // --shard; count is 0 without it
     uint merged = 0;            // --merge; 0: none
     bool resumes = false;
 };
-// --shard, --merge and --resume. `output`: the option that names what is written; `whole`: those that need all parts.
+// Returns --shard, --merge, --resume. `output`: the option for what is written; `whole`: options that need all parts.
 Section shard_options(ShardOptions& options, std::vector<std::string> whole, const std::string& output = "--output");
 
 struct Rows {
@@ -28,10 +28,10 @@ struct Rows {
     std::uint64_t count() const { return last - first; }
 };
 
-// What all parts must agree on, by name.
+// The names and values on which all parts must agree.
 using Agreement = std::vector<std::pair<std::string, std::string>>;
 
-// The version, the command, the scene and the accelerator ("" where there is none).
+// Returns the version, the command, the scene and the accelerator ("" if there is none).
 Agreement agreement_of(const std::string& command, const Scene& scene, const std::string& accel);
 
 class Shards {
@@ -43,15 +43,15 @@ class Shards {
     Shards(const Shards&) = delete;
     Shards& operator=(const Shards&) = delete;
 
-    // Each process computes `compute(rows)` of its part of `count` rows and saves it beside the output. Returns those
-    // of all parts, in order, to the process that goes on; nothing to one that is done. Without parts it is compute()
-    // of all rows, and no file.
+    // Computes `compute(rows)` of each process's part of `count` rows and saves it beside the output. Returns all
+    // parts, in order, to the process that goes on, and nothing to one that is done. Without parts it is compute() of
+    // all rows, and no file.
     using Compute = std::function<std::vector<std::byte>(Rows)>;
     std::optional<std::vector<std::vector<std::byte>>> parts(std::uint64_t count, Agreement agreement,
                                                              const Compute& compute) const;
 
-    // The same for a command that saves parts itself: calls save(rows, file) for the own part, then load(rows, file)
-    // for all, in order. Returns whether this process goes on.
+    // Does the same for a command that saves parts itself: calls save(rows, file) for its own part, then load(rows,
+    // file) for all, in order. Returns whether this process goes on.
     using Visit = std::function<void(Rows, const std::filesystem::path&)>;
     bool for_parts(std::uint64_t count, const Visit& save, const Visit& load) const;
 
@@ -68,7 +68,7 @@ class Shards {
     bool is_quiet_ = false;
 };
 
-// Bytes of a part that has two kinds of things, and the things of such bytes, of which `count` are of the first kind.
+// Joins two kinds of things into the bytes of a part; split() takes them apart, `count` of the first kind.
 template <class A, class B>
 std::vector<std::byte> joined(std::span<const A> a, std::span<const B> b) {
     std::vector<std::byte> bytes(a.size_bytes() + b.size_bytes());
@@ -88,7 +88,7 @@ void split(std::span<const std::byte> bytes, std::size_t count, std::vector<A>& 
     append_bytes(b, bytes.subspan(count * sizeof(A)));
 }
 
-// The rows of all parts, each of a Row; compute(rows) gives a vector of them.
+// Computes the rows of all parts; compute(rows) returns a vector of Row.
 template <class Row, class Compute>
 std::optional<std::vector<Row>> compute_rows(const Shards& shards, std::uint64_t count, Agreement agreement,
                                              const Compute& compute) {
@@ -105,7 +105,7 @@ std::optional<std::vector<Row>> compute_rows(const Shards& shards, std::uint64_t
     return all;
 }
 
-// A value as it is in an Agreement.
+// Returns a value in the form that it has in an Agreement.
 std::string checksum_text(std::span<const std::byte> bytes);
 
 }  // namespace twinray::cli

@@ -73,7 +73,7 @@ TraceDesc desc_of(const TraceOptions& options) {
     return {.mask = static_cast<std::uint8_t>(options.mask), .cull = options.cull, .level = options.level};
 }
 
-// How many hits each ray has, and all of them, one after the other.
+// The number of hits of each ray, and all hits, one after the other.
 struct CountedHits {
     std::vector<std::uint32_t> counts;
     std::vector<Hit> hits;
@@ -116,7 +116,7 @@ Agreement agreement_for(const TraceOptions& options, const Scene& scene, const A
     return agreement;
 }
 
-// The hits of all rays; with --query all their counts are written. Nothing where other processes go on.
+// Computes the hits of all rays; with --query all it writes their counts. Returns nothing if another process goes on.
 std::optional<std::vector<Hit>> compute(const Shards& shards, const TraceOptions& options, const Agreement& agreement,
                                         AbstractAccel& accel, std::span<const Ray> rays) {
     const auto own = [&](Rows rows) { return rays.subspan(rows.first, rows.count()); };

@@ -46,7 +46,7 @@ std::vector<RaySet> ray_sets(const VerifyOptions& options, const ReferenceScene&
     return test_rays(reference, bounds_of(scene), options.random, options.aimed, options.common.seed);
 }
 
-// Level fast promises nothing.
+// Returns 0 at level fast, which promises nothing.
 std::uint64_t faults_of_ours(const VerifyOptions& options, const Comparison& comparison) {
     return options.level == Level::fast ? 0 : comparison.software.faults_of_ours();
 }
@@ -57,13 +57,13 @@ std::string result_text(const VerifyOptions& options, std::uint64_t faults) {
     return faults ? text(faults, " faults of twinray") : "no fault of twinray";
 }
 
-// Into the folder that was asked for; without one only faults of twinray are written, to a folder of that name here.
+// Returns the requested folder. Without one, only faults of twinray are written, to a folder of that name here.
 std::filesystem::path replay_folder(const VerifyOptions& options, const Comparison& comparison) {
     if (!options.replays.empty()) return options.replays;
     return faults_of_ours(options, comparison) ? "twinray_replays" : "";
 }
 
-// The fields that all replays of a run share.
+// Returns the fields that all replays of a run share.
 replay::Replay replay_of(const VerifyOptions& options, const Scene& scene, const DeviceProperties& device) {
     return {.scene = std::filesystem::absolute(options.scene),
             .scene_hash = replay::hash_of(scene),
@@ -76,13 +76,13 @@ replay::Replay replay_of(const VerifyOptions& options, const Scene& scene, const
             .twinray = twinray_version};
 }
 
-// The first fault of each class of the driver's.
+// Keeps the driver's first fault of each class.
 void keep_first(std::vector<Fault>& firsts, const std::vector<Fault>& faults) {
     for (const Fault& fault : faults)
         if (!fault.is_of_software && std::ranges::count(firsts, fault.kind, &Fault::kind) == 0) firsts.push_back(fault);
 }
 
-// A folder for each.
+// Writes a folder for each fault.
 void write_reproducers(const VerifyOptions& options, const Scene& scene, const replay::Replay& common,
                        const std::vector<Fault>& faults) {
     if (faults.empty()) std::cout << "  no fault of the driver, so no reproducer\n";
@@ -100,7 +100,7 @@ void write_reproducers(const VerifyOptions& options, const Scene& scene, const r
     }
 }
 
-// Returns the faults of twinray.
+// Returns the number of twinray's faults.
 std::uint64_t run(const VerifyOptions& options) {
     const Scene scene = load_scene(options.scene, options.common);
     const std::unique_ptr<Context> context = make_context(options.common);

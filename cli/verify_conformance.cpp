@@ -17,7 +17,7 @@
 namespace twinray::cli {
 namespace {
 
-// In the environment of a process that runs cases itself.
+// This variable is set for a process that runs cases itself.
 constexpr const char* here_variable = "TWINRAY_CONFORMANCE_HERE";
 
 std::vector<std::string> arguments_of(const CommonOptions& options, std::span<const conformance::Case> cases,
@@ -34,7 +34,7 @@ std::vector<std::string> arguments_of(const CommonOptions& options, std::span<co
     return words;
 }
 
-// The chosen ones that no record is of.
+// Returns the chosen cases that have no record.
 std::vector<conformance::Case> cases_left(const std::vector<std::string>& only, std::span<const Record> records) {
     std::vector<conformance::Case> left = conformance::catalogue();
     std::erase_if(left, [&](const conformance::Case& row) {
@@ -44,7 +44,7 @@ std::vector<conformance::Case> cases_left(const std::vector<std::string>& only, 
     return left;
 }
 
-// Runs in that process: appends the records to options.json, prints nothing.
+// Runs the cases in that process, appends the records to options.json and prints nothing.
 int run_conformance_here(const CommonOptions& options, const std::vector<std::string>& only, bool is_full) {
     Context context(watched_context_desc(options, most_conformance_seconds));
     Recorder recorder({utc_now(), twinray_version, probed_device(context)});
@@ -66,7 +66,7 @@ void run_conformance(const CommonOptions& options, const std::vector<std::string
     for (std::vector<conformance::Case> left = cases_left(only, all); !left.empty(); left = cases_left(only, all)) {
         const TemporaryFolder folder;
         const std::string file = (folder.path() / "records.json").string();
-        std::ofstream{file};  // there, also where the process writes none
+        std::ofstream{file};  // exists even if the process writes nothing
         const platform::ProgramEnd end =
             run_twinray(arguments_of(options, left, is_full, file), {{here_variable, "1"}});
         const std::vector<Record> records = read_json_lines(file).records;

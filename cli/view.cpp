@@ -65,7 +65,7 @@ std::optional<std::array<dvec3, 2>> camera_of(const std::vector<double>& c) {
     return std::array{dvec3(c[0], c[1], c[2]), dvec3(c[3], c[4], c[5])};
 }
 
-// The root mean square of the differences of all channels, of 255. Throws Error for a picture of another size.
+// Returns the root mean square of the differences of all channels, of 255. Throws Error for a picture of another size.
 double difference_of(const Raster& raster, const std::filesystem::path& file) {
     std::ifstream in(file, std::ios::binary);
     if (!in) fail("'", file.string(), "': cannot be read");
@@ -89,7 +89,7 @@ void write(const Raster& raster, const std::filesystem::path& file) {
     write_png(file, raster.width, raster.height, raster.pixels);
 }
 
-// Frames until nothing gets better, or there are as many samples as asked for.
+// Renders frames until nothing gets better, or there are as many samples as asked for.
 const Raster& finished(viewer::Viewer& view, uint samples) {
     const Raster* raster = &view.frame(false);
     while (view.traces_paths() && view.samples() < samples) raster = &view.frame(false);

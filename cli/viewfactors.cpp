@@ -27,15 +27,15 @@ namespace {
 
 struct Options : AnalysisOptions {
     FaceGroupOptions groups;
-    ViewFactorOptions factors;  // of which this sets the grouping
+    ViewFactorOptions factors;  // its grouping is groups.by
     PairEstimator estimator = PairEstimator::automatic;
     ShardOptions shards;
     bool projects = false;
     std::filesystem::path matrix;
-    std::optional<uint> from;  // the row whose picture is wanted; none: open fractions of all
+    std::optional<uint> from;  // the row to draw; none: open fractions of all
 };
 
-// Empty where hits are to tell all, as they are in scenes of too many faces unless another estimator is asked for.
+// Returns none if hits estimate all entries, as for too many faces unless another estimator is asked for.
 PairExchanges compute_pairs(const Options& options, AbstractAccel& accel, const Faces& faces) {
     const auto count = static_cast<std::size_t>(
         std::count_if(faces.areas().begin(), faces.areas().end(), [](double area) { return area > 0; }));
@@ -64,7 +64,7 @@ ComputedRows compute_to(const Options& options, ViewFactors& factors, Rows rows,
     return computed;
 }
 
-// Nothing where other processes go on.
+// Returns nothing if another process goes on.
 std::optional<ComputedRows> compute(const Shards& shards, const Options& options, ViewFactors& factors,
                                     const std::string& configuration) {
     const std::size_t count = factors.row_count();
@@ -173,7 +173,7 @@ std::vector<double> by_face(const std::vector<uint>& groups, const std::vector<d
     return of_faces;
 }
 
-// `groups`: of each face. `rows` are all, in order.
+// `groups`: the group of each face. `rows` are all, in order.
 ScenePicture picture_of_view_factors(const Options& options, const std::vector<uint>& groups,
                                      const std::vector<ViewFactorRow>& rows) {
     const std::string scene = options.scene.filename().string();

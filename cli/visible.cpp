@@ -59,7 +59,7 @@ std::vector<vec3> directions_of(std::span<const SkyPatch> sky, dvec3 up) {
     return directions;
 }
 
-// Of each sensor, what its free patches of a uniform sky bring it, in units of what all of a hemisphere would.
+// Returns the light of each sensor's free patches under a uniform sky, in units of the light of a whole hemisphere.
 std::vector<double> shares_of(std::span<const std::uint8_t> free, const Sensors& sensors,
                               std::span<const vec3> directions, std::span<const SkyPatch> sky) {
     std::vector<double> shares(sensors.points.size(), 0);
@@ -100,7 +100,7 @@ void write(const std::filesystem::path& file, std::span<const std::uint8_t> free
     npz.write(file);
 }
 
-// Nothing where other processes go on.
+// Returns nothing if another process goes on.
 std::optional<std::vector<std::uint8_t>> free_patches(const Shards& shards, const VisibleOptions& options,
                                                       const Analysed& analysed, const Sensors& sensors,
                                                       std::span<const vec3> directions) {

@@ -12,7 +12,7 @@
 find_program(TWINRAY_GLSLANG_VALIDATOR glslangValidator DOC "compiler of GLSL to SPIR-V, of package glslang-tools")
 find_program(TWINRAY_SPIRV_OPT spirv-opt DOC "optimiser of SPIR-V, of package spirv-tools")
 
-# Where "twinray/glsl/query.glsl" is found, and "shaders/shared/..." which it needs: in the source tree, or installed.
+# Finds "twinray/glsl/query.glsl" and the "shaders/shared/..." that it needs: in the source tree, or installed.
 get_filename_component(twinray_root ${CMAKE_CURRENT_LIST_DIR}/.. ABSOLUTE)
 if(EXISTS ${twinray_root}/include/twinray/glsl/query.glsl)
     set(TWINRAY_SHADER_FOLDERS ${twinray_root} ${twinray_root}/include CACHE INTERNAL "")

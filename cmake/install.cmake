@@ -42,12 +42,12 @@ if(MINGW AND BUILD_SHARED_LIBS)
 endif()
 
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
-# The programs and DLLs contain what else tools/windows_packages.sh has.
+# The programs and DLLs contain everything else that tools/windows_packages.sh has.
 if(MINGW)
     install(DIRECTORY $ENV{TWINRAY_WINDOWS_PACKAGES}/licenses DESTINATION ${CMAKE_INSTALL_DOCDIR})
 endif()
 
-# Only the public headers, and the files that their GLSL needs.
+# Installs only the public headers, and the files that their GLSL needs.
 install(DIRECTORY include/twinray DESTINATION ${headers_dir})
 set(glsl_dir ${headers_dir}/twinray/glsl)
 install(DIRECTORY shaders/shared shaders/scene DESTINATION ${glsl_dir}/shaders)

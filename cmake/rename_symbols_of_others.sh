@@ -16,5 +16,5 @@ trap 'rm -f "$names"' EXIT
          }' |
     sort -u >"$names"
 if [[ ! -s $names ]]; then exit 0; fi
-# With a newer date, ninja would compile them again.
+# Keeps the dates: with newer ones, ninja would compile the objects again.
 for object in "$@"; do "$objcopy" --preserve-dates --redefine-syms="$names" "$object"; done

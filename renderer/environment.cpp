@@ -9,7 +9,7 @@
 namespace twinray::path_tracer {
 namespace {
 
-// Angle from +y of the edge above `row`.
+// Returns the angle from +y of the edge above `row`.
 double edge_angle(uint row, uint height) { return double{PI} * row / height; }
 
 vec3 default_radiance(vec3 direction) {

@@ -22,7 +22,7 @@ double luminance_sum(const FilmPixel& pixel) {
     return 0.2126 * sum_of(pixel, 0) + 0.7152 * sum_of(pixel, 1) + 0.0722 * sum_of(pixel, 2);
 }
 
-// The variance of the mean luminance of a sample.
+// Returns the variance of the mean luminance of a sample.
 double variance_of(const FilmPixel& pixel, uint block_size) {
     if (pixel.count < 2) return std::numeric_limits<double>::infinity();
     const double n = pixel.count, size = block_size, sum = luminance_sum(pixel), squares = sum_of(pixel, FILM_SQUARES);

@@ -63,21 +63,21 @@ struct Film {
     void merge(const Film& other, const std::string& name, const std::string& other_name);
 
     HdrImage mean() const;
-    // For each pixel's mean luminance: the square of its standard error, from how its blocks differ. Infinite if there
-    // are fewer than two.
+    // Returns the square of the standard error of each pixel's mean luminance, from how its blocks differ; infinite if
+    // there are fewer than two.
     std::vector<double> variances() const;
-    // For the picture: the root mean square of the pixels' standard errors, over its mean luminance. It estimates the
+    // Returns the root mean square of the pixels' standard errors over the picture's mean luminance. It estimates the
     // root mean square of its difference to the true picture (relative RMSE). Infinite if some pixel has fewer than two
     // blocks.
     double error() const;
-    // The average over pixels.
+    // Returns the average over pixels.
     double mean_samples() const;
 };
 
 // This is unbiased for samples that do not depend on each other. Samples of one Sobol sequence are spread more evenly
 // than that, and the error is smaller than it says.
 
-// A sum of a pixel: red, green, blue, or of squared luminances (FILM_SQUARES).
+// Returns a sum of a pixel: red, green, blue, or of squared luminances (FILM_SQUARES).
 double sum_of(const FilmPixel& pixel, uint sum);
 double mean_luminance(const Film& film);
 

@@ -63,8 +63,8 @@ Bound around(Bound a, const Bound& b) {
     return a;
 }
 
-// The measure of the directions that a bound shines into: the solid angle of its cone, and of the part beyond it up to
-// reach_angle, weighted by the cosine.
+// Returns the measure of the directions that a bound shines into: the solid angle of its cone, and of the part beyond
+// it up to reach_angle, weighted by the cosine.
 double measure_of_directions(const Bound& bound) {
     constexpr double pi = std::numbers::pi;
     const double axes = bound.axes_angle, end = std::min(axes + bound.reach_angle, pi);

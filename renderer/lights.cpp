@@ -16,7 +16,7 @@ namespace {
 
 uint word_of(double probability) { return static_cast<uint>(std::clamp(probability * 0x1p32, 0.0, 0x1p32 - 1)); }
 
-// "'sun'", "'sun' and 2 others".
+// Returns "'sun'", or "'sun' and 2 others".
 std::string names_of(const std::vector<Light>& lights) {
     const std::size_t others = lights.size() - 1;
     const std::string first = text("'", lights[0].name, "'");

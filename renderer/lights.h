@@ -17,7 +17,7 @@ struct PlacedLight {
     vec3 lo, hi;             // the box around it
     vec3 axis;               // unit
     float power;             // as LightNode::power; above 0
-    double axes_angle = 0;   // of all directions that count as its axis, from `axis`; in radians
+    double axes_angle = 0;   // how far from `axis` a direction still counts as its axis; in radians
     double reach_angle = 0;  // see LightNode::cos_reach
     bool is_two_sided = false;
     uint light = 0;  // its index, or that of the first triangle
@@ -56,9 +56,9 @@ struct LocalLights {
     uint kind_count() const { return uint{has_suns} + uint{has_placed}; }
 };
 
-// Columns that choose i with probability weights[i] / their sum, in constant time (Walker 1977). Weights are finite and
-// >= 0; an empty table for none or for all 0. Vose, "A linear algorithm for generating random numbers with a given
-// distribution", 1991.
+// Makes columns that choose i with probability weights[i] / their sum, in constant time (Walker 1977). Weights are
+// finite and >= 0; the table is empty for none or for all 0. Vose, "A linear algorithm for generating random numbers
+// with a given distribution", 1991.
 std::vector<AliasEntry> make_alias_table(std::span<const double> weights);
 
 using LocalLightSet = TWINRAY_MULTI_TYPE_SET(LocalLightsView, LOCAL_LIGHTS);
@@ -86,8 +86,8 @@ LocalLights collect_lights(const Scene& scene, LightChoice by);
 // allows without KHR_materials_emissive_strength, which is the glow of a label or a screen rather than a lamp.
 bool has_lamps(const Scene& scene);
 
-// A sentence for each material that the scene shows and that stops the light of its punctual lights though it is glass:
-// shadow rays pass panes alone, and no path that is bent or blurred finds what has no size.
+// Returns a sentence for each material that the scene shows and that stops the light of its punctual lights though it
+// is glass: shadow rays pass only panes, and no path that is bent or blurred finds a light without size.
 std::vector<std::string> stopped_lights(const Scene& scene);
 
 }  // namespace twinray::path_tracer

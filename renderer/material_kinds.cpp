@@ -33,7 +33,7 @@ uint needs_of_texture(const Texture& texture) {
     return 1u << PT_HAS_TEXTURES | uint{texture.uv_set == 1} << PT_HAS_SECOND_UVS;
 }
 
-// The needs of every kind: each kernel samples all lights, some of which may have textures or be transparent.
+// Returns the needs of every kind: each kernel samples all lights, some of which may have textures or be transparent.
 uint needs_of_lights(const Scene& scene, const std::vector<bool>& used, const std::vector<bool>& colored) {
     uint needs = 0;
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {

@@ -19,12 +19,12 @@ std::vector<bool> used_materials(const Scene& scene);
 constexpr uint material_needs[] = {PT_HAS_ALPHA, PT_HAS_TEXTURES,   PT_HAS_GLASS,  PT_HAS_SPECULAR, PT_HAS_COAT,
                                    PT_HAS_SHEEN, PT_HAS_ANISOTROPY, PT_HAS_VOLUME, PT_HAS_COLORS,   PT_HAS_SECOND_UVS};
 
-// Returns whether it is somewhere a smooth wall without thickness, which light passes straight on.
+// Returns whether it may be a smooth wall without thickness somewhere, which light passes straight on.
 bool may_be_pane(const Material& material);
-// Returns whether it is somewhere glass that is no such wall.
+// Returns whether it may be glass that is no such wall somewhere.
 bool may_be_other_glass(const Material& material);
 
-// One bit for each of material_needs: 1 << PT_HAS_ALPHA and the like. Colors are not among them: they belong to meshes.
+// Returns a bit for each of material_needs: 1 << PT_HAS_ALPHA and the like. Colors, which belong to meshes, have none.
 uint needs_of(const Material& material);
 
 struct MaterialKinds {
@@ -32,8 +32,8 @@ struct MaterialKinds {
     std::vector<uint> of;     // by material: its kind, 0 where nothing uses it
     uint all_needs() const;   // of any kind
 };
-// The kinds of the materials that triangles use; if a light has a texture, all kinds have the need for it. Beyond
-// most_material_kinds, those become one that differ least.
+// Returns the kinds of the materials that triangles use; if a light has a texture, all kinds have the need for it.
+// Beyond most_material_kinds, the kinds that differ least become one.
 MaterialKinds kinds_of(const Scene& scene);
 
 // Returns "textures, glass", for people.

@@ -208,7 +208,7 @@ void Renderer::add_block(AbstractAccel& accel, uint number, WaveObserver* observ
 
 void Renderer::trace_block(const Tracing& tracing, uint number) {
     const uint batch = waves_.capacity();
-    // With blocks of one, all samples belong to the same sequence; else each block has its own.
+    // With blocks of one sample, all samples belong to the same sequence; else each block has its own.
     const uint first_sample = settings_.block_size > 1 ? 0 : number;
     for (uint sample = first_sample; sample < first_sample + settings_.block_size; ++sample)
         for (uint first = 0; first < pixel_count_; first += batch)

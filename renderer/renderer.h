@@ -22,7 +22,7 @@ struct Crop {
 struct RenderSettings {
     uint width = 640;  // of the whole picture
     uint height = 480;
-    std::optional<Crop> crop = {};  // what is rendered of it; none: all
+    std::optional<Crop> crop = {};  // the part that is rendered; none: all
     uint samples = 16;              // per pixel
     // The samples that are added to the film as one. Above 1 each block has random numbers of its own, so that blocks
     // are independent; else all samples of a pixel are of one Sobol sequence, which are spread more evenly.
@@ -83,7 +83,7 @@ class WaveBuffers {
     uint capacity() const { return capacity_; }
     std::uint64_t bytes() const;
 
-    // From now on, kernels note first surfaces there; null: they do not. Records into a pass.
+    // Makes kernels note first surfaces there from now on; null: they note none. Records into a pass.
     void set_first_surfaces(Commands& commands, Ref<FirstSurface> first_surfaces) const;
     // Records into a pass: no ray is appended or queued, nothing is dropped.
     void clear_counters(Commands& commands) const;
@@ -131,7 +131,7 @@ class Renderer {
 
     // Returns the surfaces that the camera rays of the first samples see, per pixel of the film. No part of stats().
     std::vector<FirstSurface> first_surfaces(AbstractAccel& accel);
-    // The memory of rays, paths, sums and film.
+    // Returns the memory of rays, paths, sums and film.
     std::uint64_t device_bytes() const;
     // Returns the most rays in one trace.
     std::uint64_t batch_size() const { return waves_.capacity(); }
@@ -180,7 +180,7 @@ class Renderer {
     Kernel<AccumulateArgs> accumulate_;
     Pace pace_;
     uint pixel_count_ = 0;  // in pixels_
-    uint turn_ = 0;         // whose the wave in flight is
+    uint turn_ = 0;         // of the wave in flight
     RenderStats stats_;
 };
 

@@ -10,7 +10,7 @@
 namespace twinray::path_tracer {
 namespace {
 
-// The means of the variances in a square of pixels around each, as far as it is in the film.
+// Returns the means of the variances in a square of pixels around each, as far as it is in the film.
 std::vector<double> means_around(const std::vector<double>& variances, uint width, uint height) {
     constexpr uint reach = 2;
     std::vector<double> means;

@@ -30,24 +30,24 @@ struct Sequence {
     uint frames = 1;
     bool turntable = false;
 
-    // Seconds of the animation; what would be past the range begins anew.
+    // Returns seconds of the animation; times past the range begin anew.
     double time_of(uint frame) const;
-    // Radians by which the camera has gone round.
+    // Returns the radians by which the camera has gone round.
     double angle_of(uint frame) const;
 };
 
-// The animation that the options name; without a name the first, or none with --turntable. Throws Error where it is not
-// there or cannot be played, and where nothing would move.
+// Returns the animation that the options name; without a name the first, or none with --turntable. Throws Error if it
+// does not exist or cannot be played, and if nothing would move.
 Sequence make_sequence(const SequenceOptions& options, const Scene& scene);
 
-// The scene as it is at up to 16 of the sequence's moments, all at once, to be framed. Without cameras and lights.
+// Returns the scene at up to 16 of the sequence's moments, all at once, to be framed, without cameras and lights.
 Scene swept(const Scene& scene, const Sequence& sequence);
 
-// `pattern` with the frame's number, from 1 on: in place of the last row of '#', with so many digits at least, else
-// "_0001" before the suffix.
+// Returns `pattern` with the frame's number, from 1 on: in place of the last row of '#', with at least so many digits,
+// else "_0001" before the suffix.
 std::filesystem::path frame_file(const std::filesystem::path& pattern, uint frame);
 
-// Gone round the vertical axis through `center`, against the clock as seen from above.
+// Moves the camera round the vertical axis through `center`, counter-clockwise as seen from above.
 Camera turned_about(const Camera& camera, vec3 center, double angle);
 
 }  // namespace twinray::path_tracer

@@ -8,7 +8,7 @@
 namespace twinray::path_tracer {
 namespace {
 
-// The set of the first map that needs tangents.
+// Returns the UV set of the first map that needs tangents.
 uint tangent_uv_set(const Material& material) {
     for (const Texture* map :
          {&material.normal_texture, &material.clearcoat_normal_texture, &material.anisotropy_texture})
@@ -16,13 +16,13 @@ uint tangent_uv_set(const Material& material) {
     return 0;
 }
 
-// In float64, so that tiny and huge vectors keep their direction; 0 where there is none: of 0, NaN and infinities.
+// Computes in float64, so that tiny and huge vectors keep their direction. Returns 0 for 0, NaN and infinities.
 vec3 unit_or_zero(dvec3 v) {
     const double size = length(v);
     return size > 0 && std::isfinite(size) ? vec3(v / size) : vec3(0);
 }
 
-// Without a direction: none.
+// Returns 0 for a tangent without a direction.
 vec4 tangent_record(vec4 tangent) {
     const vec3 direction = unit_or_zero(dvec3(tangent));
     return direction == vec3(0) ? vec4(0) : vec4(direction, tangent.w < 0 ? -1 : 1);

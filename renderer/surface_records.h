@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// From Scene to the records that the kernels read: plain data in, plain data out.
+// Makes the records that the kernels read from a Scene: plain data in, plain data out.
 #pragma once
 
 #include <vector>
@@ -29,10 +29,10 @@ std::vector<SurfaceVertex> vertex_records(const Mesh& mesh);
 std::vector<SurfaceTriangle> triangle_records(const Mesh& mesh);
 // Adds the textures of the materials to the list.
 std::vector<SurfaceMaterial> material_records(const Scene& scene, TextureList& textures);
-// The same of the layers beyond the plain surface.
+// Does the same for the layers beyond the plain surface.
 std::vector<LayeredMaterial> layered_records(const Scene& scene, TextureList& textures);
 
-// References left null.
+// Leaves references null.
 SurfaceInstance instance_record(const Transform& transform);
 
 // Returns LAYER_ bits of the layers that have an effect.

@@ -16,7 +16,7 @@ using namespace twinray;
 constexpr double stefan_boltzmann = 5.670374419e-8;                      // W / (m^2 K^4)
 constexpr double temperature[] = {600, 300}, emissivity[] = {0.5, 0.8};  // of the inner sphere and the outer one
 
-// Radii of 1 and 2 m, each of 5120 faces; the outer one looks inwards.
+// Makes spheres with radii of 1 and 2 m, each of 5120 faces; the outer one looks inwards.
 Scene concentric_spheres() {
     Scene scene;
     scene.materials.resize(1);

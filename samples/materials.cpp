@@ -18,7 +18,7 @@ namespace twinray {
 
 using namespace twinray;
 
-// Red grows along x, green along y.
+// Makes an image in which red grows along x, green along y.
 Image ramp(uint side) {
     Image image{.name = "ramp", .width = side, .height = side, .rgba = {}};
     for (uint i = 0; i < side * side; ++i)
@@ -29,7 +29,7 @@ Image ramp(uint side) {
 
 using Materials = TWINRAY_MULTI_TYPE_SET(MaterialSet, MATERIALS);
 
-// A square for each key, one beside the other: 8-bit RGBA, row 0 on top.
+// Draws a square for each key, side by side: 8-bit RGBA, row 0 on top.
 std::vector<uint> draw_swatches(Context& context, const Materials& materials, const TextureStore& textures,
                                 std::span<const SetKey> keys, uint side) {
     const uint count = static_cast<uint>(keys.size()), pixels = count * side * side;

@@ -20,7 +20,7 @@ for header in "${headers[@]}"; do
         -MD -MF "$work/$(basename "$header").d" -x c++ -
 done
 
-# With GLM, of the application's choice: structs and functions of kernels as C++.
+# Compiles structs and functions of kernels as C++, with GLM, which the application may choose.
 for header in cpp cpp_spawn cpp_sampling; do
     echo "#include <twinray/glsl/$header.h>" |
         "$cxx" -std=c++20 -I"$folder" -fsyntax-only -Wall -Wextra -Werror -x c++ -

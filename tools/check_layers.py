@@ -14,9 +14,9 @@ PRODUCT = ENGINE + ["swtlas", "hwtlas"]
 VALIDATION = ["validation/" + room for room in ("reference", "leaks", "records", "verify", "cpu_reference")]
 REPORT = ["report/" + room for room in "conformance explain faults frame page replay reproducer suite".split()]
 CHECKS = VALIDATION + ["validation/exact"] + REPORT
-# See include alone.
+# These see include alone.
 AS_HOSTS = ["samples", "samples/support", "renderer", "bindings", "shaders/path_tracer", "shaders/particles"]
-# Built alone, too: a header lies beside what includes it. One shows the structs of the engine.
+# These are also built alone: a header lies beside what includes it. One shows the structs of the engine.
 TUTORIALS, INSIDE = "samples/tutorials/", "samples/tutorials/10_inside_the_builder/"
 SEES = {  # besides itself, include and, unless AS_HOSTS, shaders/shared
     "include": ["shaders/hwtlas"],  # the public face; its GLSL has parts there and in shaders/shared
@@ -49,7 +49,7 @@ SEES = {  # besides itself, include and, unless AS_HOSTS, shaders/shared
     # Each other folder of shaders, but shaders/shared, which sees nothing else.
     "shaders": ["shaders/engine", "shaders/scene"],
 }
-# Code of one system, which asks for nothing of twinray's: programs that see include alone may have it, too.
+# Code of one system, which needs nothing of twinray, so that programs that see include alone may also use it.
 PLATFORM, PLATFORM_READERS = "engine/core/platform.h", ("renderer", "samples", "samples/support")
 # Everything else is compiled for every system. Python's package is for Linux; the other files are left out elsewhere
 # by CMake, or are programs of their own.

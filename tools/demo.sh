@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# From a checkout to a picture: installs the packages, builds path_tracer and what it links, renders a scene with the
-# faster accelerator of this device, and lets the other one check its rays.
+# Goes from a checkout to a picture: installs the packages, builds path_tracer and what it links, renders a scene with
+# the faster accelerator of this device, and lets the other one check its rays.
 #   tools/demo.sh [SCENE]         SCENE: .gltf, .glb, .obj, .ply or .stl; without it a sunflower of beads, made by formula
 #   TWINRAY_DEMO_SECONDS=N        how long to render, default 100; a coarse picture exists after seconds
 set -euo pipefail

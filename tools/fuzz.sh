@@ -64,7 +64,7 @@ section "Inputs to begin with"
 python3 tests/fuzz/make_seeds.py "$folder/seeds"
 mkdir -p "$folder/findings"
 
-# The text after this word in the last run's log.
+# Prints the text after this word in the last run's log.
 figure() { awk -v word="$1" '$1 == word { value = $2 } END { print value + 0 }' "$2"; }
 
 lines_reached() { # target

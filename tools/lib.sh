@@ -20,8 +20,8 @@ section_end() {
     section_start=
 }
 
-# A Python with the packages that build and test twinray's package, at versions that are known to work: prints its path,
-# or on standard error why there is none.
+# Makes a Python with the packages that build and test twinray's package, at versions that are known to work. Prints its
+# path, or on standard error why there is none.
 python_for_package() {
     local folder=$PWD/build/venv
     local packages=(nanobind==3.1.0 nanobind-backend==1.0.0 numpy scipy pytest==9.2.0 trimesh==5.2.0)
@@ -35,7 +35,7 @@ python_for_package() {
     echo "$folder/bin/python"
 }
 
-# The same for building the documentation and running the code of its pages.
+# Does the same for building the documentation and running the code of its pages.
 python_for_docs() {
     local folder=$PWD/build/docs/venv wanted=docs/site/requirements.txt
     if ! cmp -s "$wanted" "$folder/installed.txt"; then

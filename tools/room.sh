@@ -20,7 +20,7 @@ can_make_rooms() {
     fi
 }
 
-# Makes one: bookworm, or trixie-backports for trixie with its backports, or sid.
+# Makes a room: bookworm, or trixie-backports for trixie with its backports, or sid.
 make_room() { # folder, suite
     local room=$1 suite=${2%-backports} mirror script include=()
     # shellcheck disable=SC2016

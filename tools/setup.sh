@@ -143,21 +143,21 @@ apt_failed() { # what failed
     exit 1
 }
 
-# One line per index that apt reads: origin, codename, component, file that names it, mirror.
+# Prints one line per index that apt reads: origin, codename, component, file that names it, mirror.
 # shellcheck disable=SC2016
 apt_sources() {
     local format='$(ORIGIN)|$(CODENAME)|$(COMPONENT)|$(SOURCESENTRY)|$(REPO_URI)'
     apt-get indextargets --format "$format" 'Created-By: Packages'
 }
 
-# The mirror that serves this system's Debian packages already.
+# Prints the mirror that already serves this system's Debian packages.
 debian_mirror() {
     apt_sources | awk -F'|' '!uri && $1 == "Debian" && $2 == "bookworm" && $3 == "main" && $5 !~ /^cdrom:/ {
                                  uri = $5 }
                              END { print uri }'
 }
 
-# Whether a file that twinray did not write offers the suite; a second entry could then contradict it.
+# Tells whether a file that twinray did not write offers the suite; a second entry could then contradict it.
 is_configured() {
     apt_sources | awk -F'|' -v suite="$1" '$2 == suite && $3 == "main" && $4 !~ /\/twinray-/ { found = 1 }
                                            END { exit !found }'

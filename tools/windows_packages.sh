@@ -15,7 +15,7 @@ target=x86_64-w64-mingw32
 jobs=${JOBS:-$(nproc)}
 toolchain=$(dirname "$(realpath "$0")")/../cmake/toolchains/mingw.cmake
 sources=$folder/sources
-# They consist of headers alone.
+# These packages consist of headers alone.
 header_packages=(
     libvulkan-dev libvulkan-volk-dev libvulkan-memory-allocator-dev libglm-dev nlohmann-json3-dev libcli11-dev
     libeigen3-dev libtinygltf-dev libstb-dev
@@ -43,7 +43,7 @@ copy_headers() {
     done < <(grep -E '^/usr/(include|share/cmake|share/eigen3)/' <<<"$files")
 }
 
-# Copies the texts that Debian has of them.
+# Copies Debian's texts of their licences.
 copy_licenses() {
     local package source
     mkdir -p "$folder/licenses"
@@ -56,7 +56,7 @@ copy_licenses() {
 fetch_sources() {
     local apt=$folder/apt release mirror package suites=()
     release=$(. /etc/os-release && echo "$VERSION_CODENAME")
-    # The mirror that this system takes its packages from; apt-get expands what stands in quotes.
+    # The mirror that this system takes its packages from; apt-get expands what is in quotes.
     # shellcheck disable=SC2016
     mirror=$(apt-get indextargets --format '$(CODENAME) $(REPO_URI)' 'Origin: Debian' |
         sed -n "s/^$release //p" | sort -u | head -n 1)

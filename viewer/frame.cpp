@@ -63,7 +63,7 @@ std::string range_text(const ValueScale& scale) {
     return out.str();
 }
 
-// The direction to the sun, on a day when it rises at 6 along +x and is highest at 12; z is up if `up` says so.
+// Returns the direction to the sun on a day when it rises at 6 along +x and is highest at 12; z is up if `up` says so.
 dvec3 sun_at(double hour, UpAxis up) {
     const double turn = std::numbers::pi * (hour - 6) / 12;
     const double east = std::cos(turn), height = std::sin(turn), north = -0.3;
@@ -220,7 +220,7 @@ Raster Viewer::shaded(Shown shown, const Traced& traced, bool is_moving) {
     });
 }
 
-// Grey if both agree; else coloured by the one that is wrong.
+// Draws grey if both agree; else the colour of the one that is wrong.
 Raster Viewer::difference(const Traced& software, const Traced& hardware, uint grain) {
     const Scene& scene = stage_->scene();
     Raster raster = by_pixel(software, [&](std::size_t i) {

@@ -49,10 +49,10 @@ std::span<const Key> all_keys();
 // Returns null if the key does nothing.
 const Key* find_key(std::string_view name);
 
-// Whether it flies while the right button is down.
+// Returns whether the key flies while the right button is down.
 bool is_flight(std::string_view name);
 
-// The state that a key changes, for the sheet: "on", "sw", ...; empty if there is none.
+// Returns the state that a key changes, for the sheet: "on", "sw", ...; empty if there is none.
 std::string state_of(const Key& key, const State& state);
 
 }  // namespace twinray::viewer

@@ -33,7 +33,7 @@ Orbit with_backward(Orbit orbit, const dvec3& backward) {
     return orbit;
 }
 
-// The height of the picture, at the centre.
+// Returns the height of the picture, at the centre.
 double height_at_center(const Orbit& orbit) { return 2 * orbit.distance * std::tan(orbit.vertical_fov / 2); }
 
 }  // namespace

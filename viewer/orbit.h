@@ -10,7 +10,7 @@ namespace twinray::viewer {
 
 enum class UpAxis : std::uint8_t { y, z };
 
-// It looks at `center` from `distance` away. Angles in radians.
+// A camera that looks at `center` from `distance` away. Angles are in radians.
 struct Orbit {
     dvec3 center = dvec3(0);
     double distance = 1;
@@ -19,7 +19,7 @@ struct Orbit {
     double vertical_fov = 0.7;
     bool is_orthographic = false;
     UpAxis up = UpAxis::y;
-    // From the centre to the scene's farthest point: orthographic eyes, whose distance only scales, are outside.
+    // The scene's radius about the centre. Orthographic eyes, whose distance only scales, are outside of it.
     double reach = 0;
 
     bool operator==(const Orbit&) const = default;
@@ -48,7 +48,7 @@ Orbit framed(Orbit orbit, const Bounds& box, double aspect);
 enum class Side : std::uint8_t { front, right, top, isometric };
 Orbit seen_from(Orbit orbit, Side side);
 
-// The orbit of a file's camera, with the centre at the middle of the box's depth.
+// Returns the orbit of a file's camera, with the centre at the middle of the box's depth.
 Orbit orbit_of(const Camera& camera, const Bounds& box, UpAxis up);
 // Throws Error if the eye is the centre.
 Orbit looking(const dvec3& eye, const dvec3& center, UpAxis up, double vertical_fov);

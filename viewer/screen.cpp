@@ -148,12 +148,12 @@ void Screen::start_overlay() {
 
 void Screen::end_overlay() {
     if (!has_overlay_) return;
-    vkDeviceWaitIdle(device_);  // of a device that is lost it fails, which does not matter any more
+    vkDeviceWaitIdle(device_);  // fails for a lost device, which does not matter any more
     ImGui_ImplVulkan_Shutdown();
     has_overlay_ = false;
 }
 
-// False: the window has no pixels.
+// Returns false if the window has no pixels.
 bool Screen::create_swapchain() {
     require(vkDeviceWaitIdle(device_), "wait for the device");
     VkSurfaceCapabilitiesKHR can{};

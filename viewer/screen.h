@@ -77,10 +77,10 @@ class Screen {
 
     const ScreenDevice& device() const { return screen_device_; }
 
-    // Begins what draws over pictures: Dear ImGui for this device. After its context is there.
+    // Starts Dear ImGui, which draws over pictures, for this device. Its context must exist.
     void start_overlay();
     void end_overlay();  // before its context ends
-    // Shows the picture, enlarged to the window, and what ImGui has to draw. False: the window has no pixels now.
+    // Shows the picture, enlarged to the window, and what ImGui draws. Returns false if the window has no pixels now.
     bool present(const Raster& picture);
     void wait() const;
 

@@ -20,7 +20,7 @@ Function instance_function(VkInstance instance, const char* name) {
     return reinterpret_cast<Function>(vkGetInstanceProcAddr(instance, name));
 }
 
-// Draws, computes and shows there; -1 if there is none.
+// Returns a queue family that draws, computes and shows there; -1 if there is none.
 int family_of(VkPhysicalDevice device, VkSurfaceKHR surface) {
     std::uint32_t count = 0;
     vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
@@ -125,7 +125,7 @@ void ScreenDevice::choose(const std::string& request) {
     choose_format();
 }
 
-// One that takes 8 bits a channel as they are.
+// Chooses a format that takes 8 bits a channel as they are.
 void ScreenDevice::choose_format() {
     std::uint32_t count = 0;
     require(vkGetPhysicalDeviceSurfaceFormatsKHR(physical_, surface_, &count, nullptr), "list formats");

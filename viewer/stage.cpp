@@ -9,7 +9,7 @@
 namespace twinray::viewer {
 namespace {
 
-// All levels can be asked for where the device can compute them.
+// Allows all levels that the device can compute.
 AccelOptions options_for(const DeviceProperties& device, bool is_software) {
     return {.level = !device.shader_float64 ? Level::watertight : is_software ? Level::certified : Level::refined};
 }
@@ -19,7 +19,7 @@ std::string lacking_for(const DeviceProperties& device) {
     return missing.empty() ? "" : missing.front();
 }
 
-// From device memory, where a transform may be singular: its instance is then not seen.
+// Transforms come from device memory, where one may be singular: its instance is then not seen.
 Buffer upload_transforms(Context& context, const Scene& scene) {
     std::vector<Transform> transforms;
     for (const Instance& instance : scene.instances) transforms.push_back(instance.transform);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a window shows, as data: every state of it is a command line.
+// The state of a window, as data: every state is a command line.
 #pragma once
 
 #include <array>
@@ -34,7 +34,7 @@ inline constexpr std::array all_layers = {
     Layer::depth, Layer::distance, Layer::steps,     Layer::light, Layer::factors, Layer::collisions};
 std::string_view name_of(Layer layer);
 
-// Whose hits.
+// The accelerator whose hits are shown.
 enum class Shown : std::uint8_t {
     software,
     hardware,
@@ -49,12 +49,12 @@ struct State {
     Layer layer = Layer::eyelight;
     Shown shown = Shown::software;
     Level level = Level::watertight;
-    float wipe = 0.5f;                // where the wipe is, of the width
+    float wipe = 0.5f;                // position of the wipe, as a share of the width
     bool has_area_colors = false;     // boxes of the tree have the colour of their area, see BoxColor
     std::optional<int> tree_depth;    // boxes of that level of the software tree are drawn; 0: the root
     uint width = 1280, height = 720;  // pixels
     std::optional<uvec2> picked;      // a pixel
-    Orbit picked_from;                // as which the camera then stood
+    Orbit picked_from;                // the camera of that moment
     double seconds = 0;               // of the animation
     double hour = 12;                 // of the day, for Layer::light
     bool has_all_features = false;    // Layer::path has kernels for every scene, not only for what this one needs
@@ -63,8 +63,7 @@ struct State {
     bool operator==(const State&) const = default;
 };
 
-// "--layer steps --show wipe ...": the options of `twinray view` that show the same; those at their defaults are left
-// out.
+// Returns "--layer steps --show wipe ...": the options of `twinray view` that show the same; leaves out defaults.
 std::string options_of(const State& state, const dvec3& origin);
 
 }  // namespace twinray::viewer

@@ -12,11 +12,11 @@ namespace twinray::viewer {
 struct Box {
     dvec3 lo, hi;
     bool is_of_instances;  // of the scene's level; else of a geometry, under its instance's transform
-    double share = 1;      // of the area of the root's box: of rays that meet the root, how many meet this (SAH)
+    double share = 1;      // of the area of the root's box: the share of rays through the root that meet this box (SAH)
 };
 
-// Boxes `depth` steps below the root, in world space; those of leaves that end before stay. Below the scene's level go
-// on the trees of the instances. At most so many boxes; the rest is left out.
+// Returns the boxes `depth` steps below the root, in world space; boxes of leaves that end before stay. The trees of
+// the instances continue below the scene's level. Returns at most so many boxes and leaves out the rest.
 std::vector<Box> boxes_at(const Scene& scene, const reference::Scene& cpu_reference, int depth,
                           std::size_t most = 20000);
 
@@ -25,7 +25,7 @@ enum class BoxColor : std::uint8_t {
     kind,  // blue of instances, orange of triangles
     area,  // Box::share, from 1e-4 to 1, on a logarithmic scale
 };
-// The twelve edges of each box.
+// Returns the twelve edges of each box.
 std::vector<Stroke> strokes_of(const std::vector<Box>& boxes, BoxColor color = BoxColor::kind);
 
 }  // namespace twinray::viewer

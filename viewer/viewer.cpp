@@ -19,7 +19,7 @@ constexpr double flight_a_frame = 0.03;  // of the distance
 constexpr double least_drag = 3;         // pixels; less is a click
 constexpr uint least_side = 1, most_side = 16384;
 
-// For a shell.
+// Quotes a word for a shell.
 std::string quoted(const std::string& word) {
     if (word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%") ==
         std::string::npos)
@@ -71,7 +71,7 @@ Pick pick(Stage& stage, const Ray& ray) {
     return found;
 }
 
-// For `twinray verify --replay`. `version`: of twinray.
+// Makes a replay for `twinray verify --replay`. `version`: that of twinray.
 replay::Replay replay_of(Stage& stage, const Pick& pick, const std::string& version) {
     const bool is_of_hardware = pick.has_hardware && is_fault_of_hardware(pick.hardware_class);
     const DeviceProperties& device = stage.context().properties();
@@ -240,7 +240,7 @@ void Viewer::handle(const Event& event) {
         if (resized->width == 0 || resized->height == 0) return;  // minimised: the last picture stays
         State state = state_;
         state.width = resized->width, state.height = resized->height;
-        state.picked.reset();  // which is a pixel of the former size
+        state.picked.reset();  // it is a pixel of the former size
         set_state(state);
     } else if (const auto* dropped = std::get_if<Dropped>(&event)) {
         try {

@@ -38,7 +38,7 @@ class Stage {
     const Scene& scene() const { return scene_; }
     const Bounds& bounds() const { return bounds_; }
     SwTlas& software() { return software_; }
-    HwTlas* hardware() { return hardware_.get(); }                           // null: see the next
+    HwTlas* hardware() { return hardware_.get(); }                           // null: see why_no_hardware()
     const std::string& why_no_hardware() const { return why_no_hardware_; }  // "" where there is one
     Context& context() const { return context_; }
     double build_seconds() const { return build_seconds_; }  // of both, with uploads
@@ -138,9 +138,9 @@ struct Pick {
     std::optional<std::size_t> face;                     // of the same, by instance, then by triangle
     std::uint64_t nodes = 0, boxes = 0, primitives = 0;  // that the ray asks the software tree for
 };
-// A line each: the ray, the hits and what they are worth, steps.
+// Returns a line each for the ray, the hits and what they are worth, and steps.
 std::string text_of(const Pick& pick);
-// Triangle tests and boxes on the way to what either says, in float32 and exactly.
+// Returns triangle tests and boxes on the way to what either says, in float32 and exactly.
 std::string explanation_of(Stage& stage, const Pick& pick);
 
 class Viewer {
@@ -149,7 +149,7 @@ class Viewer {
     Viewer(Context& context, const ViewerDesc& desc);
 
     void handle(const Event& event);
-    // The next frame: coarse while the camera moves, then whole, then better and better.
+    // Returns the next frame: coarse while the camera moves, then whole, then better and better.
     const Raster& frame(bool may_be_coarse);
     const Raster& last() const { return raster_; }
     // Returns whether another frame would be better than the last.
@@ -160,18 +160,18 @@ class Viewer {
 
     const State& state() const { return state_; }
     void set_state(const State& state);
-    // Goes on, with the plainest layer, after an error that the user is told.
+    // Goes on with the plainest layer after an error, of which the user is told.
     void recover(const std::string& why);
-    // Reads the file again if it has changed since; goes on with what there is where it cannot be read.
+    // Reads the file again if it has changed since; goes on with the present scene if it cannot be read.
     void reload_if_changed();
     Stage& stage() { return *stage_; }
     const std::optional<Pick>& picked() const { return pick_; }
     const std::string& explanation();  // of the picked ray; made when it is asked for
-    // Lines about device, trees, times and what is shown.
+    // Returns lines about device, trees, times and what is shown.
     std::vector<std::string> figures() const;
-    // The meaning of colours of values; empty: they have none.
+    // Returns the meaning of colours of values; empty: they have none.
     const Values& values() const { return values_; }
-    // A sentence for the user, of what just happened; empty: nothing did.
+    // Returns a sentence for the user about what just happened; empty: nothing did.
     const std::string& message() const { return message_; }
     bool shows_panel() const { return shows_panel_; }
     bool shows_sheet() const { return shows_sheet_; }

@@ -85,7 +85,7 @@ class Glfw {
     Glfw& operator=(const Glfw&) = delete;
 
     GLFWwindow* window() const { return window_; }
-    // Which may be another in pixels than was asked for.
+    // Tells the size in pixels, which may differ from the requested one.
     void tell_size() {
         int width = 0, height = 0;
         glfwGetFramebufferSize(window_, &width, &height);
@@ -118,7 +118,7 @@ class Glfw {
         clicked_ = button == GLFW_MOUSE_BUTTON_LEFT ? now : -1;
         events.push_back(ButtonDown{button_of(button), x_, y_, (mods & GLFW_MOD_SHIFT) != 0});
     }
-    // In pixels, which are more than the system's units on some screens.
+    // The position is in pixels, which are more than the system's units on some screens.
     void on_move(double x, double y) {
         int units_x = 1, units_y = 1, pixels_x = 1, pixels_y = 1;
         glfwGetWindowSize(window_, &units_x, &units_y);

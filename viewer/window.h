@@ -11,8 +11,8 @@ struct WindowDesc {
     ViewerDesc viewer;
     std::filesystem::path play, record;  // events; empty: none
 };
-// Until it is closed; returns the exit status. Throws Error where there is no display, and where twinray was built
-// without GLFW or Dear ImGui.
+// Runs until the window is closed; returns the exit status. Throws Error if there is no display, or if twinray was
+// built without GLFW or Dear ImGui.
 int run_window(const WindowDesc& desc);
 
 }  // namespace twinray::viewer

@@ -35,7 +35,7 @@ __cubql_both cuBQL::Triangle triangle_of(const Scene& scene, uint32_t index) {
     return {scene.vertices[at.x], scene.vertices[at.y], scene.vertices[at.z]};
 }
 
-// Infinite where nothing is hit.
+// Returns infinity if nothing is hit.
 __cubql_both float distance(const Scene& scene, const peer::Ray& given, bool is_any) {
     cuBQL::ray3f ray(vec3f(given.origin[0], given.origin[1], given.origin[2]),
                      vec3f(given.direction[0], given.direction[1], given.direction[2]), 0.f, CUBQL_INF);

@@ -55,7 +55,7 @@ inline void check(cudaError_t error) {
     if (error != cudaSuccess) throw std::runtime_error(cudaGetErrorString(error));
 }
 
-// On the device; never freed, for the program ends.
+// Allocates on the device. The memory is never freed, since the program ends.
 template <class T>
 T* device_array(std::size_t count) {
     T* items = nullptr;

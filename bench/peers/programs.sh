@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Makes the programs of python_rays.py for peers that are headers or libraries of C++, of checkouts of theirs:
+# Builds the programs of python_rays.py for peers that are headers or libraries of C++, from checkouts of them:
 #   bench/peers/programs.sh FOLDER [--cubql CHECKOUT] [--deepee CHECKOUT]
-# With nvcc they use the GPU, and deepeeRT needs it; else cuBQL uses the CPU.
+# With nvcc the programs use the GPU, and deepeeRT needs it; else cuBQL uses the CPU.
 set -euo pipefail
 if (($# < 1)) || [[ $1 == -* ]]; then
     sed -n '3,5s/^# *//p' "${BASH_SOURCE[0]}" >&2
@@ -13,7 +13,7 @@ shift
 mkdir -p "$folder"
 here=$(realpath "$(dirname "${BASH_SOURCE[0]}")")
 
-# Says what a program is, beside it.
+# Writes beside a program what it is.
 about() { # program, checkout, what else
     local revision
     revision=$(git -C "$2" rev-parse --short HEAD 2>/dev/null || echo 'of no known revision')

@@ -34,10 +34,10 @@ APART, RAYS_APART = {"raystrack vulkan"}, 4096  # Taichi keeps memory of each ro
 
 @dataclass
 class Room:
-    cells: np.ndarray  # (n, 4, 3), of triangles the last vertex is the first
+    cells: np.ndarray  # (n, 4, 3); the last vertex of a triangle is its first
     counts: np.ndarray
     sides: np.ndarray  # cells of one of these do not see each other
-    walls: int  # so many cells are the room's, the others the cabinet's
+    walls: int  # the number of the room's cells; the others are the cabinet's
     box: np.ndarray
 
     def mesh(self):
@@ -145,7 +145,7 @@ class Pyviewfactor:
         parts = parts_of(room, effort) if effort > 1 else room
         mesh, cabinet = self.polygons(parts.cells, parts.counts[0]), self.polygons(room.box, 4)
         found = self.pvf.compute_viewfactor_matrix(mesh, obstacles=[cabinet], strict_obstruction=self.strict)
-        n, each = len(room.cells), len(parts.cells) // len(room.cells)  # the parts of a cell are of one area
+        n, each = len(room.cells), len(parts.cells) // len(room.cells)  # the parts of a cell have equal areas
         return found.reshape(n, each, n, each).sum(axis=1).mean(axis=2).T, None
 
 

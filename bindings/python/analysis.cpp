@@ -20,7 +20,7 @@ FaceGrouping group(Faces& faces, std::vector<uint>&& groups) {
     return FaceGrouping::custom;
 }
 
-// Pairs are looked at one by one where there are few enough of them.
+// Looks at pairs one by one if there are few enough of them.
 PairExchanges pairs_of(AbstractAccel& accel, const Faces& faces, const ViewFactorOptions& options,
                        PairEstimator estimator) {
     const auto count = std::count_if(faces.areas().begin(), faces.areas().end(), [](double area) { return area > 0; });

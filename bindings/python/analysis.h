@@ -30,13 +30,13 @@ struct MatrixOptions {
     std::string estimator = "auto";
 };
 
-// By face, or group of faces: columns hits, area, low, high, unobstructed, surface.
+// The light of each face or group of faces, in columns hits, area, low, high, unobstructed, surface.
 struct Light {
     std::vector<std::array<double, 6>> groups;
     std::uint64_t rays = 0;
 };
 
-// By contact: instance_a, instance_b, triangle_a, triangle_b, class; geometries instead of instances.
+// A row for each contact: instance_a, instance_b, triangle_a, triangle_b, class. Instances are numbers of geometries.
 struct Touching {
     std::vector<std::array<uint, 5>> contacts;
     std::vector<ContactSegment> segments;
@@ -50,7 +50,7 @@ class MatrixRows {
     ~MatrixRows();
 
     std::size_t count() const;
-    // Rows [first, last); a row does not depend on the others. Throws Error also for rows that are not there.
+    // Returns rows [first, last); a row does not depend on the others. Throws Error also for rows that do not exist.
     Matrix rows(std::size_t first, std::size_t last);
 
   private:
@@ -59,17 +59,17 @@ class MatrixRows {
     std::unique_ptr<State> state_;
 };
 
-// All throw Error as the functions of twinray/analysis.h and queries.h do.
+// All of these throw Error as the functions of twinray/analysis.h and queries.h do.
 Light illumination(Scene& scene, dvec3 direction, std::uint32_t side, bool both_sides, std::uint64_t seed,
                    const std::vector<uint>& groups);
-// By face: value, low, high.
+// Returns value, low and high of each face.
 std::vector<std::array<double, 3>> sky_light(Scene& scene, dvec3 zenith, std::uint32_t samples, bool both_sides,
                                              std::uint64_t seed);
 Centroid centroid_of(Scene& scene, dvec3 direction, std::uint32_t side, std::uint64_t seed);
 Touching collide(Scene& scene, bool self, bool by_position, bool segments);
 
-// Closest hits of rays judged by the reference in float64; without rays `count` of them are made, of which a half are
-// random, a quarter aimed at vertices and a quarter at edges.
+// The closest hits of rays, judged by the reference in float64. Without rays, `count` are made: half of them random, a
+// quarter aimed at vertices and a quarter at edges.
 struct VerifyResult {
     std::vector<Ray> rays;
     std::vector<HitClass> classes;  // by ray
@@ -80,7 +80,7 @@ VerifyResult verify(Scene& scene, std::vector<Ray>&& rays, std::size_t count, st
 std::vector<std::uint8_t> visible(Scene& scene, std::span<const vec3> points, std::span<const vec3> vectors,
                                   std::span<const vec3> normals, float t_near, float t_far);
 
-// On the device of the scene.
+// Computes on the device of the scene.
 std::vector<float> horizon(Scene& scene, const HeightRaster& raster, const HorizonDesc& desc);
 
 }  // namespace twinray::python

@@ -16,7 +16,7 @@ namespace {
 struct Registry {
     const pid_t process = getpid();
     bool is_of_child = false;  // a fork made the process
-    std::mutex mutex;          // of what follows
+    std::mutex mutex;          // guards `devices`
     std::map<std::string, std::shared_ptr<Device>> devices;
     std::mutex reopening;  // scenes in a child process
 };
@@ -30,7 +30,7 @@ Registry& registry() {
     return *known;
 }
 
-// Mesa's handler joins the threads of the parent's drivers, of which a child has none: it crashes.
+// Mesa's handler joins the threads of the parent's drivers, which a child does not have, and would crash.
 void end_without_drivers(int status, void*) {
     std::fflush(nullptr);
     _exit(status);
@@ -97,7 +97,7 @@ void Scene::make_empty() {
     changed();
 }
 
-// Nothing of another process's is destroyed: its threads are not here, and its mutexes may be locked.
+// Destroys nothing of another process: its threads are not here, and its mutexes may be locked.
 void Scene::leave() {
     static_cast<void>(all_hits_.release());
     static_cast<void>(lister_.release());

@@ -41,7 +41,7 @@ std::span<const Row> as(const Array& rows) {
     return {reinterpret_cast<const Row*>(rows.data()), rows.shape(0)};
 }
 
-// An array that owns its memory, of `columns` numbers of type T a row; 0: one number, without the second axis.
+// Makes an array that owns its memory, of `columns` numbers of type T a row; 0: one number, without the second axis.
 template <class T, class Rows>
 nb::object given(Rows&& rows, std::size_t columns = 0) {
     auto owner = std::make_unique<Rows>(std::move(rows));
@@ -96,7 +96,7 @@ bool no_signal_ends_it() {
     return !calls_end && PyErr_CheckSignals() == 0;
 }
 
-// Calls without the GIL: others go on while the device works. Ctrl-C ends the call.
+// Calls without the GIL, so that others go on while the device works. Ctrl-C ends the call.
 template <class Call>
 auto unlocked(const Call& call) {
     try {
@@ -104,7 +104,7 @@ auto unlocked(const Call& call) {
         const InterruptScope scope(&no_signal_ends_it);
         return call();
     } catch (const Interrupted&) {
-        throw nb::python_error();  // of the signal's handler
+        throw nb::python_error();  // the one of the signal's handler
     }
 }
 
@@ -157,7 +157,7 @@ nb::object corners_of(const Bounds& box) {
     return given<double>(std::move(corners), 3);
 }
 
-// Questions about rays, in float32 or float64, which are not converted.
+// Binds questions about rays in float32 or float64, which are not converted.
 template <class T>
 void bind_rays(nb::class_<Scene>& scene_class) {
     const auto rays = nb::arg("rays").noconvert();
@@ -203,7 +203,7 @@ nb::tuple add_file(Scene& scene, const std::string& file, const std::optional<Ve
     return nb::make_tuple(added, nb::make_tuple(origin->x, origin->y, origin->z));
 }
 
-// (positions, triangles) of each mesh; (number, mesh, transform, is_flat) of each geometry; the count of numbers given.
+// Returns each mesh's (positions, triangles), each geometry's (number, mesh, transform, is_flat), the count of numbers.
 nb::tuple bound_content(Scene& scene) {
     Content content = unlocked([&] { return scene.content(); });
     nb::list meshes, geometries;
@@ -391,11 +391,11 @@ Buffer make_buffer(Context& context, std::uint64_t bytes, bool in_host_memory) {
     return in_host_memory ? Buffer(context, desc) : Buffer::exportable(context, desc);
 }
 
-// Memory of a scene's device that Python's array packages see, too: where the device is a CPU it lies in the host's
-// memory, elsewhere it can be exported.
+// Memory of a scene's device that Python's array packages also see. If the device is a CPU, it lies in the host's
+// memory; else it can be exported.
 class DeviceMemory {
   public:
-    // The host's memory is possible only where the device is a CPU. Throws Error where the device cannot export memory.
+    // The host's memory is possible only if the device is a CPU. Throws Error if the device cannot export memory.
     DeviceMemory(Scene& scene, std::uint64_t bytes, bool in_host_memory);
     ~DeviceMemory();
 
@@ -514,7 +514,7 @@ NB_MODULE(_core, m) {
     bind_analysis(m);
     bind_device_memory(m);
     m.def("devices", &devices);
-    m.def("end_calls", [] { calls_end = true; });  // those of all threads, now and later, raise KeyboardInterrupt
+    m.def("end_calls", [] { calls_end = true; });  // all calls, now and later, in all threads raise KeyboardInterrupt
     m.def("forget_devices", &forget_devices, nb::call_guard<nb::gil_scoped_release>());
 }
 

@@ -51,7 +51,7 @@ Ray64 ray_at(const RayRows& rows, std::span<const T> numbers, std::size_t i) {
     return {{n[0] - from.x, n[1] - from.y, n[2] - from.z}, rows.t_near, {n[3], n[4], n[5]}, rows.t_far};
 }
 
-// Rays from number `from` on. Rays and points in float64 are moved near the box; `ways` holds by how much.
+// Fills in the rays from number `from` on. Rays and points in float64 are moved near the box; `ways` gets by how much.
 void fill(std::span<Ray> rays, std::span<double> ways, const RayRows& rows, std::size_t from, const Bounds& box) {
     in_parts(rays.size(), [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
@@ -268,7 +268,7 @@ void Scene::put(const Cast& cast, std::size_t from, std::span<const Hit> hits) c
     });
 }
 
-// A box around it, not the smallest: no vertices are looked at where only transforms have changed.
+// Returns a box around it, not the smallest: no vertices are looked at if only transforms have changed.
 Bounds Scene::around(const Part& part) {
     Bounds all;
     const Bounds box = part.mesh->bounds();
@@ -296,7 +296,7 @@ Scene::Reach Scene::reach(uint geometry) {
             std::max({size.x, size.y, size.z})};
 }
 
-// Calls trace(first, rays, ways) for the rays from `first` on; no ways: no ray was brought near the scene.
+// Calls trace(first, rays, ways) for blocks of rays, from `first` on; no ways: no ray was brought near the scene.
 template <class Trace>
 void Scene::in_blocks(const RayRows& rows, const Trace& trace) {
     const Bounds box = rows.doubles.empty() ? Bounds{} : around();
@@ -369,7 +369,7 @@ Listed Scene::list(const RayRows& rows, bool with_normals) {
     const Lock lock(*this);
     std::vector<std::uint64_t> first_hits{0};
     std::vector<Hit> hits;
-    std::vector<double> far_t;  // of hits; of none where no ray began far off
+    std::vector<double> far_t;  // of hits; empty if no ray began far off
     in_blocks(rows, [&](std::size_t, std::span<const Ray> rays, std::span<const double> ways) {
         const HitsOfRays found = all_hits(rays);
         const std::size_t before = hits.size();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A scene as twinray's Python package has it, without Python: meshes by number on one accelerator, and what is asked of
-// them. Any thread; calls on one device take turns.
+// The scene of twinray's Python package, without Python: meshes by number on one accelerator, and queries of them. Any
+// thread may call; calls on one device take turns.
 #pragma once
 
 #include <atomic>
@@ -26,8 +26,8 @@
 
 namespace twinray::python {
 
-// Large ones lie in huge pages where the system has them, as NumPy's do: to touch 20 MB first in pages of 4 KB takes
-// half as long as to trace a million rays.
+// Large arrays lie in huge pages where the system has them, as NumPy's do: touching 20 MB for the first time in pages
+// of 4 KB takes half as long as tracing a million rays.
 template <class T>
 class Column {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -56,7 +56,7 @@ class Column {
     std::size_t count_ = 0;
 };
 
-// Vectors of twinray are 0 at first.
+// These have no initial value, unlike twinray's vectors, which are 0 at first.
 struct Numbers2 {
     float x, y;
 };
@@ -64,7 +64,7 @@ struct Numbers3 {
     float x, y, z;
 };
 
-// A recursive mutex that threads get in turn: one that waits comes before one that asks again.
+// A recursive mutex that threads get in turn: a waiting thread comes before one that asks again.
 class TurnMutex {
   public:
     using Clock = std::chrono::steady_clock;
@@ -74,7 +74,7 @@ class TurnMutex {
     void unlock();
 
   private:
-    std::timed_mutex next_;  // of the one that waits for `held_`
+    std::timed_mutex next_;  // held by the thread that waits for `held_`
     std::timed_mutex held_;
     std::atomic<std::thread::id> owner_;
     int depth_ = 0;  // of the owner
@@ -90,12 +90,12 @@ struct Device {
     std::vector<std::string> log;  // warnings that nobody has taken yet
     Context context;
 };
-// Throws Error with the reason why each device was rejected if none fits.
+// Throws Error with the reason against each device if none fits.
 std::shared_ptr<Device> device_for(const std::string& request);
 // Scenes that are alive keep theirs.
 void forget_devices();
 
-// While it lives, no other thread uses the device. Throws Error for one of another process, and Interrupted.
+// Keeps other threads from the device while it lives. Throws Error for a device of another process, and Interrupted.
 class DeviceLock {
   public:
     explicit DeviceLock(Device& device);
@@ -107,8 +107,8 @@ class DeviceLock {
     Device& device_;
 };
 
-// For destructors, which Python calls with its own lock held. It waits for the device without that lock, since the
-// thread that uses the device may need it to look for signals.
+// A lock for destructors, which Python calls with its own lock held. It waits for the device without that lock, since
+// the thread that uses the device may need it to look for signals.
 class LastLock {
   public:
     explicit LastLock(Device& device);
@@ -124,7 +124,7 @@ struct Backend {
     std::string device, driver, kind, accel, why, path, level, lists;
 };
 
-// Places on triangles; where there is none both numbers are 2^32 - 1, the rest is 0.
+// Places on triangles. Where there is no place, both numbers are 2^32 - 1 and the rest is 0.
 struct Places {
     Places() = default;
     Places(std::size_t count, bool with_normals)
@@ -137,36 +137,36 @@ struct Places {
 
 // Rays as Python has them: origin and direction, one after the other, with an interval for all.
 struct RayRows {
-    std::span<const float> floats;    // six a ray
+    std::span<const float> floats;    // six per ray
     std::span<const double> doubles;  // instead of them
-    dvec3 origin = dvec3(0);          // in their coordinates, what the device's are counted from
+    dvec3 origin = dvec3(0);          // of the device's coordinates, in those of the rays
     double t_near = 0, t_far = std::numeric_limits<double>::infinity();
 
     std::size_t size() const { return (floats.size() + doubles.size()) / 6; }
 };
 std::vector<Ray> rays_of(const RayRows& rows);
 
-// One for each ray; t is infinite for a miss.
+// The hit of each ray; t is infinite for a miss.
 struct Cast {
     Column<float> t;
-    Column<double> far_t;  // instead of t, where a ray began far from the scene
+    Column<double> far_t;  // in place of t if a ray began far from the scene
     Places places;
 };
 
-// Hits of each ray are those from first[ray] to first[ray + 1] - 1, ascending by t.
+// The hits of a ray, ascending by t, are those from first[ray] to first[ray + 1] - 1.
 struct Listed {
     std::vector<std::uint64_t> first;
     Cast hits;
 };
 
-// One for each point; the distance is infinite if nothing is found.
+// The nearest place to each point; the distance is infinite if nothing is found.
 struct Nearest {
     Column<dvec3> position;
     Column<double> distance;
     Places places;
 };
 
-// All that is pushed: meshes, and the geometries that place them, by number. `count` numbers were given.
+// All that was pushed: meshes, and the geometries that place them, by number. `count` numbers were given.
 struct Content {
     struct Geometry {
         uint number, mesh;
@@ -178,7 +178,7 @@ struct Content {
     uint count = 0;
 };
 
-// In a child process it opens the device once more, and pushes what it holds there.
+// A scene. In a child process it opens the device once more and pushes its contents there.
 class Scene {
   public:
     static constexpr uint most_geometries = 1u << 24;  // custom indices have 24 bits
@@ -187,15 +187,15 @@ class Scene {
     Scene(const std::string& accel, const std::string& device, const std::string& level);
     ~Scene();
 
-    // Numbers of geometries, 0, 1, ...; never given again. Throws Error as AbstractAccel::push does.
+    // Returns the number of the new geometry: 0, 1, ...; none is given twice. Throws Error as AbstractAccel::push does.
     uint add(Mesh&& mesh, const Transform& transform);
     uint add_instance(uint of, const Transform& transform);
-    // A geometry for each instance of the file. Throws Error as load_scene() does.
-    // `origin`, as its; set where it was not.
+    // Adds a geometry for each instance of the file. Throws Error as load_scene() does. `origin` is passed to it, and
+    // is the file's afterwards.
     std::vector<uint> add_file(const std::string& file, std::optional<dvec3>& origin);
     void remove(uint geometry);
     void set_transform(uint geometry, const Transform& transform);
-    // Covers all instances of the mesh.
+    // Changes all instances of the mesh.
     void update_vertices(uint geometry, std::vector<vec3>&& positions);
     std::vector<uint> geometries();
     std::size_t triangle_count();
@@ -206,8 +206,8 @@ class Scene {
     };
     Reach reach(uint geometry);  // its largest coordinate in world space and its largest side, or a little more
     Content content();
-    // For a scene that holds nothing yet. Throws Error for numbers that name nothing and as AbstractAccel::push does;
-    // the scene is of no use then.
+    // Fills a scene that holds nothing yet. Throws Error for numbers that name nothing and as AbstractAccel::push does;
+    // the scene is then unusable.
     void restore(Content&& content);
 
     Cast cast(const RayRows& rows, bool with_normals);
@@ -217,16 +217,16 @@ class Scene {
 
     Nearest closest(std::span<const dvec3> points, bool with_normals);
     std::vector<double> winding_numbers(std::span<const dvec3> points);  // generalized ones, where meshes are open
-    // Three vertices each; of mirrored ones the last two are exchanged, so that fronts stay fronts.
+    // Returns three vertices per triangle. Mirrored ones have the last two exchanged, so that fronts stay fronts.
     std::vector<dvec3> world_triangles();
 
     Backend backend();
     std::vector<std::string> take_log();
-    // The one of this process.
+    // Returns the device of this process.
     std::shared_ptr<Device> device();
 
-    // How many rows of the view factors that are being computed, or were last, are done, and how many there are; any
-    // time.
+    // The view factors that are being computed, or were last: how many of their rows are done, and how many there are.
+    // It can be read at any time.
     struct Progress {
         std::atomic<std::uint64_t> done = 0, total = 0;
     };
@@ -251,20 +251,20 @@ class Scene {
   private:
     // The accelerator's own arrays, where it builds in units of 1.
     struct KeptMesh : SharedMesh {
-        std::optional<Bounds> box = {};  // once it was asked for
+        std::optional<Bounds> box = {};  // set when first asked for
         const Bounds& bounds();
     };
     struct Part {
         AccelHandle handle;
         std::shared_ptr<KeptMesh> mesh;
         Transform transform;
-        AccelHandle listed = {};  // in lister_, while that is there
+        AccelHandle listed = {};  // in lister_, while that exists
         bool is_flat = false;     // by the transform that it was added with; see twinray::flatten()
     };
 
     void make_empty();
     void leave();
-    // The one of this process. Throws Error where there is none.
+    // Returns the device of this process. Throws Error if there is none.
     Device& open_device();
     void push_parts(AbstractAccel& accel, AccelHandle Part::*handle);
     Part& part(uint geometry, const char* action);
@@ -276,7 +276,7 @@ class Scene {
     static AccelHandle push_instance(AbstractAccel& accel, AccelHandle pushed, const Transform& transform,
                                      const InstanceOptions& options);
     Numbers3 normal_of(uint geometry, uint primitive) const;
-    // None: 2^32 - 1 both.
+    // Writes a place. Both numbers are 2^32 - 1 for none.
     void put(const Places& places, std::size_t i, uint geometry, uint primitive, Numbers2 uv) const;
     static Bounds around(const Part& part);
     Bounds around() const;
@@ -295,9 +295,9 @@ class Scene {
     AccelChoice choice_;
     std::unique_ptr<AbstractAccel> accel_;
     std::vector<std::optional<Part>> parts_;  // by number
-    std::vector<Ray> rays_;     // of a block: memory that is touched for the first time costs as much as its rays
+    std::vector<Ray> rays_;     // of a block, kept since touching new memory costs as much as tracing its rays
     std::vector<double> ways_;  // by how much of t each of them was brought near the scene
-    std::unique_ptr<AbstractAccel> lister_;  // a driver's structures promise nothing of edges: software that lists
+    std::unique_ptr<AbstractAccel> lister_;  // software that lists: a driver's structures promise nothing at edges
     std::unique_ptr<AllHits> all_hits_;
     std::unique_ptr<PointQuery> points_;
     Progress progress_;

@@ -26,12 +26,12 @@ struct Value {
     std::string metavar = {};                // "N", "X Y Z", "closest|any|all"; empty for a flag
     std::size_t least = 0, most = 0;         // how many words follow
     bool is_list = false;                    // a word holds several values, separated by commas
-    bool is_repeatable = false;              // the option may stand there more than once
+    bool is_repeatable = false;              // the option may be given more than once
     std::vector<std::string> choices = {};   // of Kind::choice
     std::vector<std::string> suffixes = {};  // of Kind::file, which must have one of them; empty: any
     std::string allowed = {};                // "a whole number from 1 to 65535"
-    std::string limits = {};                 // "from 1 to 65535"; empty: none that one would have to be told
-    std::string initial = {};  // what holds where the option is not given; empty: nothing, or the help says it
+    std::string limits = {};                 // "from 1 to 65535"; empty: none worth telling
+    std::string initial = {};  // value if the option is not given; empty: none, or the help names it
     // Takes all values. Returns the first that is not what is allowed, or null.
     std::function<const std::string*(std::span<const std::string>)> store = {};
 };
@@ -43,7 +43,7 @@ struct Option {
     std::string help = {};  // begins in lower case; ends without a full stop
     bool is_required = false;
     std::vector<std::string> needs = {}, excludes = {};  // other options, by name
-    std::string former_name = {};  // of the version before: still taken, with a warning, and shown nowhere
+    std::string former_name = {};  // its name in the version before: still taken, with a warning, and shown nowhere
 };
 
 // Options under one heading.
@@ -52,7 +52,7 @@ struct Section {
     std::vector<Option> options = {};
 };
 
-// Of these options at most one is given, or exactly one.
+// Options of which at most one, or exactly one, is given.
 struct Alternatives {
     std::vector<std::string> names;
     bool is_required = false;
@@ -71,11 +71,11 @@ struct Command {
     std::vector<Section> sections = {};
     std::vector<Alternatives> alternatives = {};
     std::vector<Item> examples = {};
-    std::string fault = {};  // "SwTlas shows a fault": ends with exit status 1; empty: there is none to find
+    std::string fault = {};  // "SwTlas shows a fault": ends with exit status 1; empty: it finds no faults
     std::function<int()> run = {};
 };
 
-// Command::run of work that ends with exit status 0 unless it throws.
+// Makes a Command::run of work that ends with exit status 0 unless it throws.
 template <class Work>
 std::function<int()> done_after(Work work) {
     return [work = std::move(work)] {
@@ -84,20 +84,20 @@ std::function<int()> done_after(Work work) {
     };
 }
 
-// -h, --help, which each command has.
+// Returns -h, --help, which each command has.
 const Option& help_option();
 
-// All options in the order of the sections, then --help.
+// Returns all options in the order of the sections, then --help.
 std::vector<const Option*> options_of(const Command& command);
 std::vector<std::string> names_of(std::span<const Command> commands);
 
-// "-o, --output FILE"; of a positional "SCENE".
+// Returns "-o, --output FILE", or "SCENE" for a positional.
 std::string head_of(const Option& option);
-// The help with what may be given and what holds if nothing is: "how many; from 1 to 9, default: 5".
+// Returns the help with the allowed values and the default: "how many; from 1 to 9, default: 5".
 std::string text_of(const Option& option);
-// "twinray trace SCENE --rays FILE --hits FILE [OPTION]...".
+// Returns "twinray trace SCENE --rays FILE --hits FILE [OPTION]...".
 std::string synopsis_of(const Command& command);
 std::vector<Item> exit_statuses_of(const Command& command);
-std::vector<Item> environment_variables();  // that any command heeds
+std::vector<Item> environment_variables();  // that commands heed
 
 }  // namespace twinray::cli

@@ -8,7 +8,7 @@ namespace {
 
 using Kind = Value::Kind;
 
-// The first words of a help, up to where it goes into details.
+// Returns the first words of a help, up to where it goes into details.
 std::string brief(const std::string& help) { return help.substr(0, help.find_first_of(";.:")); }
 
 std::string replaced(const std::string& text, const std::string& special, const std::string& by) {
@@ -17,7 +17,7 @@ std::string replaced(const std::string& text, const std::string& special, const 
     return result;
 }
 
-// Between single quotes, of which sh knows no escape.
+// Puts the text between single quotes, where sh has no escapes.
 std::string quoted(const std::string& text) {
     std::string result = "'";
     for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
@@ -28,7 +28,7 @@ std::string patterns_of(const Option& option) {
     return option.letter ? option.name + "|-" + option.letter : option.name;
 }
 
-// The bash command that completes one value.
+// Returns the bash command that completes one value.
 std::string bash_action(const Value& value) {
     switch (value.kind) {
         case Kind::choice:
@@ -89,7 +89,7 @@ std::string zsh_action(const Value& value) {
     }
 }
 
-// ":what:action" for each word.
+// Returns ":what:action" for each word.
 std::string zsh_values(const Value& value) {
     const std::string what = replaced(value.metavar, "\\:[]", "\\"), action = zsh_action(value);
     std::string all;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t text_indent = 4, item_indent = 12, least_width = 40, most_width = 110;
 
-// A head on a line of its own and under it, indented, what it means.
+// Adds a head on a line of its own and, indented under it, its meaning.
 void add_item(std::string& page, const std::string& head, const std::string& meaning, std::size_t width) {
     page += std::string(text_indent, ' ') + head + '\n' + wrapped(meaning, width, item_indent);
 }

@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: MIT
-// What commands say of themselves: --help, man pages, and scripts that let shells complete their words.
+// The texts that describe commands: --help, man pages, and scripts that let shells complete words.
 #pragma once
 
 #include "cli/command/command.h"
 
 namespace twinray::cli {
 
-// Words of a paragraph in lines of at most `width` letters, `indent` blanks before each. A longer word stands alone.
+// Breaks a paragraph into lines of at most `width` letters, each after `indent` blanks. A longer word has its own line.
 std::string wrapped(const std::string& paragraph, std::size_t width, std::size_t indent);
 
-// Of one command, like a man page.
+// Returns the help of one command, in the style of a man page.
 std::string help_text(const Command& command, std::size_t width);
-// A line for each command, under the headings of their groups.
+// Returns a line for each command, under the headings of their groups.
 std::string list_text(std::span<const Command> commands, std::size_t width);
 
-// Of the terminal that stdout is, else 80.
+// Returns the width of the terminal that stdout is, else 80.
 std::size_t terminal_width();
 
-// Man pages of section 1, in roff with the macros of man(7): twinray-COMMAND.1, and twinray.1 of all commands.
+// Returns a man page of section 1, in roff with the macros of man(7): twinray-COMMAND.1, or twinray.1 of all commands.
 std::string man_page(const Command& command, const std::string& version);
 std::string man_page(std::span<const Command> commands, const std::string& version);
 

@@ -6,7 +6,7 @@
 namespace twinray::cli {
 namespace {
 
-// As roff prints it: a hyphen that can be copied, no control line, no escape.
+// Escapes text for roff: hyphens can be copied, and nothing is a control line or an escape.
 std::string escaped(const std::string& text) {
     std::string roff;
     for (const char c : text) {
@@ -47,7 +47,7 @@ std::string section(const std::string& name, const std::vector<Item>& items) {
     return roff;
 }
 
-// The sections that end every page.
+// Returns the sections that end every page.
 std::string end(const Command& command, const std::string& see_also) {
     return section("EXIT STATUS", exit_statuses_of(command)) + section("ENVIRONMENT", environment_variables()) +
            heading("SEE ALSO") + see_also;

@@ -63,7 +63,7 @@ std::string allowed_in(const Range<T>& range) {
     return std::is_unsigned_v<T> ? allowed + " at least 0" : allowed;
 }
 
-// Words that are numbers, into `take`.
+// Makes a value whose words are numbers, which go into `take`.
 template <class T, class Take>
 Value number_value(Range<T> range, const Take& take) {
     Value value{.kind = Value::Kind::word, .metavar = "N", .least = 1, .most = 1};

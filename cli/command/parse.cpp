@@ -45,7 +45,7 @@ bool is_named(const Option& option, const std::string& word) {
            (!option.former_name.empty() && word == option.former_name);
 }
 
-// An option that wants a value and stands at the end, or before another option.
+// Refuses an option that wants a value and is the last argument, or comes before another option.
 void check_values_follow(const Command& command, const std::vector<std::string>& arguments) {
     const std::vector<const Option*> options = options_of(command);
     const auto find = [&](const std::string& word) {
@@ -60,7 +60,7 @@ void check_values_follow(const Command& command, const std::vector<std::string>&
     }
 }
 
-// Whoever calls an option as it was called in the version before learns its name.
+// Tells the new name of an option that is called as in the version before.
 void tell_new_names(const Command& command, const std::vector<std::string>& arguments) {
     for (const std::string& word : arguments)
         for (const Option* option : options_of(command))
@@ -123,7 +123,7 @@ void check_together(const Command& command, const std::vector<Given>& all) {
     }
 }
 
-// From the last to the first, as CLI11 wants them. It takes "-.5" for an option, "-0.5" for a number.
+// Reverses the arguments, as CLI11 wants them. CLI11 takes "-.5" for an option, "-0.5" for a number.
 std::vector<std::string> reversed(std::vector<std::string> arguments) {
     std::ranges::reverse(arguments);
     for (std::string& word : arguments)

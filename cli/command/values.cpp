@@ -11,7 +11,7 @@ namespace {
 
 using Words = std::span<const std::string>;
 
-// One word of any kind.
+// Makes a value of one word, of any kind.
 template <class Take>
 Value text_value(Value::Kind kind, const std::string& metavar, const std::string& initial, const Take& take) {
     Value value{.kind = kind, .metavar = metavar, .least = 1, .most = 1};

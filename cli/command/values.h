@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Values that options take, bound to the variables in which they end up. A variable holds its default before; one that
-// is empty (a path, a vector, an optional) has none to be shown.
+// Values that options take, bound to the variables in which they end up. A variable first holds its default; an empty
+// one (a path, a vector, an optional) has no default to show.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace twinray::cli {
 
-// In as few digits as give the same number.
+// Returns as few digits as give the same number.
 template <class T>
 std::string digits_of(T value);
 
@@ -22,8 +22,8 @@ template <class T>
 struct Range {
     T least = std::numeric_limits<T>::lowest();
     T most = std::numeric_limits<T>::max();
-    bool is_above = false;  // least itself is not in it
-    T step = 0;             // if not 0, multiples of it alone
+    bool is_above = false;  // excludes least itself
+    T step = 0;             // if not 0, only its multiples are allowed
 };
 
 Value flag(bool& target);
@@ -37,27 +37,27 @@ template <class T>
 requires std::is_arithmetic_v<T> Value number(T& target, Range<T> range = {});
 template <class T>
 Value number(std::optional<T>& target, Range<T> range = {});
-// It takes as many numbers as there are names in the metavar: "X Y Z".
+// Takes as many numbers as there are names in the metavar: "X Y Z".
 template <class T>
 Value numbers(std::vector<T>& target, const std::string& metavar, Range<T> range = {});
-// Separated by commas; the option may also have no value. `is_given` becomes true.
+// Takes numbers separated by commas; the option may also have no value. `is_given` becomes true.
 Value optional_list(bool& is_given, std::vector<double>& target, Range<double> range);
 
-// Read or written. With `suffixes`, in lower case, the name must have one of them.
+// Takes a file to read or write. With `suffixes`, in lower case, the name must have one of them.
 Value file(std::filesystem::path& target, std::vector<std::string> suffixes = {});
 Value files(std::vector<std::filesystem::path>& target, std::vector<std::string> suffixes);  // the option is repeatable
 Value file_list(std::vector<std::filesystem::path>& target);                                 // separated by commas
 Value folder(std::filesystem::path& target);
 Value paths(std::vector<std::filesystem::path>& target, std::size_t least, const std::string& metavar);
 
-// "trace, verify or leaks".
+// Returns "trace, verify or leaks".
 std::string either_of(const std::vector<std::string>& words);
 
-// One of some names; `take` gets its index. `initial`: the name that holds before, or "".
+// Takes one of some names; `take` gets its index. `initial`: the name that holds before, or "".
 Value choice(std::vector<std::string> names, const std::string& initial, std::function<void(std::size_t)> take);
-// One of some names for itself.
+// Takes one of some names for itself.
 Value choice(std::string& target, std::vector<std::string> names);
-// Any of some names, separated by commas.
+// Takes any of some names, separated by commas.
 Value choices(std::vector<std::string> names, const std::string& initial,
               std::function<void(const std::vector<std::size_t>&)> take);
 Value choices(std::vector<std::string>& target, std::vector<std::string> names);
@@ -66,7 +66,7 @@ Value choices(std::vector<std::string>& target, std::vector<std::string> names);
 template <class T>
 using Names = std::vector<std::pair<std::string, T>>;
 
-// Named by name_of(T).
+// Names the values by name_of(T).
 template <class T, std::size_t n>
 Names<T> names_of(const std::array<T, n>& all) {
     Names<T> names;

@@ -17,9 +17,9 @@
 namespace twinray::kernels {
 namespace {
 
-// Bytes a triangle that a build of SwTlas reads and writes: each array as often as a pass goes through it, a vertex for
-// each corner. Savings by caches and costs of lines fetched in vain are not included. Records are counted as many as a
-// tree may need, and the second sort, by 60-bit codes, which few meshes need, not at all.
+// Bytes per triangle that a build of SwTlas reads and writes: each array counts as often as a pass goes through it, and
+// each corner counts as a vertex. Savings by caches and costs of lines fetched in vain are not included. As many
+// records count as a tree may need; the second sort, by 60-bit codes, which few meshes need, does not count.
 struct BuildTraffic {
     double read = 0, written = 0;
 };
@@ -39,7 +39,7 @@ void add_sort(BuildTraffic& sum) {
     add(sum, passes * 3 * word, passes * 2 * word);
 }
 
-// A triangle's share of the nodes of a layout of records, in records.
+// Returns a triangle's share of the nodes of a layout of records, in records.
 double node_records(Layout layout) {
     constexpr uint many = 3'000'000;
     return record_count(many, width_of(layout)) / double{many} - 1;
@@ -106,7 +106,7 @@ bool fits(const ListedKernel& kernel, const std::string& filter) {
     return (kernel.name + ' ' + kernel.variant).find(filter) != std::string::npos;
 }
 
-// Each pipeline goes before its thread compiles the next one.
+// Frees each pipeline before its thread compiles the next one.
 std::vector<KernelRow> compile_all(const KernelList& list, const std::string& device, const std::string& filter) {
     std::vector<KernelRow> rows(list.kernels.size());
     parallel_for(rows.size(), [&](std::size_t i) {

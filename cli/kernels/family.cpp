@@ -30,7 +30,7 @@ constexpr Family families[] = {
     {"adreno740", "Qualcomm Adreno 740", "Turnip", "freedreno_icd", qualcomm_shim, "FD_GPU_ID", "740", "740"},
 };
 
-// The file that names the driver; empty: there is none in the usual folders.
+// Returns the file that names the driver; empty: the usual folders have none.
 std::string find_manifest(const std::string& beginning) {
     constexpr const char* folders[] = {"/usr/share/vulkan/icd.d", "/usr/local/share/vulkan/icd.d", "/etc/vulkan/icd.d",
                                        "/usr/local/etc/vulkan/icd.d"};

@@ -63,7 +63,7 @@ class Collector {
     std::vector<ListedKernel> kernels_;
 };
 
-// The kernels of a host that specialises a kernel or a program of its own for no scene.
+// Adds the kernels of a host that specialises a kernel or a program of its own for no scene.
 void add_unspecialized(Collector& collector) {
     for (ListedKernel& kernel : collector.kernels()) {
         const auto features = std::ranges::find(kernel.desc.constants, FEATURES_CONSTANT, &SpecializationConstant::id);
@@ -73,7 +73,7 @@ void add_unspecialized(Collector& collector) {
     }
 }
 
-// What both accelerators trace with: one mesh, several meshes, and a scene with all features.
+// The kernels with which both accelerators trace: one mesh, several meshes, and a scene with all features.
 
 enum class Stage : std::uint8_t { one_mesh, instances, everything };
 constexpr Stage all_stages[] = {Stage::one_mesh, Stage::instances, Stage::everything};
@@ -105,8 +105,8 @@ void trace(AbstractAccel& accel, TraceDesc desc) {
     commands.submit();
 }
 
-// Each query at each level. Those that need float64 do more with a hit and the same with the scene: the largest is
-// enough.
+// Traces each query at each level. Levels that need float64 do more with a hit and the same with the scene, so the
+// largest scene is enough.
 void trace_all(AbstractAccel& accel, Stage stage) {
     fill(accel, stage);
     accel.sync();
@@ -139,8 +139,8 @@ void make_trace_kernels(Context& context) {
     }
 }
 
-// All that is no trace: builds, sorts, and what the other libraries compute. Each is created, or used once if that
-// creates the kernel.
+// All other kernels: builds, sorts, and what the other libraries compute. Each is created, or used once if that creates
+// the kernel.
 
 AccelOptions options_for(const DeviceProperties& device, Layout layout, BuildQuality quality) {
     return {.level = device.shader_float64 ? Level::refined : Level::watertight,
@@ -148,7 +148,7 @@ AccelOptions options_for(const DeviceProperties& device, Layout layout, BuildQua
             .build_quality = quality};
 }
 
-// Kernels that the first such mesh compiles.
+// Makes the first such mesh, which compiles its kernels.
 void make_device_mesh(Context& context) {
     SwTlas accel(context, {.keeps_surfaces = true, .compiles_in_background = false});
     const Buffer zeros(context, {.name = "zeros", .bytes = 64});

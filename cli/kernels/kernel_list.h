@@ -20,17 +20,17 @@ struct ListedKernel {
     std::uint32_t args_bytes = 0;
 };
 
-// Each once, in the order in which they were made: of both accelerators where the device has them, for every layout,
-// level and query, of everything else in the library, and of the path tracer. `desc` is made into a context that runs
-// nothing.
+// All kernels, each once, in the order in which they were made: those of both accelerators where the device has them,
+// for every layout, level and query, of everything else in the library, and of the path tracer. `desc` is made into a
+// context that runs nothing.
 struct KernelList {
     std::unique_ptr<Context> context;
     std::vector<ListedKernel> kernels;
 };
 KernelList list_kernels(const ContextDesc& desc);
 
-// Describes the constants in words: "compressed4 watertight instances". Not how many invocations make a group, so that
-// a kernel keeps its name when that changes.
+// Describes the constants in words: "compressed4 watertight instances". Omits how many invocations make a group, so
+// that a kernel keeps its name when that changes.
 std::string variant_of(const KernelDesc& desc);
 
 // Rows of `twinray kernels`, in compile.cpp: kernels as the compiler of a device makes them, and what builds of SwTlas
@@ -40,7 +40,7 @@ struct BuildRow {
     std::string what;  // "build", "refit"
     std::string layout, quality;
     std::uint64_t dispatches = 0, barriers = 0, copies = 0;
-    double read = 0, written = 0;  // bytes a triangle: what a time on a device is to be compared with
+    double read = 0, written = 0;  // bytes per triangle, to compare a time on a device with
 };
 
 // Builds one mesh of build_triangles and one instance, by the software accelerator, in each layout and quality. The
@@ -59,8 +59,8 @@ struct CompiledKernels {
     std::vector<BuildRow> builds;  // none with a filter
 };
 
-// For the device of `desc`, or for the family, which is in effect (see family.h), where it is not empty. `filter`: only
-// kernels with this in their name or variant; "": all.
+// Compiles for the device of `desc`, or, if `family` is not empty, for that family, which is in effect (see family.h).
+// `filter`: only kernels with this in their name or variant; "": all.
 CompiledKernels compile_kernels(ContextDesc desc, const std::string& family, const std::string& filter);
 
 }  // namespace twinray::kernels

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a driver tells of a kernel that it has compiled.
+// The statistics that a driver gives of a kernel that it has compiled.
 #pragma once
 
 #include <optional>
@@ -18,12 +18,12 @@ struct Statistic {
 };
 
 struct KernelStatistics {
-    std::vector<Statistic> told;      // nothing where the driver has no words
+    std::vector<Statistic> told;      // empty if the driver gives none
     std::uint32_t subgroup_size = 0;  // 0: not told
 };
 
-// Compiles the kernel and lets it go. Needs a context with ContextDesc::watch_kernels. Throws Error naming the kernel
-// where it cannot be compiled.
+// Compiles the kernel and frees it. Needs a context with ContextDesc::watch_kernels. Throws Error naming the kernel if
+// it cannot be compiled.
 KernelStatistics compile_for_statistics(Context& context, const KernelDesc& desc, std::uint32_t args_bytes);
 
 // Drivers report these under names of their own; empty if this driver does not.

@@ -15,7 +15,7 @@ BLUE, RED, AMBER, GREEN, VIOLET = (
     (0.05, 0.6, 0.2),
     (0.4, 0.08, 0.8),
 )
-# From and to a radius, in so many panes, whose colours take turns.
+# Inner and outer radius, number of panes, and their colours, which take turns.
 RINGS = [
     (0.0, 0.45, 1, [AMBER]),
     (0.45, 1.0, 8, [RED, BLUE]),

@@ -39,7 +39,7 @@ Corner corner_at(uvec3 place)
     return Corner(position, field(position));
 }
 
-// The point with f = 0 between two corners. Neighbours give them in the same order, so that they agree to the last bit.
+// Returns the point with f = 0 between two corners. Neighbours give them in the same order, so that all bits agree.
 vec3 crossing(Corner a, Corner b) { return mix(a.position, b.position, a.value / (a.value - b.value)); }
 
 void add_triangle(vec3 a, vec3 b, vec3 c)

@@ -9,7 +9,7 @@
 namespace twinray::particles {
 namespace {
 
-// A box of [-1, 1]^3 seen from the inside, open towards +z.
+// Makes a box of [-1, 1]^3 seen from the inside, open towards +z.
 Mesh make_walls() {
     const vec3 x(2, 0, 0), y(0, 2, 0), z(0, 0, 2);
     Mesh walls;

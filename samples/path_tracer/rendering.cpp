@@ -120,7 +120,7 @@ std::string header(char kind, const std::string& name) {
 // for each channel, UpdateImage (github.com/Tom94/tev), as pbrt-v4 sends them.
 class Display {
   public:
-    // As connect_to.
+    // Connects as connect_to() does.
     Display(const std::string& server, const std::string& name, uint width, uint height)
         : name_(name), connection_(connect_to(server)) {
         std::string payload = header(create_image, name_);

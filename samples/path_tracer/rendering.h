@@ -10,11 +10,11 @@ struct Rendering {
     Film film;
     HdrImage picture = {};  // what is shown of the film: its mean, without noise if that is wanted
     RenderStats stats = {};
-    double resumed_samples = 0;  // of a pixel, on average, that the film had before
-    int signal = 0;              // that ended it early; 0: none
+    double resumed_samples = 0;  // samples of a pixel, on average, that the film had before
+    int signal = 0;              // the one that ended it early; 0: none
 };
 
-// The file for unfinished work: PICTURE.film beside a picture; a film is its own. With many ranks each has one of its
+// Returns the file for unfinished work: PICTURE.film beside a picture; a film is its own. Each of many ranks has its
 // own: OUTPUT.rank0of2.film.
 std::filesystem::path checkpoint_file(const std::filesystem::path& output, const Ranks& ranks);
 

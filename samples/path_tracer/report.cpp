@@ -102,7 +102,7 @@ std::string frame_text(const FrameNote& frame) {
     return out.str() + '\n';
 }
 
-// "640 x 480, 16 spp, error 3.2 %".
+// Returns "640 x 480, 16 spp, error 3.2 %".
 std::string film_text(const Film& film) {
     std::ostringstream out;
     out << film.width << " x " << film.height << ", " << std::setprecision(6) << film.mean_samples() << " spp";
@@ -120,7 +120,7 @@ std::string reference_text(const std::filesystem::path& file, const HdrImage& pi
     return text("against '", file.string(), "': ", text_of(error), '\n');
 }
 
-// The same of a rendering, with that of the noisy picture if there is another one. It also goes into the record.
+// Returns the same for a rendering, with that of the noisy picture if there is another. It also goes into the record.
 std::string reference_text(const Options& options, const Rendering& rendering, nlohmann::json& record) {
     if (options.reference.empty()) return {};
     const Film& film = rendering.film;
@@ -136,7 +136,7 @@ std::string reference_text(const Options& options, const Rendering& rendering, n
     return line + '\n';
 }
 
-// "shaded as: plain | glass; left out: alpha, textures, environment".
+// Returns "shaded as: plain | glass; left out: alpha, textures, environment".
 std::string features_text(const SceneFeatures& features) {
     std::string kinds, absent;
     for (const uint needs : features.kinds.needs) kinds += (kinds.empty() ? "" : " | ") + name_of_needs(needs);

@@ -52,7 +52,7 @@ Vec<3, T> vector_of(const std::vector<T>& values) {
     return {values[0], values[1], values[2]};
 }
 
-// Nothing: the whole scene is framed.
+// Returns nothing if the whole scene is framed.
 std::optional<Camera> chosen_camera(const Options& options, const Scene& scene) {
     if (!options.look_from.empty())
         return look_camera(vec3(vector_of(options.look_from) - scene.origin),
@@ -127,7 +127,7 @@ StoppingRules make_rules(const Options& options) {
             options.target_error};
 }
 
-// The part of the picture that each of many ranks renders, or that the options ask for.
+// Returns the part of the picture that each of many ranks renders, or that the options ask for.
 Shard make_shard(const Options& options, const Ranks& ranks) {
     if (ranks.count() > 1) {
         if (!options.shard.empty() || options.target_error || !options.cross_check.empty())

@@ -104,7 +104,7 @@ CameraRays rays_of(const Options& options, const Camera& camera, const RenderSet
 std::unique_ptr<AbstractAccel> make_accel(Context& context, const Scene& scene, const AccelChoice& choice,
                                           bool is_animated = false);
 
-// "compute", "ray query" or "ray tracing pipeline".
+// Returns "compute", "ray query" or "ray tracing pipeline".
 std::string trace_path(const AbstractAccel& accel);
 
 }  // namespace twinray::path_tracer

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int most_links = 40;  // as Linux follows
 
-// The file that the name refers to, which need not exist yet.
+// Returns the file that the name refers to, which need not exist yet.
 std::filesystem::path linked(std::filesystem::path file) {
     std::error_code error;
     for (int i = 0; i < most_links && std::filesystem::is_symlink(file, error); ++i)

@@ -17,10 +17,10 @@ std::vector<std::byte> read_file(const std::filesystem::path& file);
 // end. Throws Error naming the file; an existing file is then unchanged.
 void write_file(const std::filesystem::path& file, std::span<const std::span<const std::byte>> parts);
 
-// The CRC-32 of zlib, PNG and gzip. `start`: that of the bytes before.
+// Returns the CRC-32 of zlib, PNG and gzip. `start`: that of the bytes before.
 std::uint32_t crc32_of(std::span<const std::byte> bytes, std::uint32_t start = 0);
 
-// The extension with its dot, in lower case.
+// Returns the extension with its dot, in lower case.
 std::string lower_suffix(const std::filesystem::path& file);
 
 }  // namespace twinray::samples

@@ -25,10 +25,10 @@ struct DeviceOptions {
     bool quiet = false;
 };
 
-// --accel, --device, --validation, --quiet.
+// Adds --accel, --device, --validation, --quiet.
 void add_device_options(CLI::App& app, DeviceOptions& options, const std::string& validation_help);
 
-// An option that names a file.
+// Adds an option that names a file.
 CLI::Option* add_path(CLI::App& app, const std::string& name, std::filesystem::path& target, const std::string& help);
 // Returns the exit status of a finished run: help was shown (0) or the usage is wrong (2). `program`: its name, for the
 // message.
@@ -41,8 +41,8 @@ ContextDesc context_desc(const DeviceOptions& options, const std::string& progra
 // Appends a line to a file, as --json does; nothing for an empty name. Throws Error naming the file.
 void append_line(const std::filesystem::path& file, const std::string& line);
 
-// "warning(s)" of a scene: prints them after the program's name unless quiet. Throws Error if there are any and
-// is_strict, naming the file.
+// Prints the "warning(s)" of a scene after the program's name unless quiet. Throws Error naming the file if there are
+// any and is_strict.
 void report_warnings(const std::vector<std::string>& warnings, const std::filesystem::path& scene,
                      const std::string& program, bool is_strict, bool is_quiet);
 

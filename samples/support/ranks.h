@@ -34,7 +34,7 @@ class Ranks {
   private:
     uint index_ = 0, count_ = 1, local_index_ = 0;
     bool is_abandoned_ = false;
-    std::optional<MpiCalls> mpi_;  // where a launcher of MPI started this
+    std::optional<MpiCalls> mpi_;  // set if a launcher of MPI started this
 };
 
 // Processes of one machine take turns on its best devices. Returns the index of the device.

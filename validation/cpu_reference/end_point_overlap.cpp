@@ -18,7 +18,7 @@ struct Polygon {
     }
 };
 
-// The part at or above a plane across an axis, or with `side` -1 at or below it.
+// Returns the part at or above a plane across an axis, or, with `side` -1, at or below it.
 Polygon cut_by_plane(const Polygon& whole, int axis, double plane, double side) {
     Polygon part;
     for (uint i = 0; i < whole.count; ++i) {
@@ -76,8 +76,8 @@ struct Visit {
     uint depth;
 };
 
-// The area of a triangle within boxes that are not above its leaf. Those that are hold all of it: they are counted with
-// the others, and taken off once it is known how many they are.
+// Returns the area of a triangle within boxes that are not above its leaf. Boxes above it hold all of the triangle:
+// they are counted with the others, and subtracted once their number is known.
 double overlap_of(const SwGeometry& geometry, const LeafTriangle& leaf) {
     const LeafBox around = box_of_triangle(leaf.triangle);
     if (!is_active(around) || geometry.bvh.root == leaf.reference) return 0;

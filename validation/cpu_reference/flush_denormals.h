@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Denormal numbers as devices treat them that flush them.
+// Denormal numbers, as treated by devices that flush them.
 #pragma once
 
 namespace twinray {
@@ -12,7 +12,7 @@ class FlushDenormals {
     FlushDenormals(const FlushDenormals&) = delete;
     FlushDenormals& operator=(const FlushDenormals&) = delete;
 
-    static bool is_able();  // of this processor, as far as this build knows
+    static bool is_able();  // whether this processor can, as far as this build knows
 
   private:
     unsigned long saved_ = 0;

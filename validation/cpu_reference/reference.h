@@ -20,13 +20,13 @@ std::vector<LeafBox> leaves_triangles(std::span<const vec3> positions, std::span
 std::vector<LeafBox> leaves_instances(std::span<const InstanceRecord> records, std::vector<SwInstance>& instances);
 
 CentroidBounds centroids(std::span<const LeafBox> boxes);
-// By leaf, the halves of 60-bit codes. Low ones are there only where a tree is sorted by them, too.
+// The halves of each leaf's 60-bit code. Low ones exist only if a tree is also sorted by them.
 struct Codes {
     std::vector<uint> high, low;
 };
 Codes morton(std::span<const LeafBox> boxes, const CentroidBounds& bounds);
 
-// Leaf indices by code, equal codes in order.
+// Returns leaf indices sorted by code; equal codes stay in order.
 std::vector<uint> sort(const Codes& codes);
 
 struct Hierarchy {
@@ -34,21 +34,21 @@ struct Hierarchy {
     uint root = NOTHING;
     LeafBox box = empty_box();
 };
-// Top-down: a range is cut at its highest split.
+// Builds top-down: a range is cut at its highest split.
 Hierarchy hierarchy(std::span<const LeafBox> boxes, const Codes& codes, std::span<const uint> order,
                     bool leaves_are_sorted, BuildQuality quality = BuildQuality::fast);
 
-// The one of quality ploc: a range is cut at its highest split, and has the clusters of both parts to join.
+// Builds the tree of quality ploc: a range is cut at its highest split, and has the clusters of both parts to join.
 Hierarchy ploc(std::span<const LeafBox> boxes, const Codes& codes, std::span<const uint> order, bool leaves_are_sorted);
 
-// A tree of layout bvh2: its nodes know their edges.
+// Returns a tree of layout bvh2, whose nodes know their edges.
 Hierarchy linked(Hierarchy tree);
 
 std::vector<BvhTriangle> encode_triangles(std::span<const vec3> positions, std::span<const uvec3> triangles,
                                           std::span<const uint> order);
 
-// The records, with nodes of up to `width` children, of a tree whose references are the leaves' own indices. (The
-// kernels' binary trees refer to positions in the order; their records are the same.)
+// Returns the records, with nodes of up to `width` children, of a tree whose references are the leaves' own indices.
+// (The kernels' binary trees refer to positions in the order; their records are the same.)
 std::vector<CompressedRecord> records_of_triangles(const Hierarchy& tree, std::span<const vec3> positions,
                                                    std::span<const uvec3> triangles, uint width,
                                                    std::span<const Leaf> leaves = {});

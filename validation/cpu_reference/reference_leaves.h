@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the CPU references of the kernels that make hierarchies share.
+// Shared by the CPU references of the kernels that make hierarchies.
 #pragma once
 
 #include "validation/cpu_reference/reference.h"

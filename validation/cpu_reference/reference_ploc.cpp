@@ -10,7 +10,7 @@ using Clusters = std::vector<Cluster>;
 
 uint height_of(const Cluster& cluster) { return height_in(cluster.top.subtree); }
 
-// The range [first, last], top-down.
+// Clusters the range [first, last], top-down.
 struct Clustering {
     SortedLeaves leaves;
     float scale;

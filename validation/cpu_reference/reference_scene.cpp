@@ -35,7 +35,7 @@ uint Scene::root_of(const Hierarchy& tree) const {
     return has_records(layout_) && tree.root != NOTHING ? 0 : tree.root;
 }
 
-// As the kernels see them, each with the address of its geometry's block.
+// Returns the records as kernels see them, each with the address of its geometry's block.
 std::vector<InstanceRecord> Scene::records_in_built_units() {
     for (BuiltGeometry& built : geometries_) {
         built.block.geometry = {{built.tree.box.lo, built.tree.box.hi, Ref<BvhNode>::to(built.tree.nodes.data()),

@@ -29,11 +29,11 @@ class Scene {
     // Threads may share it once it is built. level: LEVEL_*.
     Hit trace(const Ray& ray, uint query = QUERY_CLOSEST, uint mask = 0xff, uint level = LEVEL_WATERTIGHT) const;
 
-    // The work of this thread's calls of trace() since it last asked.
+    // Returns the work of this thread's calls of trace() since it last asked.
     static TraversalSteps take_steps();
 
-    // The ray that the trees are searched with: `ray` itself, or from refined on one that may begin nearer, `advance`
-    // in t.
+    // Returns the ray with which the trees are searched: `ray` itself, or from refined on one that may begin nearer,
+    // `advance` in t.
     Ray searched_ray(const Ray& ray, uint level, double& advance) const;
 
     // The results of build(), for inspection.
@@ -44,7 +44,7 @@ class Scene {
     };
     Tree scene_tree() const { return {header_.bvh, {}}; }
     Tree geometry_tree(std::size_t instance) const;
-    // The same as node_boxes.h reads them, in every layout.
+    // Returns the nodes as node_boxes.h reads them, in every layout.
     SwGeometry scene_nodes() const;
     SwGeometry geometry_nodes(std::size_t instance) const {
         return geometries_[placed_[instance].first].block.geometry;
@@ -89,7 +89,7 @@ class Scene {
     std::vector<RefineInstance> refined_;
 };
 
-// The same scene in the order in which push_scene() places it.
+// Makes the same scene, in the order in which push_scene() places it.
 std::unique_ptr<Scene> cpu_reference_of(const twinray::Scene& scene, const AccelOptions& trees = {});
 
 }  // namespace twinray::reference

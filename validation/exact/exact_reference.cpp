@@ -22,7 +22,7 @@ struct Inverse {
     Vector operator*(const Vector& v) const { return {dot(rows[0], v), dot(rows[1], v), dot(rows[2], v)}; }
 };
 
-// The closest of what was offered, in the ray's open interval.
+// The closest of all candidates in the ray's open interval.
 struct Search {
     Rational t_min;
     std::optional<Rational> t_max;  // nothing: infinity

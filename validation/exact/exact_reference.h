@@ -23,7 +23,7 @@ struct ClosestHit {
     std::vector<TriangleId> triangles;
 };
 
-// The line of a ray in the object space of an instance: the matrix as it was given, exactly inverted.
+// Returns the line of a ray in the object space of an instance, by the exact inverse of the matrix as it was given.
 Line object_line(const Ray& ray, const Placement64& placement);
 
 // Answers by the same rules as the reference that it reads the scene from (see reference_scene.h), but triangles are
@@ -35,16 +35,16 @@ class Reference {
     explicit Reference(const ReferenceScene& reference) : reference_(reference) {}
 
     std::optional<ClosestHit> closest_hit(const Ray& ray) const;
-    // As the float64 reference would say it: t, u and v rounded once.
+    // Returns the closest hit as the float64 reference does, with t, u and v rounded once.
     ReferenceHit rounded_hit(const Ray& ray) const;
-    // The same from testing every triangle.
+    // Finds the same by testing every triangle.
     std::optional<ClosestHit> closest_hit_brute_force(const Ray& ray) const;
 
   private:
     const ReferenceScene& reference_;
 };
 
-// As the float64 reference would say it: t, u and v rounded once.
+// Converts a hit to that of the float64 reference: t, u and v are rounded once.
 ReferenceHit to_float64(const std::optional<ClosestHit>& hit, const ReferenceScene& reference);
 
 }  // namespace twinray::exact

@@ -16,7 +16,7 @@ struct Vector {
     const Rational& operator[](int axis) const { return axis == 0 ? x : axis == 1 ? y : z; }
 };
 
-// For finite numbers.
+// Takes finite numbers.
 inline Vector vector_of(const dvec3& v) { return {v.x, v.y, v.z}; }
 
 inline Vector operator+(const Vector& a, const Vector& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
@@ -26,7 +26,7 @@ inline Vector cross(const Vector& a, const Vector& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-// The nearest double; ties go to the even one.
+// Returns the nearest double; ties go to the even one.
 double rounded(const Rational& value);
 
 }  // namespace twinray::exact

@@ -25,12 +25,12 @@ struct Crossing {
     bool along = false;  // the normal (v1 - v0) x (v2 - v0) points along the line
 };
 
-// Six times the signed volumes of (direction, b, c), (direction, c, a) and (direction, a, b), vertices a, b, c taken
-// from the origin: the weights of the three vertices, times a common factor. The line meets the triangle where they
-// have one sign; one that is 0 puts the line on the edge across from its vertex; all 0: the plane contains the line.
+// Returns six times the signed volumes of (direction, b, c), (direction, c, a) and (direction, a, b), vertices a, b, c
+// seen from the origin: the weights of the vertices, times a common factor. The line meets the triangle where they have
+// one sign; one that is 0 puts the line on the edge across from its vertex; all 0: the plane contains the line.
 std::array<Rational, 3> edge_values(const Line& line, const Triangle64& triangle);
 
-// Nothing where the line passes the triangle or lies in its plane. Any t, also negative.
+// Returns nothing if the line passes the triangle or lies in its plane. t may be negative.
 std::optional<Crossing> crossing(const Line& line, const Triangle64& triangle);
 
 }  // namespace twinray::exact

@@ -86,7 +86,7 @@ bool ClosedMesh::comes_within(double distance, const dvec3& point) const {
 
 double ClosedMesh::clearance() const { return 0x1p-14 * geometry_.bounds().max_abs(); }
 
-// In the middle of where a random line that starts on a triangle runs until it meets the next.
+// Returns the middle of a random line that starts on a triangle and ends at the next one.
 std::optional<vec3> ClosedMesh::point_inside(std::uint64_t seed, std::uint64_t index) const {
     Draws draws(seed, index);
     for (int tries = 0; tries < 256; ++tries) {

@@ -19,9 +19,9 @@ struct OpenEdge {
     std::size_t triangles = 1;  // how many share it
 };
 
-// The open edge of the lowest primitive; nothing if the mesh is closed. Vertices are equal if their positions are, as
-// for Vulkan. Two triangles a edge are usual; four, where two shells touch along it, also leave every ray an odd number
-// of crossings. Orientation is of no account. Degenerate triangles are not counted: rays never hit them, so a
+// Returns the open edge of the lowest primitive; nothing if the mesh is closed. Vertices are equal if their positions
+// are, as for Vulkan. Two triangles per edge are usual; four, where two shells touch along it, also leave every ray an
+// odd number of crossings. Orientation does not matter. Degenerate triangles are not counted: rays never hit them, so a
 // T-junction that one of them bridges is open.
 std::optional<OpenEdge> find_open_edge(const Geometry64& geometry);
 
@@ -32,17 +32,17 @@ class ClosedMesh {
 
     const Geometry64& geometry() const { return geometry_; }
 
-    // How often the ray crosses the mesh at t > 0. Exact up to float64, and counted twice where the ray passes an edge
-    // exactly: choose a direction that does not.
+    // Returns how often the ray crosses the mesh at t > 0. It is exact up to float64; a ray that passes an edge exactly
+    // counts twice, so choose a direction that does not.
     std::size_t crossings(const dvec3& origin, const dvec3& direction) const;
-    // Whether a triangle comes closer than `distance` to the point, all in units of the mesh.
+    // Returns whether a triangle comes closer than `distance` to the point, all in units of the mesh.
     bool comes_within(double distance, const dvec3& point) const;
 
-    // Up to `count` points from which three random rays have an odd number of crossings, and which are farther from
-    // every triangle than clearance(). Point i depends on (seed, i) alone; where 256 tries give none it is left out.
-    // Throws Error naming the mesh when all are.
+    // Returns up to `count` points from which three random rays have an odd number of crossings, and which are farther
+    // from every triangle than clearance(). Point i depends only on (seed, i); it is left out if 256 tries give none.
+    // Throws Error naming the mesh if all are left out.
     std::vector<vec3> points_inside(std::size_t count, std::uint64_t seed) const;
-    // 2^-14 of the largest of extents and coordinates: hundreds of float32 roundings.
+    // Returns 2^-14 of the largest of extents and coordinates: hundreds of float32 roundings.
     double clearance() const;
 
   private:

@@ -18,9 +18,9 @@ class CrossingCounter {
     // Compiles the kernel. Hardware needs ray queries (Feature::kernel_queries).
     CrossingCounter(Context& context, bool is_software, Level level);
 
-    // One count a ray, of all hits in (t_min, t_max). `accel` is of the kind that was asked for, synced, and all its
-    // instances are non-opaque (InstanceOptions): those that are not count as nothing, and hide what lies behind them.
-    // A triangle that a driver offers more than once, as it may, counts once among the first 16.
+    // Returns the number of hits of each ray in (t_min, t_max). `accel` is of the requested kind, synced, and all its
+    // instances are non-opaque (InstanceOptions): opaque ones count as nothing, and hide what lies behind them. A
+    // triangle that a driver offers more than once, as it may, counts once among the first 16.
     std::vector<uint> count(const AbstractAccel& accel, std::span<const Ray> rays) const;
 
   private:

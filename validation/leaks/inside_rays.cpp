@@ -11,7 +11,7 @@
 namespace twinray {
 namespace {
 
-// Whether a float32 kernel may find a triangle behind the origin that lies before it, or the other way round.
+// Returns whether a float32 kernel may find a triangle behind the origin that lies before it, or the other way round.
 bool is_undecided_at_origin(const ClosedMesh& mesh, const Ray& ray) {
     const ErrorBounds bounds(ray, Placement64(), Accelerator::software);
     const Geometry64& geometry = mesh.geometry();

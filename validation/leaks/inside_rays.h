@@ -19,13 +19,13 @@ enum class Aim : std::uint8_t {
 
 class InsideRays {
   public:
-    // From up to `origins` points inside. `mesh` is kept by reference. Throws as points_inside does.
+    // Starts rays from up to `origins` points inside. Keeps a reference to `mesh`. Throws as points_inside does.
     InsideRays(const ClosedMesh& mesh, Aim aim, std::uint64_t seed, std::size_t origins = 1024);
 
-    // Ray `index`, which depends on (mesh, aim, seed, origins) alone besides: length 1 up to rounding, t in
+    // Returns ray `index`, which otherwise depends only on (mesh, aim, seed, origins): length 1 up to rounding, t in
     // (0, infinity), past its target within float32 rounding.
     Ray ray(std::uint64_t index) const;
-    // Rays [first, first + count), on all cores.
+    // Returns rays [first, first + count), made on all cores.
     std::vector<Ray> rays(std::uint64_t first, std::size_t count) const;
 
   private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a leak test has found, as a file from which a later run goes on.
+// The findings of a leak test, as a file from which a later run goes on.
 #pragma once
 
 #include <twinray/validation.h>
@@ -18,13 +18,13 @@ struct LeakState {
 void trace_until(const LeakTest& test, std::uint64_t rays, LeakState& state,
                  const std::function<void(const LeakFault&)>& on_fault, const std::function<void(std::size_t)>& after);
 
-// FNV-1a (Fowler, Noll, Vo) of all vertices, by which a state knows its mesh.
+// Returns FNV-1a (Fowler, Noll, Vo) of all vertices, by which a state knows its mesh.
 std::uint64_t hash_of(const Mesh& mesh);
 
-// `identity`: what a run must have in common with the one that it goes on from. Throws Error naming the file where that
-// differs, or where it holds no state.
+// `identity`: what a run must have in common with the one that it continues. Throws Error naming the file if that
+// differs, or if the file holds no state.
 LeakState read_state(const std::filesystem::path& file, const nlohmann::json& identity);
-// Whole or not at all: whenever the process ends, the file is that of some earlier call. Throws Error naming the file.
+// Writes the whole file or nothing: whenever the process ends, it is that of some earlier call. Throws Error naming it.
 void write_state(const std::filesystem::path& file, nlohmann::json identity, const LeakState& state);
 
 }  // namespace twinray

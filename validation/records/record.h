@@ -51,7 +51,7 @@ struct ErrorFigures {
     bool operator==(const ErrorFigures&) const = default;
 };
 
-// Of repetitions, interleaved with those of what it is compared to.
+// Times of repetitions, interleaved with those of what it is compared with.
 struct TimeFigures {
     std::string metric = "ns_per_ray";
     double median = 0;
@@ -100,13 +100,12 @@ struct Record {
 
 inline constexpr std::string_view record_schema = "twinray-report/1";
 
-// One line of JSON, without its end. Numbers that are not finite are written as "inf", "-inf" and "nan".
+// Returns one line of JSON, without its end. Numbers that are not finite are written as "inf", "-inf" and "nan".
 std::string to_json(const Record& record);
 // Throws Error naming what is missing, of another type, or of another schema. Fields it does not know are left out.
 Record record_of_json(std::string_view line);
-// How a line counts that commands append beside records of a report: by its schema, "twinray-trace/1", or
-// "verify.random" where a command writes some fields of a record alone; "" for a record. Throws Error for what is no
-// JSON object.
+// Returns the kind of a line that a command appends beside records of a report: its schema, "twinray-trace/1", or
+// "verify.random" if it has only some fields of a record; "" for a record. Throws Error if it is no JSON object.
 std::string kind_of_json(std::string_view line);
 
 }  // namespace twinray

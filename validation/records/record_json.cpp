@@ -85,7 +85,7 @@ TimeFigures time_of(const Json& json) {
                      number_of(json.at("mad")),
                      number_of(json.at("min")),
                      unsigned_of<std::uint64_t>(json.at("reps"))};
-    time.others = json.value("others", 0.0);  // reports of before had none
+    time.others = json.value("others", 0.0);  // earlier reports have none
     for (const auto& [name, value] : json.items())
         if (name.ends_with("_ms")) time.phases_ms[name.substr(0, name.size() - 3)] = number_of(value);
     return time;
@@ -129,7 +129,7 @@ Record parsed(const Json& json) {
     record.was_run = json.at("status") == "run";
     record.reason = json.at("reason");
     record.example = json.at("example");
-    record.replay = json.value("replay", "");  // reports of before had none
+    record.replay = json.value("replay", "");  // earlier reports have none
     return record;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What records say of a device.
+// Describes a device for records.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -12,7 +12,7 @@ namespace twinray {
 std::string api_version(const Context& context);  // "1.4.305"
 nlohmann::json describe(const Context& context);  // {"name", "driver", "api"}
 
-// With what its arithmetic does, measured on it, and whether watertightness can be claimed there.
+// Returns the device with its arithmetic, measured on it, and whether watertightness can be claimed there.
 RecordedDevice probed_device(Context& context);
 
 }  // namespace twinray

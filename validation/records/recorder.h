@@ -19,9 +19,9 @@ class MachineLoad {
   public:
     MachineLoad();  // from now on
 
-    // Seconds of all processors together since then; nothing where the system does not tell.
+    // Returns the seconds of all processors together since then; nothing if the system does not tell.
     std::optional<double> seconds() const;
-    // The share of them, 0 to 1, that other programs than this one and its children took.
+    // Returns the share of them, 0 to 1, that programs other than this one and its children took.
     std::optional<double> of_others() const;
 
   private:
@@ -43,10 +43,10 @@ class Recorder {
 
     // Fills in the run. Throws Error when the file cannot be written.
     void add(Record record);
-    // Forgets what was recorded of a case that is to be measured again. In the file the old lines stay, before the new
+    // Forgets what was recorded of a case that is to be measured again. The old lines stay in the file, before the new
     // ones, until rewrite().
     void drop(const std::string& case_id);
-    // Leaves those lines in the file that records() has, at once. Throws Error naming the file.
+    // Reduces the file to the lines that records() has, at once. Throws Error naming the file.
     void rewrite();
     const Run& run() const { return run_; }
     const MachineLoad& load() const { return load_; }  // since it was made
@@ -60,7 +60,7 @@ class Recorder {
     std::vector<Record> records_;
 };
 
-// The same as a table: one row each, one column for each field that any of them has, nested names joined by dots
+// Writes the same as a table: one row each, one column for each field that any of them has, nested names joined by dots
 // ("counts.AGREE"), quoted by RFC 4180. Throws Error naming the file.
 void write_csv(const std::filesystem::path& file, std::span<const Record> records);
 
@@ -72,7 +72,7 @@ struct JsonLines {
 // Throws Error naming the file and the line. A last line that was cut short is ignored.
 JsonLines read_json_lines(const std::filesystem::path& file);
 
-// Now, as Recorder::Run::started.
+// Returns the time now, as in Recorder::Run::started.
 std::string utc_now();
 
 }  // namespace twinray

@@ -9,7 +9,7 @@
 
 namespace twinray {
 
-// There while this lives. Throws Error where there is no place for one.
+// Exists while this lives. Throws Error if there is no place for a folder.
 class TemporaryFolder {
   public:
     TemporaryFolder() = default;

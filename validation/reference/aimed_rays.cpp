@@ -19,14 +19,14 @@ vec3 to_finite(const dvec3& p) {
     return vec3(clamp(p, dvec3(-largest), dvec3(largest)));
 }
 
-// A length to place origins by; that of the coordinates where the box has no extent.
+// Returns a length to place origins by: that of the coordinates if the box has no extent.
 double diagonal_of(const Box64& box) {
     const double diagonal = box.is_empty() ? 0 : length(box.corners[1] - box.corners[0]);
     if (diagonal > 0) return diagonal;
     return box.max_abs() > 0 ? box.max_abs() : 1.0;
 }
 
-// Instances with an active triangle.
+// Returns the instances with an active triangle.
 std::vector<uint> targets_of(const ReferenceScene& scene) {
     std::vector<uint> targets;
     for (uint i = 0; i < scene.instance_count(); ++i)
@@ -34,7 +34,7 @@ std::vector<uint> targets_of(const ReferenceScene& scene) {
     return targets;
 }
 
-// The vertices of a random active triangle, in world space.
+// Returns the vertices of a random active triangle, in world space.
 Triangle64 draw_triangle(Draws& draws, const ReferenceScene& scene, const std::vector<uint>& targets) {
     const uint instance = targets[draws.below(targets.size())];
     const Geometry64& geometry = scene.geometry(instance);

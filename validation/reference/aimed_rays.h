@@ -24,11 +24,11 @@ std::vector<Ray> random_rays(const Bounds& bounds, std::size_t count, std::uint6
 // Without an active triangle these are random_rays of an empty box.
 std::vector<Ray> vertex_aimed_rays(const ReferenceScene& scene, std::size_t count, std::uint64_t seed);
 
-// The same, aimed at a point (1-w) a + w b of an edge, w uniform in [0, 1).
+// Does the same, aimed at a point (1-w) a + w b of an edge, w uniform in [0, 1).
 std::vector<Ray> edge_aimed_rays(const ReferenceScene& scene, std::size_t count, std::uint64_t seed);
 
-// Pinhole rays over the scene from a corner above, in tiles of 8 x 8 pixels as a renderer would; `width` pixels a side,
-// a multiple of 8.
+// Returns pinhole rays over the scene from a corner above, in tiles of 8 x 8 pixels as a renderer would; `width` pixels
+// per side, a multiple of 8.
 std::vector<Ray> primary_rays(const Bounds& bounds, uint width);
 
 }  // namespace twinray

@@ -35,7 +35,7 @@ struct Interval64 {
     bool is_empty() const { return !(near <= far); }
 };
 
-// Both bounds hold.
+// Returns the interval in which both bounds hold.
 Interval64 intersection(const Interval64& a, const Interval64& b);
 
 // A ray prepared for slab tests against boxes grown by `pad` on every side (units of the boxes).
@@ -43,7 +43,7 @@ class SlabRay {
   public:
     SlabRay(const dvec3& origin, const dvec3& direction, double pad);
 
-    // The t at which the ray is inside the grown box. A zero direction component constrains nothing while the
+    // Returns the t at which the ray is inside the grown box. A zero direction component constrains nothing while the
     // origin is between the planes; 0 * infinity = NaN arises only on a plane and is dropped by the comparisons.
     Interval64 clip(const Box64& box) const {
         Interval64 t;
@@ -65,11 +65,11 @@ class SlabRay {
 class Bvh64 {
   public:
     Bvh64() = default;
-    // Binned surface-area heuristic (Wald 2007), leaves of at most four items, median splits below a depth of 40.
-    // Boxes must be finite and not empty. Items are known by their position in `boxes`.
+    // Builds by the binned surface-area heuristic (Wald 2007), with leaves of at most four items and median splits
+    // below a depth of 40. Boxes must be finite and not empty. Items are known by their position in `boxes`.
     explicit Bvh64(std::span<const Box64> boxes);
 
-    // Items in leaf order: leaves are ranges of this list.
+    // Returns the items in leaf order: leaves are ranges of this list.
     std::span<const uint> order() const { return order_; }
     const Box64& bounds() const { return bounds_; }
 

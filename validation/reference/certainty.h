@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where float64 is not enough.
+// Decides whether float64 is enough.
 #pragma once
 
 #include "engine/core/ray.h"
@@ -7,9 +7,9 @@
 
 namespace twinray {
 
-// Whether `closest`, the reference's closest hit of the ray, names for certain the triangle that exact arithmetic
-// names, or a miss where that misses: no triangle's outline, no other triangle's t and no end of the interval is nearer
-// to the decision than the rounding of float64 (see ErrorBounds).
+// Returns whether `closest`, the reference's closest hit of the ray, names for certain the triangle that exact
+// arithmetic names, or a miss where that misses: no triangle's outline, no other triangle's t and no end of the
+// interval is nearer to the decision than the rounding of float64 (see ErrorBounds).
 bool is_certain(const ReferenceScene& reference, const Ray& ray, const ReferenceHit& closest);
 
 }  // namespace twinray

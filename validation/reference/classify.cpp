@@ -75,7 +75,7 @@ void Classifier::visit_near(uint instance, Visit&& visit) const {
     });
 }
 
-// Among the triangles certain to lie before t_limit.
+// Returns the coverage by the triangles certain to lie before t_limit.
 Coverage Classifier::coverage_before(uint instance, double t_limit) const {
     std::vector<PatchTriangle> patch;
     bool is_at_an_end = false;  // of the ray's interval: exclusive bounds and rounding decide
@@ -135,7 +135,7 @@ HitClass Classifier::closest_of(const Hit& reported) const {
     return is_at_an_end || before == Coverage::unresolved ? HitClass::unspecified : HitClass::boundary;
 }
 
-// Within rounding of the ray and its interval.
+// Returns whether a triangle lies within rounding of the ray and its interval.
 bool Classifier::passes_a_triangle() const {
     bool found = false;
     for (uint instance = 0; instance < reference_.instance_count() && !found; ++instance) {
@@ -154,7 +154,7 @@ HitClass Classifier::any(bool is_hit) const {
     return passes_a_triangle() ? HitClass::boundary : false_hit();
 }
 
-// class_of(accelerator, answer) for the answers that are there; rays that nobody may trace are checked by hit alone.
+// Calls class_of(accelerator, answer) for the given answers; rays that nobody may trace are checked by hit alone.
 template <class Answer, class IsHit, class ClassOf>
 RayResult ray_result(const Ray& ray, const std::optional<Answer>& software, const std::optional<Answer>& hardware,
                      const IsHit& is_hit, const ClassOf& class_of) {

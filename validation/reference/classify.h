@@ -15,7 +15,7 @@
 
 namespace twinray {
 
-// Empty for an accelerator that gave no answer.
+// The class of each answer; empty for an accelerator that gave none.
 struct RayResult {
     std::optional<HitClass> software;
     std::optional<HitClass> hardware;
@@ -23,24 +23,24 @@ struct RayResult {
     bool operator==(const RayResult&) const = default;
 };
 
-// The exact closest hit, t, u and v rounded once: asked where float64 does not decide (see is_certain). Empty: float64
-// has the last word.
+// Returns the exact closest hit, with t, u and v rounded once. It is asked where float64 does not decide (see
+// is_certain). Empty: float64 has the last word.
 using Arbiter = std::function<ReferenceHit(const Ray&)>;
 
-// The reference's closest hit, or the arbiter's where float64 cannot tell.
+// Returns the reference's closest hit, or the arbiter's where float64 cannot tell.
 ReferenceHit reference_hit(const ReferenceScene& reference, const Ray& ray, const Arbiter& arbiter);
 
-// For QUERY_CLOSEST. Hit::custom_index and flags are not checked. Pure and deterministic; threads may share the
-// reference.
+// Classifies answers to QUERY_CLOSEST. Hit::custom_index and flags are not checked. Pure and deterministic; threads may
+// share the reference.
 RayResult classify(const ReferenceScene& reference, const Ray& ray, const std::optional<Hit>& software,
                    const std::optional<Hit>& hardware, const Arbiter& arbiter = {});
 
-// For QUERY_ANY, of which only hit or miss is checked.
+// Classifies answers to QUERY_ANY, of which only hit or miss is checked.
 RayResult classify_any(const ReferenceScene& reference, const Ray& ray, const std::optional<bool>& software,
                        const std::optional<bool>& hardware);
 
-// classify for every ray on all cores, which call the arbiter at once; each list of hits is empty or as long as the
-// rays (else Error).
+// Calls classify for every ray on all cores, which may call the arbiter at the same time. Each list of hits is empty or
+// as long as the rays (else Error).
 std::vector<RayResult> classify_all(const ReferenceScene& reference, std::span<const Ray> rays,
                                     std::span<const Hit> software, std::span<const Hit> hardware,
                                     const Arbiter& arbiter = {});

@@ -17,7 +17,7 @@ using Vertex = std::array<float, 3>;  // ordered by comparing numbers, so that -
 
 Vertex key_of(const vec3& p) { return {p.x, p.y, p.z}; }
 
-// 1 counterclockwise, -1 clockwise, 0 when the point is not strictly inside.
+// Returns 1 if counterclockwise, -1 if clockwise, 0 if the point is not strictly inside.
 int winding(const TriangleBound& bound, const dvec2& point) {
     int sum = 0;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -119,7 +119,7 @@ void Patch::join_edges() {
     }
 }
 
-// Distance from the point to the nearest edge.
+// Returns the distance from the point to the nearest edge.
 double Patch::clearance(const dvec2& point) const {
     double least = INFINITY;
     for (const PatchTriangle& triangle : triangles_)

@@ -19,10 +19,10 @@ class Draws {
     std::uint64_t bits() { return mixed(state_ += 0x9E3779B97F4A7C15u); }
     double unit() { return static_cast<double>(bits() >> 11) * 0x1p-53; }  // [0, 1)
     double between(double low, double high) { return low + (high - low) * unit(); }
-    // Below n: the high word of the 32 x 32 bit product, n < 2^32.
+    // Returns a number below n: the high word of the 32 x 32 bit product, n < 2^32.
     uint below(std::size_t n) { return static_cast<uint>((bits() >> 32) * n >> 32); }
 
-    // Uniform on the unit sphere, by rejection: only correctly rounded operations.
+    // Returns a direction uniform on the unit sphere, by rejection, with correctly rounded operations only.
     dvec3 direction() {
         for (;;) {
             const double z = between(-1, 1), y = between(-1, 1), x = between(-1, 1);

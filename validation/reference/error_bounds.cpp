@@ -14,7 +14,7 @@ dvec3 absolute_product(const glm::dmat3& m, const dvec3& v) {
     return abs(m[0]) * std::abs(v.x) + abs(m[1]) * std::abs(v.y) + abs(m[2]) * std::abs(v.z);
 }
 
-// Positive inside, negative outside; a triangle seen edge-on has no inside.
+// Returns a positive margin inside, a negative one outside; a triangle seen edge-on has no inside.
 double margin_of(const std::array<dvec2, 3>& vertices) {
     double distance = INFINITY;
     bool any_negative = false, any_positive = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a kernel of given precision can and cannot tell about one ray and one triangle.
+// Bounds of what a kernel of given precision can tell about one ray and one triangle.
 #pragma once
 
 #include "engine/core/ray.h"
@@ -7,7 +7,7 @@
 
 namespace twinray {
 
-// Who rounds: the accelerators in float32, the reference in float64.
+// The one that rounds: the accelerators in float32, the reference in float64.
 enum class Accelerator { software, hardware, reference };
 
 // One triangle seen along a ray, in object units, float64. The ray is the point (0, 0).
@@ -20,7 +20,7 @@ struct TriangleBound {
     double t_high = 0;
     double point_error = 0;  // how far from the ray the point of its u, v may lie
 
-    // Distance from the ray to the point (1-u-v) v0 + u v1 + v v2.
+    // Returns the distance from the ray to the point (1-u-v) v0 + u v1 + v v2.
     double distance_to(double u, double v) const;
 };
 
@@ -39,9 +39,9 @@ class ErrorBounds {
     ErrorBounds(const Ray& ray, const Placement64& placement, Accelerator accelerator);
 
     TriangleBound bound(const Triangle64& triangle) const;
-    // No triangle in the box has a larger radius.
+    // Returns a radius that no triangle in the box exceeds.
     double max_radius(const Box64& box) const;
-    // Slab test against boxes grown by `pad`.
+    // Returns a slab test against boxes grown by `pad`.
     SlabRay slabs(double pad) const { return {origin_, direction_, pad}; }
 
   private:

@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::size_t random_case_count = 1 << 16;
 
-// Random ones without over- and underflow, then NaN, then a denormal.
+// Returns random cases without over- and underflow, then NaN, then a denormal.
 std::vector<FloatCase> probe_cases() {
     std::mt19937 random(20);
     std::uniform_real_distribution<float> mantissa(1, 2);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a device's float arithmetic does. Vulkan promises little (SPIR-V environment, "Precision and Operation of SPIR-V
+// Probes a device's float arithmetic. Vulkan promises little (SPIR-V environment, "Precision and Operation of SPIR-V
 // Instructions"), and the robust levels rest on more: that `precise` products and sums are correctly rounded and not
 // contracted.
 #pragma once
@@ -29,7 +29,7 @@ struct FloatFacts {
 // Runs the probe, once for each driver in a process.
 const FloatFacts& probe_floats(Context& context);
 
-// Why watertightness cannot be claimed on such a device, one phrase for each of the conditions that do not hold; empty:
+// Returns why watertightness cannot be claimed on such a device, a phrase for each condition that does not hold; empty:
 // it can.
 inline constexpr std::size_t robust_conditions = 6;
 std::vector<std::string> robust_faults(const FloatFacts& properties);

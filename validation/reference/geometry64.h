@@ -42,7 +42,7 @@ class Geometry64 {
     std::size_t triangle_count() const { return slots_.size(); }
     const Box64& bounds() const { return bvh_.bounds(); }  // of the active triangles
     std::span<const ActiveTriangle> active() const { return triangles_; }
-    // nullptr when the primitive is out of range, not finite or degenerate.
+    // Returns nullptr if the primitive is out of range, not finite or degenerate.
     const ActiveTriangle* find(uint primitive) const;
 
     // Calls visit(const ActiveTriangle&) for those whose boxes the ray may meet within [t_min, t_limit], until it

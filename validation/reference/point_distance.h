@@ -9,10 +9,10 @@
 
 namespace twinray {
 
-// Twice the signed area of the triangle (0, a, b): positive where b is counterclockwise of a.
+// Returns twice the signed area of the triangle (0, a, b): positive where b is counterclockwise of a.
 inline double cross2(const dvec2& a, const dvec2& b) { return a.x * b.y - a.y * b.x; }
 
-// Of a point to the segment from a to b, in the plane (dvec2) or in space (dvec3).
+// Returns the distance of a point to the segment from a to b, in the plane (dvec2) or in space (dvec3).
 template <class Point>
 double distance_to_segment(const Point& a, const Point& b, const Point& point) {
     const Point edge = b - a;
@@ -21,7 +21,7 @@ double distance_to_segment(const Point& a, const Point& b, const Point& point) {
     return length(a + along * edge - point);
 }
 
-// The distance of a point to a triangle that has an area.
+// Returns the distance of a point to a triangle that has an area.
 inline double distance_to_triangle(const std::array<dvec3, 3>& vertices, const dvec3& point) {
     const dvec3 normal = cross(vertices[1] - vertices[0], vertices[2] - vertices[0]);
     bool is_above = true;  // the triangle, along its normal

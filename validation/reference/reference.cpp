@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The public face over what the other files of this folder do.
+// The public interface of the other files in this folder.
 #include <twinray/validation.h>
 
 #include "engine/core/error.h"

@@ -21,7 +21,7 @@ namespace twinray {
 
 namespace {
 
-// In units of its scale; exact, as vertices are float32.
+// Returns the box in units of the geometry's scale; it is exact, as vertices are float32.
 GeometryBox box_of(const Geometry& geometry, const Geometry64& triangles) {
     Bounds box{vec3(triangles.bounds().corners[0]), vec3(triangles.bounds().corners[1])};
     for (const Bounds& each : geometry.boxes) box.include(each);
@@ -41,7 +41,7 @@ Hit hit_of(const ReferenceHit& found, const Ray& ray) {
             found.is_front ? HIT_FRONT : 0};
 }
 
-// As accelerators see it, a transform that kernels have made unusable hides the instance.
+// Hides an instance whose transform kernels have made unusable, as accelerators do.
 ReferenceInstance placed(const InstanceRecord& record, uint geometry) {
     ReferenceInstance instance{geometry, transform_of(record), options_of(record)};
     if (fault_of(instance.object_to_world).empty()) return instance;
@@ -92,7 +92,7 @@ class ReferenceBackend final : public AccelBackend {
     void record_trace(Commands& commands, const TraceArgs& args) const;
 
     Kernel<CopyItemsArgs> copy_items_;
-    // Keyed by the address of the block that instances point at; an entry ends with the geometry it names.
+    // The keys are addresses of the blocks that instances point at; an entry ends with the geometry it names.
     std::map<std::uint64_t, std::weak_ptr<const Geometry64>> geometries_;
 };
 
@@ -154,7 +154,7 @@ void ReferenceBackend::record_copy(Commands& commands, Ref<T> from, Ref<T> to, s
                          count);
 }
 
-// The contents there after all work that has been submitted to the queue.
+// Returns the contents there after all work that has been submitted to the queue.
 template <class T>
 Buffer ReferenceBackend::read(Ref<T> from, std::size_t count) const {
     Buffer buffer(context(), {.name = "reference input", .bytes = count * sizeof(T), .memory = Memory::readback});
@@ -208,7 +208,7 @@ void ReferenceBackend::refit_tlas(Commands& commands, const TlasInput& input, co
                     input.count);
 }
 
-// Of the scene as the last sync, which must be done, has left it.
+// Returns the scene as the last sync, which must be done, has left it.
 ReferenceScene ReferenceBackend::synced_scene() const {
     const auto& scene = static_cast<const ReferenceState&>(built_tlas());
     std::vector<InstanceRecord> records(scene.count);

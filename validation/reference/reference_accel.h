@@ -11,15 +11,15 @@
 namespace twinray {
 // The float64 reference behind the interface of the accelerators: it shows what each call of AbstractAccel means, and
 // is the third to be compared. The host answers, while a trace is recorded, from what the last sync left on the device.
-// So that sync, the rays and the indirect count must be submitted before trace() is called (they need not be done),
-// which waits for them; Error if the sync is not. The hits are written when the commands run, as ever. It runs no GPU
-// code, and so meets neither boxes nor filters.
+// So that sync, the rays and the indirect count must be submitted before trace() is called, but need not be done:
+// trace() waits for them. It throws Error if the sync was not submitted. The hits are written when the commands run, as
+// ever. It runs no GPU code, and so meets neither boxes nor filters.
 class ReferenceAccel final : public AbstractAccel {
   public:
     explicit ReferenceAccel(Context& context);
 };
 
-// The float nearest to t inside the ray's open interval; nothing where float32 has none.
+// Returns the float nearest to t inside the ray's open interval; nothing if float32 has none.
 std::optional<float> reported_t(double t, const Ray& ray);
 
 }  // namespace twinray

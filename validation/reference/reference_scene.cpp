@@ -18,8 +18,8 @@ double infinity_norm(const glm::dmat3& m) {
 
 glm::dmat3 absolute(const glm::dmat3& m) { return {abs(m[0]), abs(m[1]), abs(m[2])}; }
 
-// A box around the transformed box, rounding included: that of centre and half extent, and that of rays on their way
-// to object space, which the inverse amplifies and which does not shrink where large offsets cancel.
+// Returns a box around the transformed box, rounding included: that of centre and half extent, and that of rays on
+// their way to object space, which the inverse amplifies and which does not shrink where large offsets cancel.
 Box64 box_in_world(const Box64& box, const Placement64& placement) {
     const dvec3 center = box.corners[0] * 0.5 + box.corners[1] * 0.5;
     const dvec3 half = box.corners[1] * 0.5 - box.corners[0] * 0.5;
@@ -40,7 +40,7 @@ std::vector<std::shared_ptr<const Geometry64>> built(std::span<const MeshView> m
     return geometries;
 }
 
-// Whether culling hides the triangle from the ray: `along` tells which of its sides the ray sees.
+// Returns whether culling hides the triangle from the ray: `along` tells which of its sides the ray sees.
 bool is_culled(const InstanceOptions& instance, uint flags, bool along) {
     if (instance.disable_culling) return false;
     const bool shows_its_back = along != instance.flip_facing;
@@ -51,7 +51,7 @@ bool is_culled(const InstanceOptions& instance, uint flags, bool along) {
 
 Placement64::Placement64(const Transform& transform, const char* object)
     : offset(transform.rows[0].w, transform.rows[1].w, transform.rows[2].w), is_identity(transform == Transform{}) {
-    static_cast<void>(inverse(transform, object));  // throws on what has no inverse
+    static_cast<void>(inverse(transform, object));  // throws if there is no inverse
     for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 3; ++column)
             to_world[column][row] = transform.rows[static_cast<std::size_t>(row)][column];

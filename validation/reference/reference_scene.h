@@ -51,15 +51,15 @@ class ReferenceScene {
     static ReferenceScene of(const Scene& scene);
 
     ReferenceHit closest_hit(const Ray& ray, const ReferenceQuery& query = {}) const;
-    // The same answer, bit for bit, from testing every triangle.
+    // Finds the same answer, bit for bit, by testing every triangle.
     ReferenceHit closest_hit_brute_force(const Ray& ray, const ReferenceQuery& query = {}) const;
     bool any_hit(const Ray& ray, const ReferenceQuery& query = {}) const;
 
-    // Instances, whatever their masks, that the ray hits at some t with t_min < t < t_limit, ascending.
+    // Returns the instances, whatever their masks, that the ray hits at some t with t_min < t < t_limit, ascending.
     std::vector<uint> instances_hit(const Ray& ray, double t_limit) const;
 
-    // Instances, whatever their masks, that the ray may meet at some t with t_min < t < t_max, or passes within
-    // float64's rounding, ascending.
+    // Returns the instances, whatever their masks, that the ray may meet at some t with t_min < t < t_max, or passes
+    // within float64's rounding, ascending.
     std::vector<uint> instances_near(const Ray& ray) const;
 
     const Box64& bounds() const { return bvh_.bounds(); }  // of the active triangles in world space

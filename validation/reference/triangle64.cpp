@@ -7,7 +7,7 @@
 namespace twinray {
 namespace {
 
-// The products whose sum is the triangle's doubled area, seen along one axis. A product of two float32 is exact
+// Returns the products whose sum is the triangle's doubled area, seen along one axis. A product of two float32 is exact
 // in float64.
 std::array<double, 6> area_products(const std::array<vec3, 3>& triangle, int axis) {
     const int x = (axis + 1) % 3;

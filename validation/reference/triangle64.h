@@ -18,7 +18,7 @@ struct TriangleHit64 {
     bool along = false;  // the ray runs along (v1 - v0) x (v2 - v0), and so sees the triangle from behind
 };
 
-// True when the three points span an area, decided exactly for every float32 input (NaN and infinity: false).
+// Returns whether the three points span an area, decided exactly for every float32 input (NaN and infinity: false).
 bool has_area(const std::array<vec3, 3>& triangle);
 
 // The watertight test of Woop, Benthin and Wald 2013 ("Watertight Ray/Triangle Intersection", JCGT 2(1)) in
@@ -29,7 +29,7 @@ class ShearedRay {
   public:
     ShearedRay(const dvec3& origin, const dvec3& direction);
 
-    // Any t, also negative. Triangles seen exactly edge-on are missed; their neighbours own the ray.
+    // Finds any t, also negative. Triangles seen exactly edge-on are missed; their neighbours own the ray.
     std::optional<TriangleHit64> intersect(const Triangle64& triangle) const;
 
   private:

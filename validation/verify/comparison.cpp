@@ -23,7 +23,7 @@ void print_classes(std::ostream& out, const char* accel, const HitClassCounts& c
     out << '\n';
 }
 
-// For SwTlas.
+// Prints the faults of SwTlas.
 void print_faulty(std::ostream& out, const std::vector<Fault>& faults) {
     std::size_t printed = 0;
     for (const auto& [ray, answer, kind, is_of_software] : faults)
@@ -84,7 +84,7 @@ void keep(std::vector<Fault>& faults, const Fault& fault) {
 
 AccelOptions options_for(Level level) { return {.level = std::max(level, Level::watertight)}; }
 
-// Filled, built, and its kernel compiled.
+// Fills the accelerator, builds it and compiles its kernel.
 void build(AbstractAccel& accel, const Verifier::Fill& fill, Level level) {
     fill(accel);
     const Ray ray{vec3(0), 0, vec3(1), 1};

@@ -18,7 +18,7 @@ struct RaySet {
     std::string name;  // "random", "vertex", "edge", "file"
     std::vector<Ray> rays;
 };
-// Random rays, and rays aimed at vertices and at edges.
+// Makes random rays, and rays aimed at vertices and at edges.
 std::vector<RaySet> test_rays(const ReferenceScene& reference, const Bounds& bounds, std::size_t random,
                               std::size_t aimed, std::uint64_t seed);
 
@@ -44,16 +44,16 @@ inline constexpr std::size_t max_faults_of_ours = 10'000, max_faults_of_driver =
 
 class Verifier {
   public:
-    // Lets both accelerators be filled with the reference's scene, or SwTlas alone where the device lacks what HwTlas
-    // needs at the level, and compiles their kernels, so that what is timed is tracing.
+    // Calls `fill` to fill both accelerators with the reference's scene, or SwTlas alone where the device lacks what
+    // HwTlas needs at the level, and compiles their kernels, so that only tracing is timed.
     using Fill = std::function<void(AbstractAccel&)>;
     Verifier(Context& context, ReferenceScene reference, const Fill& fill, Level level);
 
     const ReferenceScene& reference() const { return reference_; }
-    const HwTlas* hardware() const { return hardware_.get(); }               // null: see the next
+    const HwTlas* hardware() const { return hardware_.get(); }               // null: see why_no_hardware()
     const std::string& why_no_hardware() const { return why_no_hardware_; }  // "" where there is one
 
-    // Traces the closest hits of all rays by both and gives each a class. `arbiter`: see Arbiter.
+    // Traces the closest hits of all rays by both and classifies each. `arbiter`: see Arbiter.
     Comparison compare(std::span<const Ray> rays, const Arbiter& arbiter,
                        const std::function<void(std::size_t)>& progress);
 
@@ -69,7 +69,7 @@ class Verifier {
 
 void print(std::ostream& out, const RaySet& set, const Comparison& comparison, bool has_hardware);
 
-// One an accelerator, added to the fields of `base`. `hardware` may be null.
+// Returns a record for each accelerator, added to the fields of `base`. `hardware` may be null.
 std::vector<nlohmann::json> records_of(const nlohmann::json& base, const RaySet& set, const Comparison& comparison,
                                        const HwTlas* hardware);
 

@@ -48,7 +48,7 @@ void trace_all(AbstractAccel& accel, std::size_t count, Cull cull, const MakeRay
     }
 }
 
-// The first points of a plane of low discrepancy (Hammersley): one in each column and one in each row.
+// Returns the first points of a plane of low discrepancy (Hammersley): one in each column and one in each row.
 vec2 sample_point(uint index) {
     uint reversed = 0;
     for (uint bit = 1, weight = samples_of_an_edge / 2; weight > 0; bit *= 2, weight /= 2)

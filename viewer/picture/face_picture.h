@@ -13,17 +13,17 @@ namespace twinray {
 
 // The colour of faces without a value.
 inline constexpr Rgb plain_color = {205, 208, 213};
-// Behind all faces.
+// The colour behind all faces.
 inline constexpr Rgb background = {238, 240, 243};
 
-// The number of each instance's first face; faces are counted by instance, then by triangle.
+// Returns the number of each instance's first face; faces are counted by instance, then by triangle.
 std::vector<std::size_t> first_faces(const Scene& scene);
 
-// Unit, in world space, of the triangle that is hit, on the side on which its vertices turn counter-clockwise in object
-// space; 0 where it has no area.
+// Returns the unit normal, in world space, of the triangle that is hit, on the side on which its vertices turn
+// counter-clockwise in object space; 0 if it has no area.
 dvec3 front_normal(const Scene& scene, const Hit& hit);
 
-// The place of a pixel in an ImagePlane, row 0 on top. within: in the pixel; (0.5, 0.5) is its centre.
+// Returns the place of a pixel in an ImagePlane, row 0 on top. within: in the pixel; (0.5, 0.5) is its centre.
 vec2 in_plane(uint width, uint height, std::size_t pixel, vec2 within = vec2(0.5f));
 
 struct FacePictureDesc {

@@ -34,7 +34,7 @@ struct Stretch {
     float behind;
 };
 
-// The position on the stretch that is nearest to `at`, from 0 to 1.
+// Returns the position on the stretch that is nearest to `at`, from 0 to 1.
 float nearest(const Stretch& stretch, vec2 at) {
     const vec2 way = stretch.to.at - stretch.from.at;
     const float square = dot(way, way);

@@ -36,7 +36,7 @@ struct Note {
 // begin or end there, are left out.
 void draw_dots(FacePicture& picture, std::span<const Dot> dots);
 void draw_strokes(FacePicture& picture, std::span<const Stroke> strokes);
-// The position at which a point is seen, in pixels from the upper left corner; none: behind the camera.
+// Returns the position at which a point is seen, in pixels from the upper left corner; none: behind the camera.
 std::optional<vec2> place_of(const FacePicture& picture, dvec3 position);
 // Draws on a light ground, over everything else.
 void draw_labels(FacePicture& picture, std::span<const Note> notes);

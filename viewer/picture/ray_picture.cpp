@@ -32,7 +32,7 @@ Rgb color_of_normal(const dvec3& normal) {
 
 double distance_of(const Ray& ray, const Hit& hit) { return double(hit.t) * length(dvec3(ray.direction)); }
 
-// The end of the stroke of a ray that meets nothing, in a scene of this size.
+// Returns the end of the stroke of a ray that meets nothing, in a scene of this size.
 double miss_end(const Ray& ray, double scene_size) {
     const double speed = length(dvec3(ray.direction));
     return speed > 0 ? std::min(double(ray.t_max), scene_size / speed) : 0;

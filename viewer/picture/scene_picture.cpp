@@ -14,7 +14,7 @@
 namespace twinray {
 namespace {
 
-// The points beside the scene that must be seen.
+// Returns the points beside the scene that must be seen.
 std::vector<dvec3> points_of(const ScenePicture& picture) {
     std::vector<dvec3> points;
     for (const Dot& dot : picture.dots) points.push_back(dot.position);
@@ -60,7 +60,7 @@ FacePicture draw(const PictureOptions& options, AbstractAccel& accel, const Scen
     return faces;
 }
 
-// RFC 4648.
+// Encodes by RFC 4648.
 std::string base64_of(std::span<const std::byte> bytes) {
     static constexpr char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::string encoded;

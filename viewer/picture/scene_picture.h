@@ -12,7 +12,7 @@ namespace twinray {
 
 enum class ColorScale : std::uint8_t { linear, log };
 
-// How it is shown.
+// How a scene is shown.
 struct PictureOptions {
     std::vector<std::filesystem::path> files;  // .png, .html or .glb
     std::vector<float> view;                   // empty: the scene's first camera, else one that shows the whole scene
@@ -31,7 +31,7 @@ struct ScenePicture {
     std::vector<Stroke> strokes;
     std::vector<Note> notes;
     bool frames_marks = false;           // the chosen camera sees all marks, whatever camera the scene has
-    std::optional<vec3> direction = {};  // in which it looks then; none: as suits the scene
+    std::optional<vec3> direction = {};  // direction in which that camera looks; none: as suits the scene
 };
 // Shows colours of values, NaN: there is none; the scale goes into the legend, which is called `what`.
 ScenePicture picture_of_values(const PictureOptions& options, std::span<const double> values, const std::string& what,

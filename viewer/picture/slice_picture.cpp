@@ -20,7 +20,7 @@ Axes axes_of(char axis) {
     return {0, 1, 2, 1};
 }
 
-// Lines of equal value, where a multiple of `level` lies between neighbours; the surface is black.
+// Draws lines of equal value, where a multiple of `level` lies between neighbours; the surface is black.
 void draw_levels(Raster& picture, std::span<const double> values, double level) {
     const auto value = [&](uint x, uint y) { return values[std::size_t{y} * picture.width + x]; };
     const auto differs = [&](double a, double b) { return std::floor(a / level) != std::floor(b / level); };

@@ -59,10 +59,10 @@ Rgb interpolated(std::span<const Rgb> colors, double position) {
     return {mixed(a.r, b.r, weight), mixed(a.g, b.g, weight), mixed(a.b, b.b, weight)};
 }
 
-// To the last bit, which pow() of some C libraries misses.
+// Returns the power to the last bit, which pow() of some C libraries misses.
 double power_of_ten(double exponent) { return std::strtod(text("1e", static_cast<int>(exponent)).c_str(), nullptr); }
 
-// The least of 1, 2, 5 and 10 times a power of ten that is not below.
+// Returns the least of 1, 2, 5 and 10 times a power of ten that is not below `least`.
 double nice_step(double least) {
     const double power = power_of_ten(std::floor(std::log10(least)));
     for (const double factor : {1.0, 2.0, 5.0})
@@ -76,7 +76,7 @@ std::string printed(const char* format, int digits, double value) {
     return {buffer.data(), static_cast<std::size_t>(size)};
 }
 
-// "1e-05" -> "1e-5", "2e+06" -> "2e6".
+// Turns "1e-05" into "1e-5", "2e+06" into "2e6".
 std::string short_exponent(const std::string& number) {
     const std::size_t e = number.find('e');
     if (e == std::string::npos) return number;
@@ -166,7 +166,7 @@ std::vector<Tick> ValueScale::linear_ticks(std::size_t most) const {
     return ticks;
 }
 
-// Powers of ten, every second or third one of them where they are many; with twice and five times them where few.
+// Returns powers of ten, every second or third one if they are many; with twice and five times them if few.
 std::vector<Tick> ValueScale::decade_ticks(std::size_t most) const {
     const double first = std::ceil(std::log10(lo_)), last = std::floor(std::log10(hi_));
     const double stride = std::ceil((last - first + 1) / static_cast<double>(std::max<std::size_t>(most, 1)));

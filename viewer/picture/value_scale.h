@@ -37,21 +37,21 @@ class ValueScale {
     static ValueScale linear(double lo, double hi);
     // Throws Error unless 0 < lo < hi, both finite.
     static ValueScale logarithmic(double lo, double hi);
-    // From 0 to a round number that is not below the largest; with values below 0 as far to either side. Values that
-    // are not finite do not count.
+    // Makes a scale from 0 to a round number that is not below the largest; with values below 0 it goes as far to
+    // either side. Values that are not finite do not count.
     static ValueScale linear_for(std::span<const double> values);
-    // From the smallest above 0 to the largest, but over no more than 10^6.
+    // Makes a scale from the smallest above 0 to the largest, but over no more than 10^6.
     static ValueScale logarithmic_for(std::span<const double> values);
 
     double lo() const { return lo_; }
     double hi() const { return hi_; }
     bool is_logarithmic() const { return is_logarithmic_; }
-    // From 0 to 1; the nearest end for values beyond.
+    // Returns the position from 0 to 1; values beyond have that of the nearest end.
     double position(double value) const;
-    // The value at a position, as position() is inverted.
+    // Returns the value at a position: the inverse of position().
     double value_at(double position) const;
-    // Diverging where 0 is inside of a linear scale. `no_value_color` for NaN and, on a logarithmic scale, for 0 and
-    // below.
+    // Returns a colour of the diverging map if 0 is inside of a linear scale. NaN has `no_value_color`, and so have 0
+    // and below on a logarithmic scale.
     Rgb color(double value) const;
     // At most `most` round numbers (Heckbert, "Nice numbers for graph labels", 1990): 1, 2 or 5 times powers of ten.
     std::vector<Tick> ticks(std::size_t most) const;
@@ -65,7 +65,7 @@ class ValueScale {
     bool is_logarithmic_;
 };
 
-// A number in few characters: digits after the point as many as multiples of `step` need.
+// Returns a number in few characters, with as many digits after the point as multiples of `step` need.
 std::string label_of(double value, double step);
 
 }  // namespace twinray

@@ -18,7 +18,7 @@ from . import _core
 from ._arrays import arrays_of_mesh, indices_of, matrix_of, rows_of, vector_of
 from .scene import Scene
 
-_MOST_SCENES = 4  # that a process keeps: the last ones it was asked for
+_MOST_SCENES = 4  # the last ones that a process was asked for, which it keeps
 
 
 class SceneSpec:

@@ -182,7 +182,7 @@ def _sky(scene, sensors, dtype, directions, light, tnear):
     seen = _visible(scene, flat, None, directions.astype(np.float32), tnear)
     if flat.shape[1] == 6:
         unit = flat[:, 3:] / np.linalg.norm(flat[:, 3:], axis=1, keepdims=True)
-        # No product of matrices: their sums depend on how many rows there are.
+        # This is no product of matrices, whose sums depend on how many rows there are.
         cosines = [np.maximum(unit[:, 0] * x + unit[:, 1] * y + unit[:, 2] * z, 0) for x, y, z in directions]
     else:
         cosines = list(np.maximum(directions[:, 2], 0))

@@ -521,7 +521,7 @@ class Scene:
         return np.nan_to_num(np.rint(self._windings(points))) != 0
 
     def _tell_if_far(self, geometries):
-        # No warning for small parts of a large scene.
+        # Small parts of a large scene cause no warning.
         harmless = HARMLESS if self._frame.has_one_geometry() else 1000 * HARMLESS
         for geometry in () if self._told_of_far else geometries:
             farthest, extent = self._core.reach(geometry)

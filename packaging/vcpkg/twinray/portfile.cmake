@@ -1,5 +1,5 @@
 # An overlay port of this checkout: vcpkg install twinray --overlay-ports=packaging/vcpkg
-# It gives the libraries. The command needs GMP's C++ interface, too, which a build of the checkout finds.
+# It gives the libraries. The command also needs GMP's C++ interface, which a build of the checkout finds.
 get_filename_component(SOURCE_PATH ${CMAKE_CURRENT_LIST_DIR}/../../.. ABSOLUTE)
 
 vcpkg_cmake_configure(
