@@ -22,7 +22,7 @@ namespace twinray::bench {
 namespace {
 
 struct EmbreeOptions {
-    RTCBuildQuality quality = RTC_BUILD_QUALITY_MEDIUM;           // of scenes
+    RTCBuildQuality quality = RTC_BUILD_QUALITY_MEDIUM;           // of a scene
     RTCBuildQuality geometry_quality = RTC_BUILD_QUALITY_MEDIUM;  // heeded in scenes of quality low alone
     RTCSceneFlags flags = RTC_SCENE_FLAG_NONE;
     unsigned threads = 1;

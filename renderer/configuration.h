@@ -8,15 +8,15 @@
 
 namespace twinray::path_tracer {
 
-// The settings and contents that a picture of the scene depends on; CRC-32 stands for contents, so that files may move.
-// environment: null for black. The number of samples, the accelerator and the device are no part of it.
+// Returns the settings and contents that a picture of the scene depends on; CRC-32 stands for contents, so that files
+// may move. environment: null for black. The number of samples, the accelerator and the device are no part of it.
 Configuration configuration_of(const RenderSettings& settings, const Scene& scene, const LocalLights& lights,
                                const EnvironmentMap* environment, bool is_default_sky);
 
 // Returns the stops for a .png: the given ones, else 0 under the default sky, else automatic.
 float exposure_of(const std::optional<float>& wanted, const Configuration& configuration, const HdrImage& picture);
 
-// The position of the film's pixels in the picture. Throws Error for a configuration without it.
+// Returns the position of the film's pixels in the picture. Throws Error for a configuration without it.
 HdrImage::Part part_of(const Configuration& configuration);
 
 // Writes the picture of a film of this configuration, with this exposure.

@@ -18,7 +18,7 @@ class CrossChecker final : public WaveObserver {
     // Returns the first max_kept of them.
     const std::vector<Disagreement>& recorded() const { return recorded_; }
     std::uint64_t found() const { return found_; }
-    // One per pixel: whether any of its rays disagreed, recorded or not.
+    // Returns for each pixel whether any of its rays disagreed, recorded or not.
     std::vector<uint> marks();
 
     static constexpr std::size_t max_kept = 1 << 20;

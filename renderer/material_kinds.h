@@ -30,7 +30,7 @@ uint needs_of(const Material& material);
 struct MaterialKinds {
     std::vector<uint> needs;  // by kind: all that its materials need
     std::vector<uint> of;     // by material: its kind, 0 where nothing uses it
-    uint all_needs() const;   // of any kind
+    uint all_needs() const;   // the needs of all kinds together
 };
 // Returns the kinds of the materials that triangles use; if a light has a texture, all kinds have the need for it.
 // Beyond most_material_kinds, the kinds that differ least become one.

@@ -42,7 +42,7 @@ class MovingScene {
     AbstractAccel& accel_;
     std::vector<AccelHandle> handles_;   // by mesh
     std::vector<uint> deformed_;         // deformed_meshes() of the rig
-    std::vector<std::size_t> emitting_;  // indices into those
+    std::vector<std::size_t> emitting_;  // indices into deformed_
     Deformer deformer_;
     Kernel<MoveVerticesArgs> move_vertices_;
     Buffer transforms_;  // by instance

@@ -65,7 +65,7 @@ class WaveBuffers {
     // They hold up to `capacity` rays of each sort, none appended yet. The scene and the sums must outlive it.
     WaveBuffers(Context& context, const DeviceScene& scene, Ref<Radiance> sums, FilmWindow window, uint capacity);
 
-    // For Kernels, by the turns of paths and of shadows, 0 or 1.
+    // Returns the data for Kernels by the turns of paths and of shadows, 0 or 1.
     Ref<WaveData> data(uint turn, uint shadow_turn = 0) const {
         return data_.ref<WaveData>((turn + 2 * shadow_turn) * sizeof(WaveData));
     }

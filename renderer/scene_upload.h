@@ -92,7 +92,7 @@ class DeviceScene {
     };
     Context& context_;
     SceneFeatures features_;
-    std::vector<Buffer> buffers_, moving_;  // what stays, what move() replaces
+    std::vector<Buffer> buffers_, moving_;  // the first stay, move() replaces the others
     std::vector<MeshRefs> meshes_;
     std::optional<LightSet> lights_;        // none: no need for any
     std::optional<TextureStore> textures_;  // none: no material has any

@@ -28,7 +28,7 @@ class Test:
     seconds: float
     failed: bool = False
     reason: str = ""  # why it was skipped
-    command: str = ""  # that runs it alone
+    command: str = ""  # runs it alone
 
 
 def tests_of_suite(file, build):

@@ -26,7 +26,7 @@ packages=(
     doxygen
     libglfw3-dev libimgui-dev xvfb xauth mesa-drm-shim libopenmpi-dev openmpi-bin
 )
-if [[ $(uname -m) == x86_64 ]]; then packages+=(libembree-dev); fi # twinray bench measures it, too
+if [[ $(uname -m) == x86_64 ]]; then packages+=(libembree-dev); fi # twinray bench also measures it
 oldest_mesa=24 # the first whose lavapipe has acceleration structures and ray queries
 # This is lost without a package that some release lacks; CMake names the others when it misses them.
 declare -A without=(

@@ -30,7 +30,7 @@ made_by=$(
     } | sha256sum
 )
 if [[ $(cat "$folder/done" 2>/dev/null) == "$made_by" ]]; then exit 0; fi
-rm -rf "${folder:?}"/{done,include,lib,share,licenses,sources,apt} # of another script, or of one that failed
+rm -rf "${folder:?}"/{done,include,lib,share,licenses,sources,apt} # left by another script, or by a run that failed
 export TWINRAY_WINDOWS_PACKAGES=$folder
 
 say() { printf 'windows_packages: %s\n' "$*"; }
@@ -79,7 +79,7 @@ END
     local options=(-qq -o Acquire::Retries=3 -o "Dir::Etc::sourceparts=$apt/lists.d" -o Dir::Etc::sourcelist=/dev/null
         -o "Dir::State::lists=$apt/lists" -o APT::Sandbox::User=root)
     apt-get "${options[@]}" update || exit 77
-    rm -rf "$sources" # of a run that failed
+    rm -rf "$sources" # left by a run that failed
     mkdir -p "$sources"
     (cd "$sources" && apt-get "${options[@]}" source --download-only "${source_packages[@]}") || exit 77
     for package in "$sources"/*.dsc; do dpkg-source --no-check -x "$package" "${package%.dsc}" >/dev/null; done

@@ -42,7 +42,7 @@ class ScreenDevice {
     VkDevice handle() const { return device_; }
     VkQueue queue() const { return queue_; }
     std::uint32_t queue_family() const { return family_; }
-    VkFormat format() const { return format_; }  // of the window, 8 bits a channel as they are
+    VkFormat format() const { return format_; }  // of the window, 8 bits per channel as they are
 
   private:
     ScreenDevice() = default;

@@ -25,7 +25,7 @@ enum class Layer : std::uint8_t {
     depth,       // t
     distance,    // of points on the plane through the camera's centre from the nearest triangle
     steps,       // nodes, boxes and triangles that the ray asks for
-    light,       // what the sun brings to each face (illumination)
+    light,       // sunlight on each face (illumination)
     factors,     // view factors from the face that was picked
     collisions,  // triangles that touch or cross others, by class
 };

@@ -11,7 +11,7 @@ namespace twinray::viewer {
 
 struct Box {
     dvec3 lo, hi;
-    bool is_of_instances;  // of the scene's level; else of a geometry, under its instance's transform
+    bool is_of_instances;  // a box of the scene's level; else of a geometry, under its instance's transform
     double share = 1;      // of the area of the root's box: the share of rays through the root that meet this box (SAH)
 };
 

@@ -15,7 +15,7 @@ namespace twinray::viewer {
 namespace {
 
 constexpr double dolly_a_step = 1.15;
-constexpr double flight_a_frame = 0.03;  // of the distance
+constexpr double flight_a_frame = 0.03;  // share of the distance
 constexpr double least_drag = 3;         // pixels; less is a click
 constexpr uint least_side = 1, most_side = 16384;
 

@@ -91,7 +91,7 @@ class PathPicture {
     void look(const Orbit& orbit, uint width, uint height);
     void add_sample(AbstractAccel& accel);
     uint samples() const { return samples_; }
-    double seconds() const;  // that the samples took
+    double seconds() const;  // the time that the samples took
     std::uint64_t rays() const;
     // Bounds the relative error (see Film::error()) at the last power of two of samples; infinite before two.
     double error() const { return error_; }
@@ -123,7 +123,7 @@ struct ViewerDesc {
     // The camera's position and the point that it looks at, in the file's coordinates; none: the scene's first camera,
     // or a view of all. The rest is in state.orbit.
     std::optional<std::array<dvec3, 2>> camera;
-    std::function<void(const std::string&)> say;  // what keys tell, as the camera's options
+    std::function<void(const std::string&)> say;  // tells what keys report, such as the camera's options
     std::string version;                          // of twinray
 };
 
@@ -136,7 +136,7 @@ struct Pick {
     HitClass software_class = HitClass::agree, hardware_class = HitClass::agree;
     std::optional<dvec3> point;                          // of the software's hit, in world space
     std::optional<std::size_t> face;                     // of the same, by instance, then by triangle
-    std::uint64_t nodes = 0, boxes = 0, primitives = 0;  // that the ray asks the software tree for
+    std::uint64_t nodes = 0, boxes = 0, primitives = 0;  // the software tree's, which the ray asks for
 };
 // Returns a line each for the ray, the hits and what they are worth, and steps.
 std::string text_of(const Pick& pick);
@@ -222,13 +222,13 @@ class Viewer {
         bool operator==(const ValuesKey&) const = default;
     };
     Values values_;
-    std::optional<ValuesKey> values_of_;  // what values_ were computed for
+    std::optional<ValuesKey> values_of_;  // the state that values_ were computed for
     std::uint64_t disagreements_ = 0;
     std::size_t tree_boxes_ = 0;
     double tree_area_ = 0;          // of all of them, in areas of the root
     std::size_t camera_ = 0;        // of the file, that was looked through last
     double rays_a_second_ = 0;      // of the last frame's hits
-    std::vector<Stroke> segments_;  // where triangles cross, of Layer::collisions
+    std::vector<Stroke> segments_;  // where triangles cross, for Layer::collisions
     Raster raster_{1, 1};
     State shown_;            // what raster_ shows
     bool is_coarse_ = true;  // raster_ is

@@ -141,7 +141,7 @@ class Session:
                       "about": backend.about}  # fmt: skip
             try:
                 record.update(self.figures(backend, geometry, rays, inside, "sphere" in scene))
-            except Exception as error:  # of the package: the others are measured all the same
+            except Exception as error:  # the package failed: the others are measured all the same
                 print(f"{scene}: {name}: left out: {error}", flush=True)
                 continue
             self.records.append(record)

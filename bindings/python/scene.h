@@ -77,7 +77,7 @@ class TurnMutex {
     std::timed_mutex next_;  // held by the thread that waits for `held_`
     std::timed_mutex held_;
     std::atomic<std::thread::id> owner_;
-    int depth_ = 0;  // of the owner
+    int depth_ = 0;  // how often the owner holds it
 };
 
 // One context for all scenes of a device, kept until the end of the program. It does not outlive a fork.
@@ -138,7 +138,7 @@ struct Places {
 // Rays as Python has them: origin and direction, one after the other, with an interval for all.
 struct RayRows {
     std::span<const float> floats;    // six per ray
-    std::span<const double> doubles;  // instead of them
+    std::span<const double> doubles;  // in place of `floats`
     dvec3 origin = dvec3(0);          // of the device's coordinates, in those of the rays
     double t_near = 0, t_far = std::numeric_limits<double>::infinity();
 
@@ -302,7 +302,7 @@ class Scene {
     std::unique_ptr<PointQuery> points_;
     Progress progress_;
     bool is_searchable_ = false;    // points_ holds what the accelerator does
-    std::optional<Bounds> bounds_;  // of all, once they were asked for
+    std::optional<Bounds> bounds_;  // of all geometries; set when first asked for
 };
 
 }  // namespace twinray::python

@@ -31,7 +31,7 @@ struct Value {
     std::vector<std::string> suffixes = {};  // of Kind::file, which must have one of them; empty: any
     std::string allowed = {};                // "a whole number from 1 to 65535"
     std::string limits = {};                 // "from 1 to 65535"; empty: none worth telling
-    std::string initial = {};  // value if the option is not given; empty: none, or the help names it
+    std::string initial = {};  // the value that holds if the option is not given; empty: none, or the help says it
     // Takes all values. Returns the first that is not what is allowed, or null.
     std::function<const std::string*(std::span<const std::string>)> store = {};
 };
@@ -98,6 +98,6 @@ std::string text_of(const Option& option);
 // Returns "twinray trace SCENE --rays FILE --hits FILE [OPTION]...".
 std::string synopsis_of(const Command& command);
 std::vector<Item> exit_statuses_of(const Command& command);
-std::vector<Item> environment_variables();  // that commands heed
+std::vector<Item> environment_variables();  // those that commands heed
 
 }  // namespace twinray::cli

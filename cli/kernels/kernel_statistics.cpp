@@ -18,7 +18,7 @@ struct Word {
     Figure figure;
 };
 
-constexpr std::string_view registers_of_turnip = "registers used";  // of four words a lane
+constexpr std::string_view registers_of_turnip = "registers used";  // each is four words per lane
 
 constexpr Word words[] = {
     // RADV
@@ -120,7 +120,7 @@ KernelStatistics compile_for_statistics(Context& context, const KernelDesc& desc
 
 KernelFigures figures_of(std::span<const Statistic> told) {
     KernelFigures figures;
-    bool counts_words = false;  // of code, not bytes
+    bool counts_words = false;  // code is counted in words, not bytes
     for (const Statistic& statistic : told) {
         const std::string name = lower(statistic.name);
         for (const Word& word : words) {

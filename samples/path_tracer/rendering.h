@@ -8,7 +8,7 @@ namespace twinray::path_tracer {
 
 struct Rendering {
     Film film;
-    HdrImage picture = {};  // what is shown of the film: its mean, without noise if that is wanted
+    HdrImage picture = {};  // the film as shown: its mean, without noise if that is wanted
     RenderStats stats = {};
     double resumed_samples = 0;  // samples of a pixel, on average, that the film had before
     int signal = 0;              // the one that ended it early; 0: none

@@ -207,7 +207,7 @@ Session make_session(const Options& options, const Ranks& ranks) {
 
 std::unique_ptr<AbstractAccel> make_accel(Context& context, const Scene& scene, const AccelChoice& choice,
                                           bool is_animated) {
-    // The scene has the meshes, too; the accelerator needs them only if vertices move.
+    // The scene also has the meshes; the accelerator needs them only if vertices move.
     std::unique_ptr<AbstractAccel> accel = twinray::make_accel(context, choice, {.keeps_meshes = is_animated});
     push_scene(*accel, scene);
     accel->sync();

@@ -83,7 +83,7 @@ struct Session {
     Configuration configuration;
     std::unique_ptr<const Denoiser> denoiser;  // null: noise stays
     std::unique_ptr<Context> context;
-    AccelChoice accel;  // what traces, and why
+    AccelChoice accel;  // the accelerator that traces, and why
     std::unique_ptr<DeviceScene> device_scene;
     std::unique_ptr<Renderer> renderer;
 };

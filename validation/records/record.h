@@ -34,7 +34,7 @@ struct RecordedDevice {
     std::string name;
     std::string driver;
     std::string api;
-    Values probe = {};  // what the device's arithmetic does, where it was measured
+    Values probe = {};  // measured properties of the device's arithmetic, if there are any
 
     bool operator==(const RecordedDevice&) const = default;
 };
@@ -46,7 +46,7 @@ struct ErrorFigures {
     double p99 = 0;
     Interval p99_95;  // quantile_interval_95
     double max = 0;
-    double floor = 0;  // what exact arithmetic would leave: rounding of the result; 0: none is known
+    double floor = 0;  // error that exact arithmetic would leave by rounding the result; 0: not known
 
     bool operator==(const ErrorFigures&) const = default;
 };
@@ -81,7 +81,7 @@ struct Record {
     std::uint64_t n = 0;  // items checked
     std::uint64_t seed = 0;
     std::map<std::string, std::uint64_t> counts = {};  // by class
-    Values results = {};                               // what else was measured: "sah_ratio", "depth"
+    Values results = {};                               // other measured values: "sah_ratio", "depth"
     std::optional<ErrorFigures> error = {};
     std::uint64_t faults = 0;            // of n
     std::optional<double> bound95 = {};  // upper_bound_95(faults, n)

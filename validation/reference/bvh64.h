@@ -59,7 +59,7 @@ class SlabRay {
 
   private:
     dvec3 near_origin_, far_origin_, inverse_;
-    ivec3 near_side_;  // which corner holds the near plane, by the sign bit, so that -0 works
+    ivec3 near_side_;  // the corner that holds the near plane, by the sign bit, so that -0 works
 };
 
 class Bvh64 {

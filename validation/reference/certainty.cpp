@@ -25,7 +25,7 @@ bool is_certainly_missed(const TriangleBound& bound, double t_min, double t_max)
 bool is_certain(const ReferenceScene& reference, const Ray& ray, const ReferenceHit& closest) {
     if (!is_traceable(ray)) return true;
     const double t_min = std::max(0.0, double{ray.t_min});
-    double t_end = ray.t_max;  // what lies behind it for certain cannot be the closest hit
+    double t_end = ray.t_max;  // a hit certain to lie behind it cannot be the closest
     if (closest.hit) {
         const Triangle64 triangle = reference.geometry(closest.instance).find(closest.primitive)->vertices64();
         const TriangleBound expected = error_bounds_of(reference, ray, closest.instance).bound(triangle);

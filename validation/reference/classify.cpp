@@ -78,7 +78,7 @@ void Classifier::visit_near(uint instance, Visit&& visit) const {
 // Returns the coverage by the triangles certain to lie before t_limit.
 Coverage Classifier::coverage_before(uint instance, double t_limit) const {
     std::vector<PatchTriangle> patch;
-    bool is_at_an_end = false;  // of the ray's interval: exclusive bounds and rounding decide
+    bool is_at_an_end = false;  // an end of the ray's interval, where exclusive bounds and rounding decide
     visit_near(instance, [&](const ActiveTriangle& triangle, const TriangleBound& bound) {
         if (bound.t_low > t_min_ && bound.t_high < std::min(t_limit, t_end_))
             patch.push_back({triangle.vertices, bound});

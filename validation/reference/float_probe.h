@@ -22,7 +22,7 @@ struct FloatFacts {
     bool keeps_denormals = false;
     bool compares_nan = false;      // every ordered comparison with NaN is false
     bool min_max_drop_nan = false;  // min and max give the operand that is a number
-    bool has_float64 = false;       // and its sums and products are exact where they fit
+    bool has_float64 = false;       // float64 exists, and its sums and products are exact where they fit
     bool has_exact_float64 = false;
 };
 

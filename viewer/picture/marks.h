@@ -21,7 +21,7 @@ struct Stroke {
     dvec3 from, to;    // in world space
     float radius = 1;  // pixels: half its width
     Rgb color = ink;
-    float behind = 0;  // as of dots
+    float behind = 0;  // see Dot::behind
 };
 
 // A word beside a point.

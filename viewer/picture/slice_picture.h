@@ -12,7 +12,7 @@
 namespace twinray {
 
 struct SliceDesc {
-    char axis = 'z';           // the plane is perpendicular to it: x, y or z
+    char axis = 'z';           // the axis perpendicular to the plane: x, y or z
     std::optional<double> at;  // the plane's coordinate on it; none: the middle of the box
     uint width = 480;          // pixels of the larger side, a point each
 };

@@ -42,7 +42,7 @@ _VIRIDIS = (
 )
 _BACKGROUND = 1.0
 _SAMPLES = 2  # along each side of a pixel
-_MOST_RAYS = 2000  # that are drawn
+_MOST_RAYS = 2000  # the most that are drawn
 _HIDDEN = 0.2  # how much is seen of a ray behind a surface
 
 
