@@ -11,7 +11,7 @@
 namespace twinray {
 // The float64 reference behind the interface of the accelerators: it shows what each call of AbstractAccel means, and
 // is the third to be compared. The host answers, while a trace is recorded, from what the last sync left on the device.
-// So that sync, the rays and the indirect count must be submitted before trace() is called, but need not be done:
+// Hence the sync, the rays and the indirect count must be submitted before trace() is called, but need not be done:
 // trace() waits for them. It throws Error if the sync was not submitted. The hits are written when the commands run, as
 // ever. It runs no GPU code, and so meets neither boxes nor filters.
 class ReferenceAccel final : public AbstractAccel {
