@@ -44,7 +44,7 @@ void record_traces(const Session& session, const nlohmann::json& base, const Res
     for (const auto& [kind, traces] : measured.traces) record_all(session, records_of(base, results, kind, traces));
 }
 
-// The figures of one backend on one scene, in ns; NaN if not measured.
+// The figures of one backend on one scene, in ns but for build_ms; NaN if not measured.
 struct GrowthPoint {
     std::size_t triangles = 0;
     double build_ms = NAN;

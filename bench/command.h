@@ -58,7 +58,7 @@ void bench_feature_costs(const Session& session, const BenchScene& scene);
 // Prints properties of the trees of each layout and build quality: counts, not times.
 void bench_trees(const Session& session, const BenchScene& scene);
 
-// The modes share these. This one returns the fields of every record.
+// The modes share these. base_record() returns the fields of every record.
 nlohmann::json base_record(const Session& session);
 nlohmann::json base_record(const Session& session, const Context& context);
 void record_all(const Session& session, const std::vector<nlohmann::json>& records);

@@ -220,7 +220,7 @@ std::vector<std::pair<const char*, double>> shares_of(const MemoryUsage& usage, 
 }
 
 // Measures SwTlas with the scene as it is, at level watertight in layout compressed4, with instances that may not move,
-// then with one thing more each time. Leaves out levels that the device lacks.
+// then the same with one thing more, another each time. Leaves out levels that the device lacks.
 std::vector<MemoryCost> measure_memory_costs(Context& context, const BenchScene& scene, std::size_t rounds) {
     const std::vector<Configuration> configurations = configurations_on(context.properties());
     std::vector<MemoryCost> costs;

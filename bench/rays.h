@@ -21,13 +21,13 @@ enum class RayKind : std::uint8_t {
 };
 inline constexpr std::array all_ray_kinds = {RayKind::primary, RayKind::incoherent, RayKind::occlusion,
                                              RayKind::shuffled};
-// The kinds in the order in which a renderer traces them.
+// The kinds that a renderer traces, in its order.
 inline constexpr std::array usual_ray_kinds = {RayKind::primary, RayKind::incoherent, RayKind::occlusion};
 constexpr std::string_view name_of(RayKind kind) {
     constexpr std::string_view names[] = {"primary", "incoherent", "occlusion", "shuffled"};
     return names[static_cast<std::size_t>(kind)];
 }
-// Returns any hits for occlusion, else closest hits.
+// Returns the query: any hits for occlusion, else closest hits.
 constexpr Query query_of(RayKind kind) { return kind == RayKind::occlusion ? Query::any : Query::closest; }
 
 // A point where a ray met the scene.

@@ -18,7 +18,7 @@ struct CentroidOptions : AnalysisOptions {
     RayGridOptions grid;
 };
 
-// Writes the file's coordinates.
+// Writes the points in the coordinates of the scene's file.
 void write(const std::filesystem::path& file, const Centroid& result, const dvec3& origin) {
     CsvFile csv(file, "x,y,z");
     for (const dvec3& point : result.points) {

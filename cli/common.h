@@ -38,7 +38,7 @@ struct CommonOptions {
 Section common_options(CommonOptions& options);
 
 Option json_option(std::filesystem::path& file);
-// Returns the positional SCENE, which every command asks about.
+// Returns the positional SCENE, the scene that a command asks about.
 Option scene_argument(std::filesystem::path& file);
 // Returns "-o, --output".
 Option output_option(Value value, const std::string& help);

@@ -43,7 +43,7 @@ class Shards {
     Shards(const Shards&) = delete;
     Shards& operator=(const Shards&) = delete;
 
-    // Computes `compute(rows)` of each process's part of `count` rows and saves it beside the output. Returns all
+    // Computes `compute(rows)` of this process's part of `count` rows and saves it beside the output. Returns all
     // parts, in order, to the process that goes on, and nothing to one that is done. Without parts it is compute() of
     // all rows, and no file.
     using Compute = std::function<std::vector<std::byte>(Rows)>;

@@ -57,7 +57,8 @@ std::string result_text(const VerifyOptions& options, std::uint64_t faults) {
     return faults ? text(faults, " faults of twinray") : "no fault of twinray";
 }
 
-// Returns the requested folder. Without one, only faults of twinray are written, to a folder of that name here.
+// Returns the requested folder. Without one, only faults of twinray are written, to twinray_replays here; "" if there
+// are none.
 std::filesystem::path replay_folder(const VerifyOptions& options, const Comparison& comparison) {
     if (!options.replays.empty()) return options.replays;
     return faults_of_ours(options, comparison) ? "twinray_replays" : "";

@@ -35,7 +35,7 @@ Rgb color_of(Layer layer, const Scene& scene, const Ray& ray, const Hit& hit, co
 // Returns a face's colour, lit from the camera.
 Rgb lit(const Scene& scene, const Ray& ray, const Hit& hit, Rgb color);
 
-// Returns colours for distinct numbers, as different as three channels allow.
+// Returns a number's colour. Those of distinct numbers are as different as three channels allow.
 Rgb color_of_number(std::uint64_t number);
 
 // Returns whether two accelerators agree about a ray: they name the same, bit for bit but for t, u and v.

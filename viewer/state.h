@@ -34,7 +34,7 @@ inline constexpr std::array all_layers = {
     Layer::depth, Layer::distance, Layer::steps,     Layer::light, Layer::factors, Layer::collisions};
 std::string_view name_of(Layer layer);
 
-// The accelerator whose hits are shown.
+// The accelerators whose hits are shown.
 enum class Shown : std::uint8_t {
     software,
     hardware,

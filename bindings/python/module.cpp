@@ -203,7 +203,8 @@ nb::tuple add_file(Scene& scene, const std::string& file, const std::optional<Ve
     return nb::make_tuple(added, nb::make_tuple(origin->x, origin->y, origin->z));
 }
 
-// Returns each mesh's (positions, triangles), each geometry's (number, mesh, transform, is_flat), the count of numbers.
+// Returns (positions, triangles) of each mesh, (number, mesh, transform, is_flat) of each geometry, and the count of
+// numbers given.
 nb::tuple bound_content(Scene& scene) {
     Content content = unlocked([&] { return scene.content(); });
     nb::list meshes, geometries;

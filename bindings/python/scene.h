@@ -190,8 +190,8 @@ class Scene {
     // Returns the number of the new geometry: 0, 1, ...; none is given twice. Throws Error as AbstractAccel::push does.
     uint add(Mesh&& mesh, const Transform& transform);
     uint add_instance(uint of, const Transform& transform);
-    // Adds a geometry for each instance of the file. Throws Error as load_scene() does. `origin` is passed to it, and
-    // is the file's afterwards.
+    // Adds a geometry for each instance of the file. Throws Error as load_scene() does, which gets `origin`. If that
+    // was not set, it becomes the one that load_scene() chose.
     std::vector<uint> add_file(const std::string& file, std::optional<dvec3>& origin);
     void remove(uint geometry);
     void set_transform(uint geometry, const Transform& transform);

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double rounding = 32 * 0x1p-24;  // twice that of ErrorBounds
 
-// A distance far above what rounding moves a ray: whatever lies beyond it needs no closer look.
+// A share of the lengths, far above what rounding moves a ray: whatever lies beyond it needs no closer look.
 constexpr double near_ray = 0x1p-10;
 
 bool may_touch(const dvec3& center, double radius, const dvec3& origin, const dvec3& direction) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// t_min and t_max, between which a triangle's t must lie.
+// t_min and t_max, strictly between which a triangle's t must lie.
 #include <cmath>
 
 #include "report/conformance/case_run.h"

@@ -92,7 +92,7 @@ bool may_be_harmless(const std::string& function);
 
 enum class Outcome { done, error, lost };
 
-// Returns the outcome of an action, and the text of its Error.
+// Return the outcome of an action, and the text of its Error.
 Outcome outcome_of(const std::function<void()>& action, std::string* what = nullptr);
 std::string what_is_thrown_by(const std::function<void()>& action);
 

@@ -41,8 +41,8 @@ struct Finding {
     bool is_complete() const { return cases_run == cases; }
     bool has_faults() const;
     std::uint64_t n() const;  // rays of `kinds`
-    // Returns the rate over the cases, each counted as one, and so its kinds of rays, however thoroughly each was
-    // asked.
+    // Return one rate over all cases, and its 95 % interval. Each case counts as one, and so do its kinds of rays,
+    // however thoroughly each was asked.
     double rate() const;
     Interval rate_95() const;
 };

@@ -25,8 +25,8 @@ struct Replay {
     std::string device, driver, twinray;  // of the answer
 };
 
-// Writes JSON with floats as hexadecimal words, so that none is rounded. Throws Error naming the file and what is
-// wrong.
+// Write and read JSON with floats as hexadecimal words, so that none is rounded. Throw Error naming the file and what
+// is wrong with it.
 void write(const std::filesystem::path& file, const Replay& replay);
 Replay read(const std::filesystem::path& file);
 

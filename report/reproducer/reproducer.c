@@ -3,10 +3,10 @@
 //
 //     cc -std=c99 reproducer.c -lvulkan -o reproducer && ./reproducer [DEVICE [query|pipeline]]
 //
-// DEVICE is its number among vkEnumeratePhysicalDevices; the default is the first that can trace. The ray is traced by
-// a ray query in a compute shader or by a ray tracing pipeline, as it was when the fault was found unless the second
-// argument says otherwise. Prints the answer and RIGHT (exit status 0) or WRONG (1), or exits with 2 if it cannot run
-// here.
+// DEVICE is a device's number in the list of vkEnumeratePhysicalDevices; the default is the first that can trace. The ray
+// is traced by a ray query in a compute shader or by a ray tracing pipeline, as it was when the fault was found unless
+// the second argument says otherwise. Prints the answer and RIGHT (exit status 0) or WRONG (1), or exits with 2 if it
+// cannot run here.
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>

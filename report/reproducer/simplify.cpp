@@ -115,7 +115,7 @@ std::vector<Edge> separate_edges(const FaultCase& fault) {
     return separate;
 }
 
-// For this many triangles or more, which may all close around one vertex, removing or joining one by one takes long.
+// For more triangles than this, which may all close around one vertex, removing or joining one by one takes long.
 constexpr std::size_t many = 24;
 
 // Joins many edges at once: all of them, half of them, a quarter.

@@ -17,7 +17,7 @@ namespace {
 constexpr std::array by_hits = {PairEstimator::hits};
 constexpr double most_sigma = 5;
 
-// Returns a certain 0 if no ray met the target: a fault if it is wrong.
+// Returns the factor of a target. If no ray met it, this is a certain 0: a fault if it is wrong.
 ViewFactor factor_of(const ViewFactorRow& row, uint target) {
     for (const ViewFactor& factor : row.factors)
         if (factor.target == target) return factor;

@@ -33,7 +33,7 @@ void spoil_component(Ray& ray, std::size_t i) {
     (i % 6 < 3 ? ray.origin : ray.direction)[static_cast<int>(i % 3)] = bad[i / 6 % 3];
 }
 
-// Traces NaN, infinite and zero rays alone, in turns with as many normal ones: they must not stall a device.
+// Times NaN, infinite and zero rays alone, against as many normal ones: they must not stall a device.
 void time_of_bad_rays(CaseRun& run) {
     constexpr double limit = 2.5;
     const Mesh sphere = make_icosphere(5);

@@ -160,8 +160,8 @@ class FailingRuns {
 
 }  // namespace
 
-// Sessions take time to compile their kernels. Whole ones fail only in the full suite; with the least effort, one
-// device is lost, the last one.
+// Sessions take time to compile their kernels. Whole ones fail only in the full suite. Outside it, a device is lost
+// only once, that of the last configuration.
 void failing_calls(CaseRun& run) {
     const std::vector<Configuration> configurations = run.one_configuration_each();
     for (const Configuration& configuration : configurations) {

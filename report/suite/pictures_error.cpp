@@ -106,7 +106,8 @@ Reference reference_without(std::span<const ExposureSeries> of_configuration, st
     return reference;
 }
 
-// Returns the mean over pixels of the variance of luminance between seeds.
+// Returns for each seed the mean over pixels of the squared deviation of luminance, times n / (n - 1) for n seeds. The
+// mean of these is the variance between seeds.
 std::vector<double> squared_deviations(std::span<const std::vector<Exposure>> seeds, std::size_t at) {
     const std::size_t pixels = seeds[0][at].picture.rgb.size();
     std::vector<double> mean(pixels), result;

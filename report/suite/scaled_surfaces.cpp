@@ -15,7 +15,7 @@ namespace {
 
 constexpr double most_angle = 1e-5, most_length_error = 1e-6;
 
-// Returns the matrix by which normals go through a transform.
+// A function that returns the matrix by which normals go through a transform.
 using NormalRule = glm::dmat3 (*)(const Transform&);
 
 double angle_between(const dvec3& a, const dvec3& b) {

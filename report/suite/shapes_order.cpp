@@ -58,7 +58,8 @@ void expect_lowest(CaseRun& run, const char* what, const Mesh& mesh, std::size_t
     }
 }
 
-// Counts answers that name a farther triangle than the nearest. A fault is one whose t would differ as a float.
+// Counts answers that name a farther triangle than the nearest. A fault is one whose t the level can tell apart from
+// the nearest one's.
 void expect_order(CaseRun& run, const Measured& measured, const Mesh& mesh, std::span<const Ray> rays, Values params) {
     const World world = world_of(mesh);
     params.insert_or_assign("measured", "order");

@@ -26,7 +26,7 @@ struct Packing {
     IndexFormat indices = IndexFormat::uint32;
 };
 
-// Returns the nearest float16 of a number in [-1, 1] that is a multiple of 2^-7: exact in all formats but snorm16.
+// Return the nearest number of a format to one in [-1, 1] that is a multiple of 2^-7: exact in all but snorm16.
 std::uint16_t half_bits(float value) {
     if (value == 0) return 0;
     const int exponent = std::ilogb(value);

@@ -44,8 +44,8 @@ class Found {
 
 using Work = std::function<void(Context&, Found&)>;
 
-// Expects equal results from as many submissions as the work takes without a limit, and from at least `more` with a
-// limit that no work can keep.
+// Expects equal results without a limit on submissions, and with one that no work can keep, which takes at least
+// `more` submissions more.
 void expect_equal_in_parts(const Work& work, std::uint64_t more, ContextDesc desc = {}) {
     Found found[2];
     std::uint64_t submissions[2] = {};

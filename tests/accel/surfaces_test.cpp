@@ -134,7 +134,7 @@ TEST_P(Surfaces, AreWhatFloat64MakesOfTheHit) {
     EXPECT_LE(widest, 1);
 }
 
-// Returns the first word whose bits differ, or -1.
+// Returns the index of the first word whose bits differ, or -1.
 int differing_word(const Surface& a, const Surface& b) {
     std::array<uint, sizeof(Surface) / 4> words[2];
     std::memcpy(&words[0], &a, sizeof(Surface));

@@ -135,7 +135,7 @@ TEST_P(IlluminationRulesTest, WhatIsLitWhollyIsNotLitMore) {
                                   make_quad(vec3(4, 0, 1), vec3(1, 0, -1), vec3(0, 1, 0))});
     fill(scene);
     const Faces faces(context(), scene);
-    uint more = 0;  // faces that more rays meet than their share
+    uint more = 0;  // groups that more rays meet than their share
     for (const uint side : {7u, 30u, 50u})
         for (const GridPoints points : {GridPoints::random, GridPoints::centers})
             for (const FaceGrouping by : {FaceGrouping::face, FaceGrouping::mesh}) {

@@ -48,7 +48,7 @@ inline Mesh make_disc(int n, float radius) {
     return mesh;
 }
 
-// Returns 0 if there is no entry.
+// Returns an entry of value 0 if there is none.
 inline const ViewFactor& entry_of(const ViewFactorRow& row, uint target) {
     static const ViewFactor none;
     for (const ViewFactor& entry : row.factors)

@@ -102,8 +102,8 @@ for kind in KINDS[1:]:
     assert all(a["features"] & b["features"] == a["features"] for a, b in zip(steps, steps[1:]))
     assert len({r["hits_hash"] for r in steps}) == 1 and steps[0]["hits_hash"] in said
     assert all(r["ns_per_ray"] > 0 and r["rounds"] == 5 for r in steps) and steps[0]["of_needed"] == 1
-# Steps also tell the memory that is kept: the least first, vertices only where they move or levels are refined, no
-# layout in less.
+# Configurations tell the memory that is kept: the least first, vertices only where they move or levels are refined,
+# no layout in less.
 kept = {r["configuration"]: r for r in records if "configuration" in r}
 assert list(kept)[0] == "needed" and "bytes/triangle" in said and all(r["build_ms"] > 0 for r in kept.values())
 assert kept["needed"]["total_bytes_per_triangle"] <= 1.01 * min(r["total_bytes_per_triangle"] for r in kept.values())

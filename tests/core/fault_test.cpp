@@ -142,7 +142,7 @@ TEST(HungDevice, IsLostAndNotWaitedForAgain) {
         EXPECT_THROW(context->wait_for_gpu(), DeviceLost);
         EXPECT_EQ(driver.calls(), calls);
         driver.heal();
-        // Otherwise the device would still be at work when it goes.
+        // Otherwise the context would go while the device is still at work.
         const auto reached = [&] {
             std::uint64_t value = 0;
             context->state().vk().vkGetSemaphoreCounterValue(context->device(), point.semaphore, &value);

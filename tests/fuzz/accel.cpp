@@ -249,7 +249,7 @@ class History {
         model_.sync();
     }
 
-    // Calls that fail while edits wait for a sync, and settings.
+    // Calls that fail while edits wait for a sync, or before the first one, and settings.
     void look() {
         expect(
             model_.pending == Pending::nothing, "view",

@@ -71,7 +71,7 @@ double mean_of_samples(const Bsdf& bsdf, vec3 wo, const Value& value, uint count
     return sum / count;
 }
 
-// Returns the part of uniform light that the BSDF returns, to wo's side and in total.
+// Returns the radiance that the BSDF sends along wo if a radiance of 1 arrives from everywhere.
 inline double albedo_of(const Bsdf& bsdf, vec3 wo) {
     return mean_of_samples(
         bsdf, wo, [](const BsdfSample& s) { return s.weight.x; }, samples / 4);

@@ -10,7 +10,7 @@
 namespace twinray::path_tracer {
 namespace {
 
-// Returns, by quadrature, the single-scattering albedo of GGX with Smith's height-correlated shadowing, F = 1.
+// The albedos are single-scattering ones of GGX with Smith's height-correlated shadowing, F = 1, by quadrature.
 TEST(Bsdf, TheAlbedoOfAWhiteMirrorIsThatOfSingleScatteringGgx) {
     const struct {
         float alpha, cosine;

@@ -15,8 +15,8 @@ Keyframes keyframes(uint width, std::vector<float> values) {
     return {Interpolation::linear, false, width, {0, 1}, std::move(values)};
 }
 
-// Makes a floor, a lamp that an animation widens by a morph target, and a box that carries a light. All numbers are
-// short, so that float32 and float64 agree on where things are.
+// Makes a floor, a lamp that an animation widens by a morph target, and a box and a light that it moves. All numbers
+// are short, so that float32 and float64 agree on where things are.
 Scene moving_scene() {
     Scene scene;
     add(scene, make_quad({-4, 0, -4}, {0, 0, 8}, {8, 0, 0}), lambert(0.5f));

@@ -30,7 +30,7 @@ def stop_when(checkpoint, signal_number, *arguments):
     return process.returncode, shown
 
 
-# One run gives the same as three shards, merged in another order; so does the film.
+# One run and three shards, merged in another order, give the same picture and the same film.
 shown = run(*box, "--spp", "8", "-o", "whole.png", "--keep-film", "--json", "all.jsonl", "--stats")
 assert "24 x 24, 8 spp, error" in shown and "swtlas_trace closest" in shown and "device memory" in shown, shown
 for shard in range(3):
@@ -44,7 +44,7 @@ run("merge", "2.film", "0.film", "-o", "part.png.film")
 assert "(5 resumed)" in run(*box, "--spp", "8", "-o", "part.png", "--resume")
 assert same("whole.png", "part.png") and not (here / "part.png.film").exists()
 
-# A run that is killed and resumed gives the same picture, bit for bit, also with adaptive sampling.
+# A run that is killed in the middle and resumed gives the same picture, bit for bit, also with adaptive sampling.
 for name, rule in [("plain", ["--spp", "120"]), ("adaptive", ["--target-error", "0.2"])]:
     job = [*box, *rule, "--checkpoint", "0", "-o"]
     status, shown = stop_when(f"{name}.exr.film", signal.SIGKILL, *job, f"{name}.exr")

@@ -54,7 +54,7 @@ assert "; with its noise: MSE" in shown and shown.split("with its noise: ")[1].s
 assert record["relative_mse"] < 0.2 * record["noisy_relative_mse"], record
 assert b"albedo.R\0" in (here / "smooth.exr").read_bytes()[:1000]
 assert command.same("smooth.exr.film", "noisy.exr.film")
-# --resume denoises a film that was rendered without.
+# --resume denoises a film that was rendered without --denoise.
 (here / "noisy.exr.film").rename(here / "later.exr.film")
 shown = run(*box, "--resume", "--spp", "4", "-o", "later.exr", "--denoise", "--mse-reference-image", "smooth.exr")
 assert "MSE 0, relMSE 0; with its noise" in shown, shown

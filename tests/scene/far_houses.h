@@ -51,7 +51,7 @@ inline void expect_far_houses(const Scene& scene, double tolerance) {
         }
 }
 
-// Returns the rounding error of a model of this size at the origin.
+// The rounding error of a model of this size at the origin.
 inline constexpr double rounding = 2e-6;
 
 // Writes ASCII, to the millimetre. `type` is that of coordinates, as the header names it.

@@ -109,8 +109,8 @@ TEST(HdrImage, ExposuresAndColourCorrectionsAreDividedOut) {
         EXPECT_EQ(pixel(nothing), vec3(one)) << nothing;
 }
 
-// Stores a row of 8 pixels by runs: each channel is one that repeats a byte 8 times, or 8 bytes. A header may end with
-// a NUL. Only bytes of the last run are missing, which stb_image takes for zeros.
+// Stores a row of 8 pixels by runs: each channel has one that repeats a byte 8 times, or one of 8 bytes. A header may
+// end with a NUL. Only bytes of the last run are missing, which stb_image takes for zeros.
 TEST(HdrImage, RowsOfRunsAreReadWholeOrRefused) {
     const TempDir dir;
     using namespace std::string_literals;

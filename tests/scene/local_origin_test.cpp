@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Files with coordinates that float32 cannot hold: the origins that are chosen for .ply and glTF files.
+// Files with coordinates that float32 cannot hold: the origins that are chosen for them, and .ply and glTF files.
 #include "engine/scene/local_origin.h"
 
 #include "engine/scene/glb.h"

@@ -50,7 +50,7 @@ struct SoaTestArgs {
     TestQueue from;
     TestQueue to;
     uint invocations;
-    uint shift;  // item i goes to item i + shift
+    uint shift;  // item i + shift goes to item i
 };
 
 const float FALLBACK = -1000.0f;

@@ -63,7 +63,7 @@ vec4 filtered(const Image& image, const TextureOptions& options, vec2 uv) {
     return mix(mix(texel(0, 0), texel(1, 0), weight.x), mix(texel(0, 1), texel(1, 1), weight.x), weight.y);
 }
 
-// Returns whether the point is nearer than the 8 bits in which samplers tell texels apart.
+// Returns whether the point is nearer to a texel's edge than the 8 bits in which samplers tell texels apart.
 bool is_near_an_edge(const Image& image, vec2 uv) {
     const vec2 at = uv * vec2(image.width, image.height), off = abs(at - round(at));
     return std::min(off.x, off.y) < 0.01f;

@@ -30,8 +30,8 @@ class Random {
         for (;;)
             if (const dvec3 v = in_box(); dot(v, v) < 1 && dot(v, v) > 0.01) return normalize(v);
     }
-    // Returns a rotation, half of the time by 1 to 10^-6 only, where an inverse has small entries that are differences
-    // of large ones.
+    // Returns a rotation, half of the time by an angle of 1 to 10^-6 only, where an inverse has small entries that are
+    // differences of large ones.
     dmat3 rotation() {
         const dvec3 axis = direction();
         const double angle = below(2) ? 3.14 * signed_unit() : std::pow(10, -6 * unit());

@@ -33,7 +33,7 @@ bool has_validation();
 // failed if TWINRAY_REQUIRE names vulkan. Callers return at once on null.
 std::unique_ptr<Context> make_context(ContextDesc desc = {});
 
-// Returns a buffer on the device with these values, as a span can hold them.
+// Returns a buffer on the device with these values, which a span must be able to hold.
 template <class Values>
 Buffer device_copy(Context& context, const Values& values) {
     const std::span<const std::byte> bytes = std::as_bytes(std::span(values));

@@ -25,7 +25,7 @@ class SwBuild : public SwBuildTest {
         expect_reference(tree, mesh, quality());
         return tree;
     }
-    // Returns the inner nodes on the longest way down.
+    // Returns how many inner nodes are on the longest way down.
     uint checked_depth(const Mesh& mesh) {
         const BuiltTree tree = checked_tree(mesh);
         const std::vector<LeafBox> boxes = leaf_boxes(tree, mesh);

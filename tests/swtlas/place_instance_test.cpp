@@ -108,7 +108,7 @@ TEST(PlaceInstance, MapsKnowWhetherTheyKeepAxes) {
     EXPECT_FALSE(keeps({{vec4(1, 0, 0, 0), vec4(0, 1, 0, 0), vec4(-1, 0, 1, 0)}}));
 }
 
-// Products of the boxes at both ends are infinite with either sign, but those of the whole are not.
+// The boxes at both ends add products that are infinite with one sign and the other; the whole box does not.
 TEST(PlaceInstance, MapsAtTheEndOfTheRangeLoseNothing) {
     Mesh mesh = make_soup(300, 3, 1e-6f);
     for (vec3& point : mesh.positions) {

@@ -35,16 +35,16 @@ class Reference {
     explicit Reference(const ReferenceScene& reference) : reference_(reference) {}
 
     std::optional<ClosestHit> closest_hit(const Ray& ray) const;
-    // Returns the closest hit as the float64 reference does, with t, u and v rounded once.
+    // Returns the exact closest hit in the form of the float64 reference, with t, u and v rounded once.
     ReferenceHit rounded_hit(const Ray& ray) const;
-    // Finds the same by testing every triangle.
+    // Returns the same as closest_hit(), by testing every triangle.
     std::optional<ClosestHit> closest_hit_brute_force(const Ray& ray) const;
 
   private:
     const ReferenceScene& reference_;
 };
 
-// Converts a hit to that of the float64 reference: t, u and v are rounded once.
+// Converts a hit to the form of the float64 reference: t, u and v are rounded once.
 ReferenceHit to_float64(const std::optional<ClosestHit>& hit, const ReferenceScene& reference);
 
 }  // namespace twinray::exact

@@ -32,8 +32,8 @@ class ClosedMesh {
 
     const Geometry64& geometry() const { return geometry_; }
 
-    // Returns how often the ray crosses the mesh at t > 0. It is exact up to float64; a ray that passes an edge exactly
-    // counts twice, so choose a direction that does not.
+    // Returns how often the ray crosses the mesh at t > 0. It is exact up to float64; a crossing exactly at an edge
+    // counts twice, so choose a direction without one.
     std::size_t crossings(const dvec3& origin, const dvec3& direction) const;
     // Returns whether a triangle comes closer than `distance` to the point, all in units of the mesh.
     bool comes_within(double distance, const dvec3& point) const;

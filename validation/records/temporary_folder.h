@@ -9,7 +9,7 @@
 
 namespace twinray {
 
-// Exists while this lives. Throws Error if there is no place for a folder.
+// A folder that exists while this object lives. Throws Error if there is no place for one.
 class TemporaryFolder {
   public:
     TemporaryFolder() = default;

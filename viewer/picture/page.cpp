@@ -16,7 +16,7 @@ std::size_t tick_count(int height) { return static_cast<std::size_t>(std::max(he
 int title_height(const Legend& legend) { return legend.title.empty() ? 0 : line + gap; }
 int entries_height(const Legend& legend) { return static_cast<int>(legend.entries.size()) * line; }
 
-// Returns the height of a legend beside a picture of this height.
+// These return the heights of a legend's colour bar and of the whole legend, beside a picture of this height.
 int bar_height(const Legend& legend, int height) {
     return std::clamp(height - title_height(legend) - 2 * gap - entries_height(legend), shortest_bar, longest_bar);
 }

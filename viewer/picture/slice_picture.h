@@ -23,7 +23,7 @@ struct Slice {
     uint columns = 0, rows = 0;
     std::vector<dvec3> points;
 };
-// Cuts through the box of this size from `lo`. Throws Error if it has no extent across the axis.
+// Cuts through the box of this size from `lo`. Throws Error if it has no extent perpendicular to the axis.
 Slice slice_of(const SliceDesc& desc, const dvec3& lo, const dvec3& size);
 
 // Draws a value for each point, 20 lines of equal value over the scale, and a black one where values change their sign.

@@ -35,7 +35,7 @@ _SIDE_OF_BLOCK = 256  # in cells
 _SIDE_OF_CURVED_BLOCK = 64  # each has one vertical
 _FINE = 13  # heights are whole numbers of 2^-13 of a cell, so that tiles round them alike,
 _WHOLE = 22  # or of larger parts, so that float32 holds the whole relief
-_LIFT = 2.0**-10  # part of a cell by which sensors are above the ground, so that rays uphill meet the slope ahead
+_LIFT = 2.0**-10  # of a cell: how far up sensors on the ground begin, so that rays uphill meet the slope ahead
 _MANY_CELLS = 1 << 24  # in a tile with its halo
 _log = logging.getLogger("twinray")
 

@@ -61,7 +61,7 @@ std::vector<Ray> rays() { return random_rays({vec3(-1), vec3(1)}, 500, 1); }
 
 const std::function<void(CaseRun&)> sound = [](CaseRun& run) { run.measure(world_of(make_icosphere(3)), rays()); };
 
-// If the same computation is right with SwTlas, a fault is the driver's.
+// If the same computation on the answers of both is right with SwTlas, a fault is the driver's.
 TEST_F(SuiteRun, WhatIsRightBySoftwareIsTheDriversFault) {
     if (!can_run()) return;
     const auto computed = [](CaseRun& run) {

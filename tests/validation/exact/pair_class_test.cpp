@@ -52,7 +52,7 @@ struct Span {
     }
 };
 
-// A triangle as a convex set: the line or plane that it lies in, and its borders there.
+// A triangle as a convex set: the point, line or plane that it lies in, and its borders there.
 struct Shape {
     Points points;
     std::vector<HalfSpace> equalities;  // each with its opposite
