@@ -66,6 +66,11 @@ MOST_HEADERS = {  # of this project behind a header, directly or not; lower them
 MOST_PUBLIC = {"headers": 15, "lines": 3740}  # of include/twinray, its GLSL apart
 MOST_LINES = {"include/twinray/abstract_accel.h": 271}
 MOST_LONELY = 15  # private headers that one file reads, beside their own .cpp; lower it whenever it falls
+# Where meshes of the host go to the device: the store, the builders' scratch, a loaded tree, the path tracer's vertices.
+UPLOADING = {"engine/accel/mesh_store.cpp", "swtlas/sw_backend.cpp", "hwtlas/blas.cpp", "swtlas/save.cpp",
+             "renderer/scene_upload.cpp"}
+OF_MESHES = ("engine/accel/", "engine/analysis/", "engine/collide/", "engine/points/", "swtlas/", "hwtlas/", "renderer/")
+UPLOAD = re.compile(r"\b(?:upload|stage)\(.*\b(?:positions|vertex_records)\b")
 GLSL = re.compile(r"\.(glsl|comp|rgen|rmiss|rchit|rahit|rint|rcall|vert|frag)$")  # outside shaders/, sees them all
 SOURCE = re.compile(r"\.(h|hpp|c|cc|cpp|inl)$|" + GLSL.pattern)
 GENERATED = re.compile(  # by the build, or as installed
@@ -112,9 +117,9 @@ def includes_of(root, source):
         return [(number, m[1], m[2]) for number, line in enumerate(lines, 1) if (m := INCLUDE.match(line))]
 
 
-def lines_of_systems(root, source):
+def lines_with(pattern, root, source):
     with open(os.path.join(root, source), encoding="utf-8") as lines:
-        return [number for number, line in enumerate(lines, 1) if SYSTEM.search(line)]
+        return [number for number, line in enumerate(lines, 1) if pattern.search(line)]
 
 
 def headers_behind(root, header):
@@ -151,7 +156,10 @@ for top in sorted({name.split("/")[0] for name in SEES}):
             found += [f'{source}:{n}: "{target}": {reason}' for n, target, reason in reasons if reason]
             if not source.startswith(OF_SYSTEMS):
                 found += [f"{source}:{n}: code of one system belongs into engine/core/platform/"
-                          for n in lines_of_systems(root, source)]
+                          for n in lines_with(SYSTEM, root, source)]
+            if source.startswith(OF_MESHES) and source not in UPLOADING:
+                found += [f"{source}:{n}: meshes go to the device by engine/accel/mesh_store.h"
+                          for n in lines_with(UPLOAD, root, source)]
             for file in filter(None, (resolved(root, source, target) for _, _, target in includes_of(root, source))):
                 readers[file].add(source)
                 seen_by_room.add((layer(source), layer(file)))
