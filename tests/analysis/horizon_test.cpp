@@ -2,6 +2,7 @@
 #include <twinray/analysis.h>
 
 #include "tests/support/device.h"
+#include "tests/support/errors.h"
 
 namespace twinray::test {
 namespace {
