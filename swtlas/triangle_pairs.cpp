@@ -240,8 +240,9 @@ void choose_leaves(Geometry& geometry, bool has_vertices) {
 }
 
 void name_vertices(std::span<CompressedRecord> records, std::span<const uvec3> triangles) {
+    if (triangles.empty()) return;
     BuildTree source{};
-    source.indices = Uints::to(&triangles.data()->x);
+    source.indices = Uints::to(&triangles.front().x);
     for (CompressedRecord& record : records)
         if (is_leaf(record) && is_pair(record)) record = encode_pair(source, leaf_of(record), record.a.x >> 30u);
 }

@@ -60,7 +60,7 @@ struct LeafTriangle {
 std::vector<LeafTriangle> leaves_of(const BuiltTree& tree) {
     std::vector<LeafTriangle> leaves;
     for (uint i = 0; i < tree.triangles.size(); ++i) leaves.push_back({tree.triangles[i], LEAF_BIT | i});
-    const Floats vertices = Floats::to(&tree.vertices.data()->x);
+    const Floats vertices = tree.vertices.empty() ? Floats{} : Floats::to(&tree.vertices.front().x);
     for (uint i = 0; i < tree.records.size(); ++i) {
         const CompressedRecord& record = tree.records[i];
         if (!is_leaf(record)) continue;
