@@ -37,7 +37,7 @@ struct Measured {
 
 Measured measure(Context& context, LineUp& line_up, const BenchScene& scene, const RunOptions& options);
 
-// What to measure, and where the results go.
+// The runs to measure, and where their results go.
 struct Session {
     ContextDesc device;
     std::string version;  // of twinray, for records

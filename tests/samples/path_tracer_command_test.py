@@ -138,10 +138,12 @@ expect_refusals([
         (["-o", "a.png", "--aovs"], 1, "must end in .exr"),
         (["-o", "a.png", "--cropwindow", "0.5", "0.5", "0", "1"], 1, "no pixel"),
         (["-o", "a.png", "--look-from", "0", "1", "0", "--look-at", "0", "0", "0"], 1, "which is up"),
-        (["-o", "a.png", "--mse-reference-image", "plain.exr", "--width", "30"], 1, "24 x 24 pixels, but the picture has 30 x 24")], *box)
+        (["-o", "a.png", "--mse-reference-image", "plain.exr", "--width", "30"], 1,
+         "24 x 24 pixels, but the picture has 30 x 24")], *box)
 (here / "bad.film").write_bytes((here / "0.film").read_bytes()[:-5])
 expect_refusals([([*films, "-o", "a.png"], 1, words) for films, words in [
-    (["bad.film"], "cut short or damaged"), (["whole.png"], "not a film"), (["part.film", "0.film"], "part is")]], "merge")
+    (["bad.film"], "cut short or damaged"), (["whole.png"], "not a film"),
+    (["part.film", "0.film"], "part is")]], "merge")
 
 # Far away: the picture is that of the same tetrahedron about 0, seen from the same place.
 def tetrahedron(name, at):
@@ -170,7 +172,8 @@ corners = base64.b64encode(struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0)).decode
                    "extensions": {"KHR_materials_transmission": {"transmissionFactor": 1}}}],
     "buffers": [{"uri": "data:application/octet-stream;base64," + corners, "byteLength": 36}],
     "bufferViews": [{"buffer": 0, "byteLength": 36}],
-    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}]}))
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0],
+                   "max": [1, 1, 0]}]}))
 small = ["stopped.gltf", "--height", "8", "--spp", "1", "--accel", "sw", "-o", "stopped.png"]
 assert "light of 'bulb' cannot pass material 'frosted'" in run(*small)
 assert "cannot pass" in run(*small, "--strict", status=1)

@@ -13,7 +13,8 @@ program, here = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(tempfile.mkdte
 def run(*arguments, status=0, env=None, of=program):
     """What it prints, with these variables beside those of the environment; it must end with this status, and without
     a message of the validation layer."""
-    done = subprocess.run([of, *map(str, arguments)], capture_output=True, text=True, cwd=here, env=os.environ | (env or {}))
+    done = subprocess.run([of, *map(str, arguments)], capture_output=True, text=True, cwd=here,
+                          env=os.environ | (env or {}))
     assert done.returncode == status, f"{arguments}: status {done.returncode}\n{done.stdout}{done.stderr}"
     assert "VUID" not in done.stderr and "SYNC-HAZARD" not in done.stderr, done.stderr
     return done.stdout + done.stderr
