@@ -35,7 +35,14 @@ class Sum {
 std::string geometry_sum(const Scene& scene) {
     Sum sum;
     for (const Mesh& mesh : scene.meshes)
-        sum.add(vertex_records(mesh)).add(mesh.second_uvs).add(mesh.colors).add(triangle_records(mesh));
+        sum.add(mesh.positions)
+            .add(unit_normals(mesh))
+            .add(unit_tangents(mesh))
+            .add(mesh.uvs)
+            .add(mesh.second_uvs)
+            .add(mesh.colors)
+            .add(mesh.triangles)
+            .add(mesh.materials);
     std::vector<SurfaceInstance> instances;
     std::vector<uint> meshes, overrides;
     for (const Instance& instance : scene.instances) {

@@ -7,8 +7,6 @@
 
 #include <twinray/scene.h>
 
-#include "path_tracer_move_vertices.spv.h"
-
 namespace twinray::path_tracer {
 namespace {
 
@@ -50,10 +48,29 @@ MovingScene::MovingScene(Context& context, Scene& scene, DeviceScene& device_sce
       handles_(handles_by_mesh(scene, accel.handles())),
       deformed_(deformed_meshes(*scene.rig)),
       deformer_(context, scene.rig),
-      move_vertices_(context, {.name = "path_tracer_move_vertices", .spirv = path_tracer_move_vertices_spirv}),
       transforms_(array_of<Transform>(context, "transforms", scene.instances.size())) {
     for (std::size_t i = 0; i < deformed_.size(); ++i)
         if (emits(scene, deformed_[i])) emitting_.push_back(i);
+    if (deformed_.empty()) return;
+    share_vertices();
+    move_records();
+    move_vertices(rest_pose(*scene.rig));
+    accel.sync();
+}
+
+void MovingScene::share_vertices() {
+    for (std::size_t i = 0; i < deformed_.size(); ++i) {
+        const Deformer::Output moved = deformer_.output(i);
+        const Mesh& mesh = scene_.meshes[deformed_[i]];
+        device_scene_.use_vertices(deformed_[i], moved);
+        accel_.update(handles_[deformed_[i]], DeviceMesh{.name = mesh.name,
+                                                         .positions = moved.positions.address(),
+                                                         .vertex_count = moved.vertex_count,
+                                                         .indices = device_scene_.indices(deformed_[i]).address,
+                                                         .triangle_count = mesh.triangles.size(),
+                                                         .bounds = bounds_of(mesh),
+                                                         .in_place = true});
+    }
 }
 
 MotionTimes MovingScene::move_to(const Pose& pose) {
@@ -63,8 +80,7 @@ MotionTimes MovingScene::move_to(const Pose& pose) {
     const std::vector<Instance> before = scene_.instances;
     pose_scene(scene_, pose);
     move_emitters(pose);
-    device_scene_.move(
-        scene_, collect_lights(scene_, device_scene_.features().light_tree ? LightChoice::tree : LightChoice::table));
+    move_records();
     context_.wait_for_gpu();
     times.host = stopwatch.lap();
     move_vertices(pose);
@@ -78,6 +94,11 @@ MotionTimes MovingScene::move_to(const Pose& pose) {
     return times;
 }
 
+void MovingScene::move_records() {
+    const LightChoice choice = device_scene_.features().light_tree ? LightChoice::tree : LightChoice::table;
+    device_scene_.move(scene_, collect_lights(scene_, choice));
+}
+
 void MovingScene::move_emitters(const Pose& pose) {
     for (const std::size_t i : emitting_)
         scene_.meshes[deformed_[i]].positions = deformed(*scene_.rig, i, pose).positions;
@@ -87,25 +108,11 @@ void MovingScene::move_vertices(const Pose& pose) {
     if (deformed_.empty()) return;
     Commands commands(context_, "path tracer move");
     deformer_.record(commands, pose);
-    {
-        const auto pass = commands.pass(move_vertices_.name());
-        for (std::size_t i = 0; i < deformed_.size(); ++i) {
-            const Deformer::Output moved = deformer_.output(i);
-            move_vertices_.dispatch(
-                commands,
-                {device_scene_.vertices(deformed_[i]), moved.positions.ref<float>(), moved.normals.ref<float>(),
-                 moved.tangents.ref<float>(), static_cast<uint>(moved.vertex_count)},
-                moved.vertex_count);
-        }
-    }
     commands.submit();
 }
 
 bool MovingScene::edit_accel(const std::vector<Instance>& before) {
-    for (std::size_t i = 0; i < deformed_.size(); ++i) {
-        const Deformer::Output moved = deformer_.output(i);
-        accel_.update_vertices(handles_[deformed_[i]], moved.positions.ref<float>(), moved.vertex_count);
-    }
+    for (const uint mesh : deformed_) accel_.mark_vertices_dirty(handles_[mesh]);
     // The transforms come from device memory, where one may be singular: its instance is then not seen.
     std::vector<Transform> transforms;
     for (const Instance& instance : scene_.instances) transforms.push_back(instance.transform);

@@ -20,17 +20,22 @@ struct MotionTimes {
     double refit_device = 0;  // the device's share of it
 };
 
-// Brings poses of a scene's rig to the device: vertices by a Deformer, instances by their transforms, the accelerator
-// by a refit, and lights with the densities of their positions. Views stay valid all the while.
+// Brings poses of a scene's rig to the device: vertices by a Deformer, whose memory the path tracer and the accelerator
+// read in place, instances by their transforms, the accelerator by a refit, and lights with the densities of their
+// positions. Poses leave views valid.
 class MovingScene {
   public:
-    // The scene has a rig, and the accelerator holds the scene as from push_scene. All three must outlive this.
+    // The scene has a rig, its meshes are at rest, and the accelerator holds it as from push_scene; its views end. All
+    // three must outlive this, and need it from then on.
     MovingScene(Context& context, Scene& scene, DeviceScene& device_scene, AbstractAccel& accel);
 
     // Waits until it is done. Also moves the scene's instances, cameras and lights, and those of its meshes that emit.
     MotionTimes move_to(const Pose& pose);
 
   private:
+    // Makes the path tracer and the accelerator read the deformer's memory.
+    void share_vertices();
+    void move_records();
     void move_emitters(const Pose& pose);
     void move_vertices(const Pose& pose);
     // Returns false if nothing moved.
@@ -44,7 +49,6 @@ class MovingScene {
     std::vector<uint> deformed_;         // deformed_meshes() of the rig
     std::vector<std::size_t> emitting_;  // indices into deformed_
     Deformer deformer_;
-    Kernel<MoveVerticesArgs> move_vertices_;
     Buffer transforms_;  // by instance
 };
 

@@ -9,9 +9,9 @@ using samples::fail;
 namespace {
 
 void fill_absent(const Context& context, SceneData& data) {
-    context.fill_absent(data.instances, data.extras, data.materials, data.layered, data.material_kinds,
-                        data.textures.records, data.textures.faults, data.lights.emitters, data.lights.punctual,
-                        data.lights.faults, data.light_keys, data.light_table, data.light_tree, data.environment.pixels,
+    context.fill_absent(data.instances, data.materials, data.layered, data.material_kinds, data.textures.records,
+                        data.textures.faults, data.lights.emitters, data.lights.punctual, data.lights.faults,
+                        data.light_keys, data.light_table, data.light_tree, data.environment.pixels,
                         data.environment.row_sums, data.environment.column_sums);
 }
 
@@ -73,7 +73,6 @@ void DeviceScene::upload_all(Commands& commands, const Scene& scene, const Local
                              const EnvironmentMap* map) {
     TextureList textures;
     upload_meshes(commands, scene);
-    upload_extras(commands, scene);
     record_.instances = upload_instances(commands, scene, lights);
     record_.materials = upload(commands, "materials", material_records(scene, textures));
     if (features_.has_layers())
@@ -114,8 +113,12 @@ std::uint64_t DeviceScene::device_bytes() const {
     std::uint64_t bytes = data_.bytes();
     if (textures_) bytes += textures_->buffer_bytes();
     if (lights_) bytes += lights_->buffer_bytes();
-    for (const auto* buffers : {&buffers_, &moving_})
-        for (const Buffer& buffer : *buffers) bytes += buffer.bytes();
+    const auto add = [&](const std::vector<Buffer>& buffers) {
+        for (const Buffer& buffer : buffers) bytes += buffer.bytes();
+    };
+    add(buffers_);
+    add(moving_);
+    for (const UploadedMesh& mesh : meshes_) add(mesh.movable);
     return bytes;
 }
 
@@ -130,36 +133,49 @@ Ref<T> DeviceScene::upload(Commands& commands, const std::string& name, const st
 }
 
 void DeviceScene::upload_meshes(Commands& commands, const Scene& scene) {
-    for (const Mesh& mesh : scene.meshes)
-        meshes_.push_back({upload(commands, "vertices of '" + mesh.name + "'", vertex_records(mesh)),
-                           upload(commands, "triangles of '" + mesh.name + "'", triangle_records(mesh))});
+    for (const Mesh& mesh : scene.meshes) {
+        UploadedMesh& uploaded = meshes_.emplace_back();
+        SurfaceMesh& arrays = uploaded.arrays;
+        const auto put = [&]<class T>(auto& array, const char* what, const std::vector<T>& values,
+                                      std::vector<Buffer>* kept = nullptr) {
+            if (!values.empty())
+                array.address = upload(commands, text(what, " of '", mesh.name, "'"), values, kept).address;
+        };
+        put(arrays.packed.positions, "positions", mesh.positions, &uploaded.movable);
+        put(arrays.packed.indices, "triangles", mesh.triangles);
+        put(arrays.normals, "normals", unit_normals(mesh), &uploaded.movable);
+        put(arrays.tangents, "tangents", unit_tangents(mesh), &uploaded.movable);
+        put(arrays.uvs, "uvs", mesh.uvs);
+        if (features_.some(PT_HAS_SECOND_UVS)) put(arrays.second_uvs, "second uvs", mesh.second_uvs);
+        if (features_.some(PT_HAS_COLORS)) put(arrays.colors, "colors", mesh.colors);
+        put(arrays.materials, "materials", mesh.materials);
+    }
 }
 
-void DeviceScene::upload_extras(Commands& commands, const Scene& scene) {
-    const bool has_colors = features_.some(PT_HAS_COLORS), has_second_uvs = features_.some(PT_HAS_SECOND_UVS);
-    if (!has_colors && !has_second_uvs) return;
-    std::vector<VertexExtras> of_meshes, records;
-    for (const Mesh& mesh : scene.meshes) {
-        VertexExtras& extras = of_meshes.emplace_back();
-        if (has_colors && !mesh.colors.empty())
-            extras.colors = {upload(commands, "colors of '" + mesh.name + "'", mesh.colors).address};
-        if (has_second_uvs && !mesh.second_uvs.empty())
-            extras.second_uvs = {upload(commands, "second uvs of '" + mesh.name + "'", mesh.second_uvs).address};
-        context_.fill_absent(extras.second_uvs, extras.colors);
-    }
-    for (const Instance& instance : scene.instances) records.push_back(of_meshes[instance.mesh]);
-    record_.extras = upload(commands, "extras of vertices", records);
+void DeviceScene::use_vertices(std::size_t mesh, const Deformer::Output& moved) {
+    auto& [arrays, movable] = meshes_[mesh];
+    std::ranges::move(movable, std::back_inserter(moving_));
+    movable.clear();
+    arrays.packed.positions = moved.positions.ref<float>();
+    arrays.normals = moved.normals.ref<float>();
+    arrays.tangents = {moved.tangents.address()};
 }
 
 Ref<SurfaceInstance> DeviceScene::upload_instances(Commands& commands, const Scene& scene, const LocalLights& lights) {
+    std::vector<SurfaceMesh> meshes;
+    for (const UploadedMesh& mesh : meshes_) {
+        SurfaceMesh& arrays = meshes.emplace_back(mesh.arrays);
+        context_.fill_absent(arrays.packed.positions, arrays.packed.indices, arrays.normals, arrays.uvs,
+                             arrays.tangents, arrays.second_uvs, arrays.colors, arrays.materials);
+    }
+    const Ref<SurfaceMesh> uploaded = upload(commands, "surface meshes", meshes, &moving_);
     std::vector<SurfaceInstance> records;
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         SurfaceInstance record = instance_record(scene.instances[i].transform);
-        record.vertices = meshes_[scene.instances[i].mesh].vertices;
-        record.triangles = meshes_[scene.instances[i].mesh].triangles;
+        record.mesh = {uploaded.address + scene.instances[i].mesh * sizeof(SurfaceMesh)};
         record.emitter_density = upload(commands, "emitter densities", lights.densities[i], &moving_);
         if (features_.light_tree) record.emitter_ways = upload(commands, "ways to emitters", lights.ways[i], &moving_);
-        context_.fill_absent(record.vertices, record.triangles, record.emitter_density, record.emitter_ways);
+        context_.fill_absent(record.emitter_density, record.emitter_ways);
         records.push_back(record);
     }
     return upload(commands, "surface instances", records, &moving_);

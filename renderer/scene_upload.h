@@ -66,8 +66,10 @@ class DeviceScene {
     // Takes over the current positions of the scene's instances and lights. Waits for the device. Throws Error if there
     // are lights now and were none when this was made: the kernels cannot find them.
     void move(const Scene& scene, const LocalLights& lights);
-    // The vertices of a mesh, for kernels that move them.
-    Ref<SurfaceVertex> vertices(std::size_t mesh) const { return meshes_[mesh].vertices; }
+    // Reads a mesh's vertices there from the next move() on, which frees its own. The memory must outlive this.
+    void use_vertices(std::size_t mesh, const Deformer::Output& moved);
+    // Returns the mesh's indices, 3 per triangle.
+    Uints indices(std::size_t mesh) const { return meshes_[mesh].arrays.packed.indices; }
 
     Ref<SceneData> data() const { return data_.ref<SceneData>(); }
     const SceneFeatures& features() const { return features_; }
@@ -79,21 +81,20 @@ class DeviceScene {
     Ref<T> upload(Commands& commands, const std::string& name, const std::vector<T>& values,
                   std::vector<Buffer>* kept = nullptr);
     void upload_meshes(Commands& commands, const Scene& scene);
-    void upload_extras(Commands& commands, const Scene& scene);
     Ref<SurfaceInstance> upload_instances(Commands& commands, const Scene& scene, const LocalLights& lights);
     void upload_lights(Commands& commands, const LocalLights& lights);
     void upload_textures(const Scene& scene, const TextureList& list);
     Environment upload_environment(Commands& commands, const EnvironmentMap& map);
     void upload_all(Commands& commands, const Scene& scene, const LocalLights& lights, const EnvironmentMap* map);
 
-    struct MeshRefs {
-        Ref<SurfaceVertex> vertices;
-        Ref<SurfaceTriangle> triangles;
+    struct UploadedMesh {
+        SurfaceMesh arrays;
+        std::vector<Buffer> movable;  // positions, normals and tangents
     };
     Context& context_;
     SceneFeatures features_;
     std::vector<Buffer> buffers_, moving_;  // the first stay, move() replaces the others
-    std::vector<MeshRefs> meshes_;
+    std::vector<UploadedMesh> meshes_;
     std::optional<LightSet> lights_;        // none: no need for any
     std::optional<TextureStore> textures_;  // none: no material has any
     SceneData record_{};

@@ -35,10 +35,10 @@ constexpr uint LAYERS = ~0u;  // in kernels specialisation constants
 #include "shaders/path_tracer/bsdf.h"
 #include "twinray/glsl/cpp_end.h"
 
-static_assert(sizeof(SurfaceVertex) == 48 && sizeof(SurfaceTriangle) == 16 && sizeof(SurfaceInstance) == 128);
+static_assert(sizeof(SurfaceMesh) == 64 && sizeof(SurfaceInstance) == 120);
 static_assert(sizeof(SurfaceMaterial) == 216 && sizeof(PunctualLight) == 56 && sizeof(LightNode) == 52 &&
-              sizeof(SceneData) == 200);
-static_assert(sizeof(LayeredMaterial) == 332 && sizeof(VertexExtras) == 16 && sizeof(WaveData) == 296);
+              sizeof(SceneData) == 192);
+static_assert(sizeof(LayeredMaterial) == 332 && sizeof(WaveData) == 296);
 static_assert(sizeof(KindQueue) == 16 && sizeof(Disagreement) == 104);
 static_assert(sizeof(FilmPixel) == 72 && sizeof(FirstSurface) == 40);
 }  // namespace twinray::path_tracer

@@ -104,22 +104,18 @@ TextureSlot TextureList::slot_of(const Texture& texture, bool is_srgb) {
     return {{static_cast<uint>(found - textures.begin()) + 1}, texture.uv_set, texture.uv_row0, texture.uv_row1};
 }
 
-std::vector<SurfaceVertex> vertex_records(const Mesh& mesh) {
-    std::vector<SurfaceVertex> records(mesh.positions.size());
-    for (std::size_t i = 0; i < records.size(); ++i) {
-        records[i].position = mesh.positions[i];
-        records[i].normal = mesh.normals.empty() ? vec3(0) : unit_or_zero(dvec3(mesh.normals[i]));
-        records[i].uv = mesh.uvs.empty() ? vec2(0) : mesh.uvs[i];
-        records[i].tangent = mesh.tangents.empty() ? vec4(0) : tangent_record(mesh.tangents[i]);
-    }
-    return records;
+std::vector<vec3> unit_normals(const Mesh& mesh) {
+    std::vector<vec3> units;
+    units.reserve(mesh.normals.size());
+    for (const vec3& normal : mesh.normals) units.push_back(unit_or_zero(dvec3(normal)));
+    return units;
 }
 
-std::vector<SurfaceTriangle> triangle_records(const Mesh& mesh) {
-    std::vector<SurfaceTriangle> records;
-    records.reserve(mesh.triangles.size());
-    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) records.push_back({mesh.triangles[i], mesh.material(i)});
-    return records;
+std::vector<vec4> unit_tangents(const Mesh& mesh) {
+    std::vector<vec4> units;
+    units.reserve(mesh.tangents.size());
+    for (const vec4& tangent : mesh.tangents) units.push_back(tangent_record(tangent));
+    return units;
 }
 
 std::vector<SurfaceMaterial> material_records(const Scene& scene, TextureList& textures) {

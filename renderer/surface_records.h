@@ -25,8 +25,9 @@ struct TextureList {
     TextureSlot slot_of(const Texture& texture, bool is_srgb);
 };
 
-std::vector<SurfaceVertex> vertex_records(const Mesh& mesh);
-std::vector<SurfaceTriangle> triangle_records(const Mesh& mesh);
+// Return unit vectors, 0 for one without a direction; empty if the mesh has none.
+std::vector<vec3> unit_normals(const Mesh& mesh);
+std::vector<vec4> unit_tangents(const Mesh& mesh);
 // Adds the textures of the materials to the list.
 std::vector<SurfaceMaterial> material_records(const Scene& scene, TextureList& textures);
 // Does the same for the layers beyond the plain surface.

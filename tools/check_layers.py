@@ -72,7 +72,7 @@ UPLOADING = {"engine/accel/mesh_store.cpp", "swtlas/sw_backend.cpp", "hwtlas/bla
              "renderer/scene_upload.cpp"}
 OF_MESHES = ("engine/accel/", "engine/analysis/", "engine/collide/", "engine/points/", "swtlas/", "hwtlas/",
              "renderer/")
-UPLOAD = re.compile(r"\b(?:upload|stage)\(.*\b(?:positions|vertex_records)\b")
+UPLOAD = re.compile(r"\b(?:upload|stage|put)\(.*\bpositions\b")
 GLSL = re.compile(r"\.(glsl|comp|rgen|rmiss|rchit|rahit|rint|rcall|vert|frag)$")  # outside shaders/, sees them all
 SOURCE = re.compile(r"\.(h|hpp|c|cc|cpp|inl)$|" + GLSL.pattern)
 GENERATED = re.compile(  # by the build, or as installed

@@ -18,7 +18,6 @@
 #include "engine/analysis/sky_rays.h"
 #include "engine/scene/rig.h"
 #include "renderer/cross_check.h"
-#include "renderer/moving_scene.h"
 #include "renderer/renderer.h"
 #include "renderer/scene_upload.h"
 #include "swtlas/tree.h"
@@ -223,7 +222,6 @@ void make_library_kernels(Context& context) {
 Scene plain_scene() {
     Scene scene = cornell_box_scene();
     for (Material& material : scene.materials) material.transmission = 0;
-    scene.rig = std::make_shared<Rig>();
     return scene;
 }
 
@@ -241,7 +239,6 @@ void make_path_tracer_kernels(Context& context) {
         pt::Renderer renderer(context, on_device, settings);
         renderer.first_surfaces(accel);
         const pt::CrossChecker checker(context, accel, renderer, renderer.film_size());
-        const pt::MovingScene moving(context, scene, on_device, accel);
     }
 }
 

@@ -79,7 +79,7 @@ class FrameRenderer {
           ranks_(ranks),
           session_(make_session(options, ranks)),
           sequence_(make_sequence(options.sequence, session_.scene)),
-          accel_(make_accel(*session_.context, session_.scene, session_.accel, sequence_.animation.has_value())),
+          accel_(make_accel(*session_.context, session_.scene, session_.accel)),
           build_ms_(build_ms(*accel_)) {
         const Scene whole = swept(session_.scene, sequence_);
         center_ = bounds_of(whole).center();

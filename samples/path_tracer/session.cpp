@@ -205,10 +205,9 @@ Session make_session(const Options& options, const Ranks& ranks) {
     return session;
 }
 
-std::unique_ptr<AbstractAccel> make_accel(Context& context, const Scene& scene, const AccelChoice& choice,
-                                          bool is_animated) {
-    // The scene also has the meshes; the accelerator needs them only if vertices move.
-    std::unique_ptr<AbstractAccel> accel = twinray::make_accel(context, choice, {.keeps_meshes = is_animated});
+std::unique_ptr<AbstractAccel> make_accel(Context& context, const Scene& scene, const AccelChoice& choice) {
+    // The scene also has the meshes.
+    std::unique_ptr<AbstractAccel> accel = twinray::make_accel(context, choice, {.keeps_meshes = false});
     push_scene(*accel, scene);
     accel->sync();
     return accel;

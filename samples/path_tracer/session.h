@@ -101,8 +101,7 @@ bool is_framing(const Options& options, const Scene& scene);
 CameraRays rays_of(const Options& options, const Camera& camera, const RenderSettings& settings);
 
 // Returns an accelerator that holds the scene, built.
-std::unique_ptr<AbstractAccel> make_accel(Context& context, const Scene& scene, const AccelChoice& choice,
-                                          bool is_animated = false);
+std::unique_ptr<AbstractAccel> make_accel(Context& context, const Scene& scene, const AccelChoice& choice);
 
 // Returns "compute", "ray query" or "ray tracing pipeline".
 std::string trace_path(const AbstractAccel& accel);

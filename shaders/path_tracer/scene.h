@@ -3,6 +3,7 @@
 #ifndef TWINRAY_PATH_TRACER_SCENE_H
 #define TWINRAY_PATH_TRACER_SCENE_H
 #include "shaders/path_tracer/light_tree.h"
+#include "twinray/glsl/instance.h"
 #include "twinray/glsl/multi_type_set.h"
 #include "twinray/glsl/textures.h"
 #include "twinray/glsl/transform.h"
@@ -34,43 +35,30 @@ const uint STRATEGY_MIS = 0u;    // both of the following, weighted by the power
 const uint STRATEGY_LIGHTS = 1u; // sample lights only
 const uint STRATEGY_BSDF = 2u;   // sample the surface only: punctual lights are never found
 
-// 48 bytes. normal: unit, or 0 for none: the triangle's is used. tangent: unit, or 0 for none: derived from uv.
-struct SurfaceVertex
+// The arrays of a mesh. All but the first two are absent if it has none.
+struct SurfaceMesh
 {
-    vec3 position;
-    vec3 normal;
-    vec2 uv;
-    vec4 tangent;
+    PackedMesh packed;
+    Floats normals;   // 3 per vertex: unit, or 0 for none: the triangle's is used
+    Vec2s uvs;
+    Vec4s tangents;   // unit, or 0 for none: derived from uvs
+    Vec2s second_uvs;
+    Vec4s colors;     // linear
+    Uints materials;  // per triangle; absent: 0
 };
-BUFFER_OF(SurfaceVertex, 16);
-
-struct SurfaceTriangle
-{
-    uvec3 vertices;
-    uint material;
-};
-BUFFER_OF(SurfaceTriangle, 16);
+BUFFER_OF(SurfaceMesh, 8);
 
 // Indexed by Hit::instance_index.
 struct SurfaceInstance
 {
     Rows object_to_world;
     Rows world_to_object;
-    REF(SurfaceVertex) vertices;
-    REF(SurfaceTriangle) triangles;
+    REF(SurfaceMesh) mesh;
     Floats emitter_density; // per triangle: probability of being chosen from its part of the table / world area; absent
                             // if none emits
     Uints emitter_ways;     // per triangle: see chance_of_way; absent without PT_HAS_LIGHT_TREE
 };
 BUFFER_OF(SurfaceInstance, 8);
-
-// Attributes of vertices beyond SurfaceVertex, absent if the mesh has none. Indexed by Hit::instance_index.
-struct VertexExtras
-{
-    Vec2s second_uvs;
-    Vec4s colors; // linear
-};
-BUFFER_OF(VertexExtras, 8);
 
 // A texture and where a material samples it.
 struct TextureSlot
@@ -226,7 +214,6 @@ struct Environment
 struct SceneData
 {
     REF(SurfaceInstance) instances;
-    REF(VertexExtras) extras; // absent: no mesh has any
     REF(SurfaceMaterial) materials;
     REF(LayeredMaterial) layered; // absent: no material has layers
     Uints material_kinds; // of the materials; absent where all are of one
@@ -242,14 +229,4 @@ struct SceneData
     Environment environment;
 };
 BUFFER_OF(SceneData, 8);
-
-// The arguments of the kernel that writes moved vertices into the records of a mesh.
-struct MoveVerticesArgs
-{
-    REF(SurfaceVertex) vertices;
-    Floats positions; // 3 floats a vertex
-    Floats normals;   // 3; absent: the mesh has none
-    Floats tangents;  // 4; absent: the mesh has none
-    uint count;
-};
 #endif

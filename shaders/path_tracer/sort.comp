@@ -10,8 +10,8 @@ layout(push_constant, scalar) uniform Push { WaveArgs args; };
 
 uint kind_of(SceneData scene, Hit hit)
 {
-    SurfaceInstance instance = AT(scene.instances, hit.instance_index);
-    uint of_triangle = AT(instance.triangles, hit.primitive_index).material;
+    SurfaceMesh mesh = AT(AT(scene.instances, hit.instance_index).mesh, 0);
+    uint of_triangle = material_of_triangle(mesh, hit.primitive_index);
     return AT(scene.material_kinds, material_of(hit.custom_index, of_triangle));
 }
 

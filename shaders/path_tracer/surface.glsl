@@ -4,18 +4,6 @@
 #ifndef TWINRAY_PATH_TRACER_SURFACE_GLSL
 #define TWINRAY_PATH_TRACER_SURFACE_GLSL
 
-// The first texture coordinates replace others that a mesh lacks.
-vec2 second_uv_of(VertexExtras extras, uint vertex, vec2 first)
-{
-    return is_absent(extras.second_uvs) ? first : AT(extras.second_uvs, vertex);
-}
-
-vec4 color_of(VertexExtras extras, uint vertex)
-{
-    if (is_absent(extras.colors)) return vec4(1.0);
-    return AT(extras.colors, vertex);
-}
-
 struct TextureCoordinates
 {
     vec2 first;
@@ -35,35 +23,53 @@ struct Surface
     uint material;
 };
 
+// An attribute that the mesh lacks is 0; the colour is 1, and the first texture coordinates replace the second.
+struct SurfaceVertex
+{
+    vec3 position;
+    vec3 normal;
+    vec2 uv;
+    vec4 tangent;
+    vec2 second_uv;
+    vec4 color;
+};
+
 struct TriangleData
 {
     SurfaceVertex vertex[3];
-    vec2 second_uv[3];
-    vec4 color[3];
     uint material;
 };
 
-void load_extras(inout TriangleData data, SceneData scene, uint instance, uvec3 vertices)
+SurfaceVertex load_vertex(SurfaceMesh mesh, uint index)
 {
-    if (!HAS_COLORS && !HAS_SECOND_UVS) return;
-    VertexExtras extras = AT(scene.extras, instance);
-    UNROLL for (uint i = 0u; i < 3u; i++)
-    {
-        if (HAS_SECOND_UVS) data.second_uv[i] = second_uv_of(extras, vertices[i], data.vertex[i].uv);
-        if (HAS_COLORS) data.color[i] = color_of(extras, vertices[i]);
-    }
+    SurfaceVertex vertex;
+    vertex.position = load_position(mesh.packed.positions, index);
+    vertex.normal = vec3(0.0);
+    vertex.uv = vec2(0.0);
+    vertex.tangent = vec4(0.0);
+    vertex.color = vec4(1.0);
+    if (!is_absent(mesh.normals)) vertex.normal = load_position(mesh.normals, index);
+    if (!is_absent(mesh.uvs)) vertex.uv = AT(mesh.uvs, index);
+    if (!is_absent(mesh.tangents)) vertex.tangent = AT(mesh.tangents, index);
+    vertex.second_uv = vertex.uv;
+    if (HAS_SECOND_UVS && !is_absent(mesh.second_uvs)) vertex.second_uv = AT(mesh.second_uvs, index);
+    if (HAS_COLORS && !is_absent(mesh.colors)) vertex.color = AT(mesh.colors, index);
+    return vertex;
 }
 
-TriangleData load_triangle_data(SceneData scene, uint instance_index, uint primitive)
+uint material_of_triangle(SurfaceMesh mesh, uint primitive)
 {
-    SurfaceInstance instance = AT(scene.instances, instance_index);
-    SurfaceTriangle triangle = AT(instance.triangles, primitive);
+    if (is_absent(mesh.materials)) return 0u;
+    return AT(mesh.materials, primitive);
+}
+
+TriangleData load_triangle_data(SceneData scene, uint instance, uint primitive)
+{
+    SurfaceMesh mesh = AT(AT(scene.instances, instance).mesh, 0);
+    uvec3 indices = load_indices(mesh.packed.indices, primitive);
     TriangleData data;
-    data.vertex[0] = AT(instance.vertices, triangle.vertices.x);
-    data.vertex[1] = AT(instance.vertices, triangle.vertices.y);
-    data.vertex[2] = AT(instance.vertices, triangle.vertices.z);
-    data.material = triangle.material;
-    load_extras(data, scene, instance_index, triangle.vertices);
+    UNROLL for (uint i = 0u; i < 3u; i++) data.vertex[i] = load_vertex(mesh, indices[i]);
+    data.material = material_of_triangle(mesh, primitive);
     return data;
 }
 
@@ -105,7 +111,8 @@ TextureCoordinates interpolated_uv(TriangleData data, vec2 at)
     uv.first = data.vertex[0].uv * weights.x + data.vertex[1].uv * weights.y + data.vertex[2].uv * weights.z;
     uv.second = uv.first;
     if (HAS_SECOND_UVS)
-        uv.second = data.second_uv[0] * weights.x + data.second_uv[1] * weights.y + data.second_uv[2] * weights.z;
+        uv.second = data.vertex[0].second_uv * weights.x + data.vertex[1].second_uv * weights.y +
+                    data.vertex[2].second_uv * weights.z;
     return uv;
 }
 
@@ -113,7 +120,7 @@ vec4 interpolated_color(TriangleData data, vec2 at)
 {
     if (!HAS_COLORS) return vec4(1.0);
     vec3 weights = weights_of(at);
-    return data.color[0] * weights.x + data.color[1] * weights.y + data.color[2] * weights.z;
+    return data.vertex[0].color * weights.x + data.vertex[1].color * weights.y + data.vertex[2].color * weights.z;
 }
 
 vec3 interpolated_normal(TriangleData data, SurfacePoint point, Placement placement, vec2 at)
@@ -143,7 +150,7 @@ void set_tangents(inout Surface surface, TriangleData data, uint flags, vec2 at)
     }
     vec2 uv0 = data.vertex[0].uv, uv1 = data.vertex[1].uv, uv2 = data.vertex[2].uv;
     if (HAS_SECOND_UVS && (flags & MATERIAL_SECOND_TANGENTS) != 0u)
-        uv0 = data.second_uv[0], uv1 = data.second_uv[1], uv2 = data.second_uv[2];
+        uv0 = data.vertex[0].second_uv, uv1 = data.vertex[1].second_uv, uv2 = data.vertex[2].second_uv;
     vec2 du = uv1 - uv0;
     vec2 dv = uv2 - uv0;
     vec3 edge1 = data.vertex[1].position - data.vertex[0].position;

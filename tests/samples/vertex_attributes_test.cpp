@@ -278,7 +278,7 @@ TEST_F(VertexAttributes, WhatASceneLacksTakesNoMemory) {
         return DeviceScene(context(), scene, collect_lights(scene), nullptr).device_bytes();
     };
     // Second coordinates that no texture uses are not stored.
-    EXPECT_EQ(bytes(colored), bytes(plain) + 4 * sizeof(vec4) + sizeof(VertexExtras));
+    EXPECT_EQ(bytes(colored), bytes(plain) + 4 * sizeof(vec4));
 }
 
 }  // namespace
