@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The interface to backends that build scenes and trace rays, and twinray's accelerators behind it.
+// The interface to backends that build scenes and trace rays, and the line-up of those that run: twinray's accelerators
+// and Embree 3.
 #pragma once
 
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,6 +17,7 @@
 
 #include "engine/accel/trace_desc.h"
 #include "engine/core/commands.h"
+#include "engine/core/context.h"
 #include "engine/core/stopwatch.h"
 
 namespace twinray::bench {
@@ -91,22 +94,34 @@ double total_ms(const std::vector<PassTiming>& timings, const Stopwatch& watch);
 double trace_ms(AbstractAccel& accel, const std::string& name, const RayBatch& batch, TraceDesc desc);
 std::vector<Hit> download_hits(AbstractAccel& accel, const RayBatch& batch);
 
-// One of twinray's accelerators. Its times are those of the GPU's passes.
-class AccelBackend : public Backend {
-  public:
-    using Make = std::function<std::unique_ptr<AbstractAccel>()>;
-    AccelBackend(Labels labels, Level level, RayOrder order, Make make)
-        : Backend(std::move(labels)), level_(level), order_(order), make_(std::move(make)) {}
+// Returns the ms of the GPU's passes of a sync.
+double sync_ms(AbstractAccel& accel);
 
-    BuildFigures build(const Scene& scene) override;
-    double trace(const RayBatch& batch) override;
-    std::vector<Hit> hits(const RayBatch& batch) const override { return download_hits(*accel_, batch); }
-
-  private:
-    Level level_;
-    RayOrder order_;
-    Make make_;
-    std::unique_ptr<AbstractAccel> accel_;
+struct LineUpOptions {
+    std::vector<Level> levels = {Level::watertight};
+    std::vector<Layout> layouts = {all_layouts.begin(), all_layouts.end()};
+    std::vector<BuildQuality> build_qualities = {BuildQuality::fast};
+    std::vector<RayOrder> ray_orders = {RayOrder::given};
+    std::vector<std::string> only = {};  // parts of names: only backends with one of them run; empty: all run
+    bool has_embree = true;
 };
+
+// Returns SwTlas in each layout and build quality at each level, with instances that do not move; HwTlas at each level
+// that it has, and with input in the given order where the driver builds in that order; HwTlas by ray tracing pipeline
+// in `pipeline`, a context that leaves ray queries disabled, unless that is null; each of them in each order of rays;
+// and Embree. The contexts must outlive it. Throws Error if `only` leaves none.
+LineUp make_line_up(Context& context, Context* pipeline, const LineUpOptions& options);
+
+// The backends that others are compared with: the first one at the first level by ray query with sorted input, ...
+enum class Baseline : std::uint8_t { sorted_query, input_query, pipeline, embree8, software };
+inline constexpr std::size_t baseline_count = 5;
+// Returns its index in the line-up, or nothing if it does not run.
+std::optional<std::size_t> find(Baseline baseline, const LineUp& line_up);
+
+// Returns Embree 3 on count_cpu_threads() threads, in the variants whose name is_wanted; nothing if this program was
+// built without it.
+LineUp embree_line_up(const std::function<bool(const std::string&)>& is_wanted);
+// Returns "" if this program was built with Embree.
+std::string why_no_embree();
 
 }  // namespace twinray::bench

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: MIT
-// `twinray bench` of a scene: times and errors of every backend, and how they grow with the number of triangles.
+// `twinray bench` of a scene: times and errors of every backend, and how they grow with the number of triangles; and of
+// instances that a kernel moves.
 #include "bench/command.h"
 
 #include <algorithm>
-#include <cmath>
-#include <optional>
+#include <iomanip>
 
-#include "bench/embree_backend.h"
+#include <twinray/tlas.h>
+
 #include "bench/report.h"
 #include "engine/core/error.h"
 #include "engine/core/statistics.h"
+#include "engine/core/commands.h"
 #include "samples/support/progress.h"
-#include "validation/records/recorded_device.h"
 #include "validation/records/recorder.h"
 
 namespace twinray::bench {
@@ -37,11 +38,6 @@ Setup set_up(const Session& session) {
     if (line_up.has_embree && !session.run.quiet && !why_no_embree().empty())
         session.out << "  " << why_no_embree() << '\n';
     return setup;
-}
-
-void record_traces(const Session& session, const nlohmann::json& base, const Results& results,
-                   const Measured& measured) {
-    for (const auto& [kind, traces] : measured.traces) record_all(session, records_of(base, results, kind, traces));
 }
 
 // The figures of one backend on one scene, in ns but for build_ms; NaN if not measured.
@@ -82,7 +78,7 @@ std::optional<Line> line_of(std::span<const GrowthPoint> points, const RayColumn
     std::vector<double> x = sizes_of(points);
     const std::vector<double> y = values_of(points, column.value);
     for (double& size : x) size = std::log2(size);
-    const bool is_measured = std::all_of(y.begin(), y.end(), [](double value) { return std::isfinite(value); });
+    const bool is_measured = std::ranges::all_of(y, [](double value) { return std::isfinite(value); });
     if (!is_measured || x.front() == x.back()) return std::nullopt;
     return fit_line(x, y);
 }
@@ -143,6 +139,60 @@ nlohmann::json growth_record(const nlohmann::json& base, const Labels& labels, s
     return record;
 }
 
+// Medians of the GPU's times.
+struct MoveTimes {
+    double refit_ms = 0, rebuild_ms = 0;
+};
+
+// Returns transforms that place instances in a cube, each `phase` along its way.
+std::vector<Transform> placed(std::size_t count, float phase) {
+    const auto side = static_cast<std::size_t>(std::ceil(std::cbrt(static_cast<double>(count))));
+    std::vector<Transform> transforms;
+    for (std::size_t i = 0; i < count; ++i) {
+        const vec3 cell(i % side, i / side % side, i / side / side);
+        const float turn = phase + 0.37f * static_cast<float>(i % 17);
+        transforms.push_back(Transform::translation(3.0f * cell + vec3(std::sin(turn), std::cos(turn), 0)));
+    }
+    return transforms;
+}
+
+// Measures `count` instances of a sphere in an empty accelerator. Their transforms come from device memory.
+MoveTimes measure_moves(AbstractAccel& accel, std::size_t count, std::size_t rounds) {
+    const AccelHandle handle = accel.push(make_icosphere(1), placed(count, 0));
+    accel.push(make_icosphere(1));
+    accel.sync();
+    accel.set_rebuild_ratio(INFINITY);  // refits and rebuilds are requested separately
+    std::vector<double> refits, rebuilds;
+    for (std::size_t round = 0; round < rounds + 2; ++round) {
+        const std::vector<Transform> transforms = placed(count, 0.1f * static_cast<float>(round));
+        const Buffer moves = uploaded(accel.context(), "moves", std::span<const Transform>(transforms));
+        accel.update_transforms(handle, moves.ref<Transform>(), count);
+        const double refit = sync_ms(accel);
+        accel.update_transforms(handle, moves.ref<Transform>(), count);
+        accel.push(Mesh{});  // a change of structure
+        const double rebuild = sync_ms(accel);
+        if (round < 2) continue;  // the first move rebuilds
+        refits.push_back(refit);
+        rebuilds.push_back(rebuild);
+    }
+    return {median(refits), median(rebuilds)};
+}
+
+void tell_moves(const Session& session, AbstractAccel& accel, std::size_t count) {
+    const auto [refit_ms, rebuild_ms] = measure_moves(accel, count, session.run.rounds);
+    session.out << "  " << std::left << std::setw(8) << accel.name() << std::right << std::fixed << std::setprecision(2)
+                << " refit " << std::setw(8) << refit_ms << " ms, rebuild " << std::setw(8) << rebuild_ms << " ms, "
+                << refit_ms / rebuild_ms << " of it\n";
+    session.record({{"schema", record_schema},
+                    {"device", describe(accel.context())},
+                    {"rays", "none"},
+                    {"backend", accel.is_software() ? "sw" : "hw"},
+                    {"instances", count},
+                    {"rounds", session.run.rounds},
+                    {"refit_ms", refit_ms},
+                    {"rebuild_ms", rebuild_ms}});
+}
+
 }  // namespace
 
 nlohmann::json base_record(const Session& session) {
@@ -153,10 +203,6 @@ nlohmann::json base_record(const Session& session, const Context& context) {
     nlohmann::json base = base_record(session);
     base["device"] = describe(context);
     return base;
-}
-
-void record_all(const Session& session, const std::vector<nlohmann::json>& records) {
-    for (const nlohmann::json& record : records) session.record(record);
 }
 
 Measured measure(Context& context, LineUp& line_up, const BenchScene& scene, const RunOptions& options) {
@@ -193,7 +239,8 @@ void bench_scene(const Session& session, const BenchScene& scene) {
         session.out << '\n';
         print_traces(session.out, results, name_of(kind), traces);
     }
-    record_traces(session, base_record(session, *setup.context), results, measured);
+    const nlohmann::json base = base_record(session, *setup.context);
+    for (const auto& [kind, traces] : measured.traces) record_traces(session.record, base, results, kind, traces);
 }
 
 void bench_growth(const Session& session, std::span<const double> sizes) {
@@ -205,7 +252,8 @@ void bench_growth(const Session& session, std::span<const double> sizes) {
     for (const double size : sizes) {
         const BenchScene scene = make_scene(text("sphere:", std::llround(size)));
         const Measured measured = measure(*setup.context, setup.line_up, scene, session.run);
-        record_traces(session, base, {scene, setup.line_up, measured.builds}, measured);
+        for (const auto& [kind, traces] : measured.traces)
+            record_traces(session.record, base, {scene, setup.line_up, measured.builds}, kind, traces);
         for (std::size_t i = 0; i < points.size(); ++i) points[i].push_back(growth_point(scene, measured, i));
     }
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -213,6 +261,17 @@ void bench_growth(const Session& session, std::span<const double> sizes) {
         print_growth(session.out, setup.line_up[i]->labels().name, points[i]);
         session.record(growth_record(base, setup.line_up[i]->labels(), points[i]));
     }
+}
+
+void bench_moves(const Session& session, std::size_t count) {
+    Context context(session.device);
+    session.out << "bench: " << count << " instances moved from device memory, GPU times, median of "
+                << session.run.rounds << " rounds, on " << context.properties().name << '\n';
+    SwTlas software(context);
+    tell_moves(session, software, count);
+    if (!missing_for_hardware(context.properties()).empty()) return;
+    HwTlas hardware(context);
+    tell_moves(session, hardware, count);
 }
 
 }  // namespace twinray::bench

@@ -4,15 +4,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include <functional>
-#include <map>
 #include <ostream>
-#include <span>
 
-#include "bench/line_up.h"
 #include "bench/measure.h"
-#include "bench/rays.h"
-#include "engine/core/context.h"
+#include "bench/scenes.h"
 
 namespace twinray::bench {
 
@@ -61,6 +56,5 @@ void bench_trees(const Session& session, const BenchScene& scene);
 // The modes share these. base_record() returns the fields of every record.
 nlohmann::json base_record(const Session& session);
 nlohmann::json base_record(const Session& session, const Context& context);
-void record_all(const Session& session, const std::vector<nlohmann::json>& records);
 
 }  // namespace twinray::bench

@@ -1,21 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Embree 3 as backends: its scenes, its calls for many rays, and the variants of both.
-#include "bench/embree_backend.h"
 
 #include <embree3/rtcore.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
-#include <memory>
-#include <span>
-#include <vector>
 
 #include "bench/measure.h"
-#include "engine/core/cpu_vectors.h"
+#include "engine/core/device_properties.h"
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
-#include "engine/core/stopwatch.h"
 #include "validation/cpu_reference/flush_denormals.h"
 
 namespace twinray::bench {
@@ -31,11 +25,59 @@ struct EmbreeOptions {
 // Meshes with one instance that is not moved lie in the top scene, all others under instances.
 class EmbreeScene {
   public:
-    explicit EmbreeScene(const EmbreeOptions& options);
+    explicit EmbreeScene(const EmbreeOptions& options)
+        : options_(options), device_(rtcNewDevice(text("threads=", options.threads).c_str())) {
+        if (!device_) fail("Embree: no device: error ", static_cast<int>(rtcGetDeviceError(nullptr)));
+        rtcSetDeviceMemoryMonitorFunction(device_.get(), count_bytes, this);
+    }
+
     EmbreeScene(const EmbreeScene&) = delete;
     EmbreeScene& operator=(const EmbreeScene&) = delete;
 
-    BuildFigures build(const Scene& scene);
+    BuildFigures build(const Scene& scene) {
+        top_.reset();
+        bottoms_.clear();
+        meshes_.clear();
+        const std::int64_t before = bytes_;
+        peak_bytes_ = before;
+
+        const Stopwatch whole;
+        std::vector<uint> uses(scene.meshes.size());
+        for (const Instance& instance : scene.instances) ++uses[instance.mesh];
+        for (const Mesh& mesh : scene.meshes) {
+            meshes_.push_back({mesh.positions, mesh.triangles});
+            meshes_.back().positions.emplace_back(0.0f);
+        }
+        bottoms_.resize(meshes_.size());
+
+        const Stopwatch building;
+        top_ = make_scene();
+        for (uint i = 0; i < scene.instances.size(); ++i) {
+            const Instance& instance = scene.instances[i];
+            const PaddedMesh& mesh = meshes_[instance.mesh];
+            if (mesh.triangles.empty()) continue;
+            if (uses[instance.mesh] == 1 && instance.transform == Transform()) {
+                attach(top_.get(), triangles_of(mesh), i);
+                continue;
+            }
+            ScenePointer& bottom = bottoms_[instance.mesh];
+            if (!bottom) {
+                bottom = make_scene();
+                attach(bottom.get(), triangles_of(mesh), 0);
+                rtcCommitScene(bottom.get());
+            }
+            GeometryPointer placed(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE));
+            rtcSetGeometryInstancedScene(placed.get(), bottom.get());
+            rtcSetGeometryTransform(placed.get(), 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, &instance.transform);
+            attach(top_.get(), std::move(placed), i);
+        }
+        rtcCommitScene(top_.get());
+        const double ms = building.ms(), wall_ms = whole.ms();
+        check("build");
+        return {ms, wall_ms, static_cast<std::uint64_t>(bytes_ - before),
+                static_cast<std::uint64_t>(peak_bytes_ - bytes_)};
+    }
+
     RTCScene top() const { return top_.get(); }
     unsigned threads() const { return options_.threads; }
 
@@ -56,11 +98,40 @@ class EmbreeScene {
     using ScenePointer = std::unique_ptr<RTCSceneTy, Release<rtcReleaseScene>>;
     using GeometryPointer = std::unique_ptr<RTCGeometryTy, Release<rtcReleaseGeometry>>;
 
-    static bool count_bytes(void* scene, ssize_t bytes, bool);
-    void check(const char* action) const;
-    ScenePointer make_scene() const;
-    void attach(RTCScene scene, GeometryPointer geometry, uint id) const;
-    GeometryPointer triangles_of(const PaddedMesh& mesh) const;
+    static bool count_bytes(void* scene, ssize_t bytes, bool) {
+        auto& self = *static_cast<EmbreeScene*>(scene);
+        const std::int64_t now = self.bytes_ += bytes;
+        std::int64_t peak = self.peak_bytes_;
+        while (peak < now && !self.peak_bytes_.compare_exchange_weak(peak, now)) {}
+        return true;
+    }
+
+    void check(const char* action) const {
+        const RTCError error = rtcGetDeviceError(device_.get());
+        if (error != RTC_ERROR_NONE) fail("Embree: ", action, ": error ", static_cast<int>(error));
+    }
+
+    ScenePointer make_scene() const {
+        ScenePointer scene(rtcNewScene(device_.get()));
+        rtcSetSceneFlags(scene.get(), options_.flags);
+        rtcSetSceneBuildQuality(scene.get(), options_.quality);
+        return scene;
+    }
+
+    void attach(RTCScene scene, GeometryPointer geometry, uint id) const {
+        rtcSetGeometryBuildQuality(geometry.get(), options_.geometry_quality);
+        rtcCommitGeometry(geometry.get());
+        rtcAttachGeometryByID(scene, geometry.get(), id);
+    }
+
+    GeometryPointer triangles_of(const PaddedMesh& mesh) const {
+        GeometryPointer geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
+        rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh.positions.data(),
+                                   0, sizeof(vec3), mesh.positions.size() - 1);
+        rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangles.data(), 0,
+                                   sizeof(uvec3), mesh.triangles.size());
+        return geometry;
+    }
 
     EmbreeOptions options_;
     std::atomic<std::int64_t> bytes_ = 0, peak_bytes_ = 0;
@@ -69,90 +140,6 @@ class EmbreeScene {
     std::vector<ScenePointer> bottoms_;  // by mesh; null where it has no scene of its own
     ScenePointer top_;
 };
-
-EmbreeScene::EmbreeScene(const EmbreeOptions& options)
-    : options_(options), device_(rtcNewDevice(text("threads=", options.threads).c_str())) {
-    if (!device_) fail("Embree: no device: error ", static_cast<int>(rtcGetDeviceError(nullptr)));
-    rtcSetDeviceMemoryMonitorFunction(device_.get(), count_bytes, this);
-}
-
-bool EmbreeScene::count_bytes(void* scene, ssize_t bytes, bool) {
-    auto& self = *static_cast<EmbreeScene*>(scene);
-    const std::int64_t now = self.bytes_ += bytes;
-    std::int64_t peak = self.peak_bytes_;
-    while (peak < now && !self.peak_bytes_.compare_exchange_weak(peak, now)) {}
-    return true;
-}
-
-void EmbreeScene::check(const char* action) const {
-    const RTCError error = rtcGetDeviceError(device_.get());
-    if (error != RTC_ERROR_NONE) fail("Embree: ", action, ": error ", static_cast<int>(error));
-}
-
-EmbreeScene::ScenePointer EmbreeScene::make_scene() const {
-    ScenePointer scene(rtcNewScene(device_.get()));
-    rtcSetSceneFlags(scene.get(), options_.flags);
-    rtcSetSceneBuildQuality(scene.get(), options_.quality);
-    return scene;
-}
-
-void EmbreeScene::attach(RTCScene scene, GeometryPointer geometry, uint id) const {
-    rtcSetGeometryBuildQuality(geometry.get(), options_.geometry_quality);
-    rtcCommitGeometry(geometry.get());
-    rtcAttachGeometryByID(scene, geometry.get(), id);
-}
-
-EmbreeScene::GeometryPointer EmbreeScene::triangles_of(const PaddedMesh& mesh) const {
-    GeometryPointer geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
-    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh.positions.data(), 0,
-                               sizeof(vec3), mesh.positions.size() - 1);
-    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangles.data(), 0,
-                               sizeof(uvec3), mesh.triangles.size());
-    return geometry;
-}
-
-BuildFigures EmbreeScene::build(const Scene& scene) {
-    top_.reset();
-    bottoms_.clear();
-    meshes_.clear();
-    const std::int64_t before = bytes_;
-    peak_bytes_ = before;
-
-    const Stopwatch whole;
-    std::vector<uint> uses(scene.meshes.size());
-    for (const Instance& instance : scene.instances) ++uses[instance.mesh];
-    for (const Mesh& mesh : scene.meshes) {
-        meshes_.push_back({mesh.positions, mesh.triangles});
-        meshes_.back().positions.emplace_back(0.0f);
-    }
-    bottoms_.resize(meshes_.size());
-
-    const Stopwatch building;
-    top_ = make_scene();
-    for (uint i = 0; i < scene.instances.size(); ++i) {
-        const Instance& instance = scene.instances[i];
-        const PaddedMesh& mesh = meshes_[instance.mesh];
-        if (mesh.triangles.empty()) continue;
-        if (uses[instance.mesh] == 1 && instance.transform == Transform()) {
-            attach(top_.get(), triangles_of(mesh), i);
-            continue;
-        }
-        ScenePointer& bottom = bottoms_[instance.mesh];
-        if (!bottom) {
-            bottom = make_scene();
-            attach(bottom.get(), triangles_of(mesh), 0);
-            rtcCommitScene(bottom.get());
-        }
-        GeometryPointer placed(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE));
-        rtcSetGeometryInstancedScene(placed.get(), bottom.get());
-        rtcSetGeometryTransform(placed.get(), 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, &instance.transform);
-        attach(top_.get(), std::move(placed), i);
-    }
-    rtcCommitScene(top_.get());
-    const double ms = building.ms(), wall_ms = whole.ms();
-    check("build");
-    return {ms, wall_ms, static_cast<std::uint64_t>(bytes_ - before), static_cast<std::uint64_t>(peak_bytes_ - bytes_)};
-}
 
 // Rays and hits of a trace by Embree's calls for many rays.
 struct EmbreeTrace {
@@ -248,7 +235,7 @@ void trace_stream(const EmbreeTrace& part, RTCIntersectContext& context) {
     const auto count = static_cast<unsigned>(rays.size());
     if (query == Query::any) {
         std::array<RTCRay, stream> list;
-        std::transform(rays.begin(), rays.end(), list.begin(), ray_of);
+        std::ranges::transform(rays, list.begin(), ray_of);
         rtcOccluded1M(scene, &context, list.data(), count, sizeof(RTCRay));
         for (std::size_t i = 0; i < count; ++i) hits[i] = occlusion_of(list[i].tfar);
         return;
@@ -264,27 +251,19 @@ void trace_stream(const EmbreeTrace& part, RTCIntersectContext& context) {
                           list[i].hit.instID[0]});
 }
 
-template <class Part>
-void in_parts(std::size_t size, const EmbreeTrace& whole, const Part& trace_part) {
+// Rays go in packets of 8 (rtcIntersect8, rtcOccluded8) or in streams of 256 (rtcIntersect1M, rtcOccluded1M), in the
+// given order; streams are told whether they are coherent.
+void trace_parts(const EmbreeTrace& whole, bool in_streams, bool is_coherent) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    if (in_streams && is_coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    const std::size_t size = in_streams ? stream : packet;
     for (std::size_t begin = 0; begin < whole.rays.size(); begin += size) {
         const std::size_t count = std::min(size, whole.rays.size() - begin);
-        trace_part({whole.scene, whole.query, whole.rays.subspan(begin, count), whole.hits.subspan(begin, count)});
+        const EmbreeTrace part{whole.scene, whole.query, whole.rays.subspan(begin, count),
+                               whole.hits.subspan(begin, count)};
+        (in_streams ? trace_stream : trace_packet)(part, context);
     }
-}
-
-// Rays go in packets of 8 (rtcIntersect8, rtcOccluded8), in the given order, with Embree's default flags.
-void trace_packets(const EmbreeTrace& trace) {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    in_parts(packet, trace, [&](const EmbreeTrace& part) { trace_packet(part, context); });
-}
-
-// Rays go in streams of 256 (rtcIntersect1M, rtcOccluded1M), told whether they are coherent.
-void trace_streams(const EmbreeTrace& trace, bool is_coherent) {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = is_coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-    in_parts(stream, trace, [&](const EmbreeTrace& part) { trace_stream(part, context); });
 }
 
 class EmbreeBackend : public Backend {
@@ -301,12 +280,9 @@ class EmbreeBackend : public Backend {
         const auto trace_tiles = [&](std::size_t begin, std::size_t end) {
             const FlushDenormals flush;  // as Embree asks its callers to
             const std::size_t first = begin * rays_a_tile, count = std::min(end * rays_a_tile, rays.size()) - first;
-            const EmbreeTrace part{scene_.top(), batch.query(), rays.subspan(first, count),
-                                   std::span(hits_).subspan(first, count)};
-            if (in_streams_)
-                trace_streams(part, batch.is_coherent());
-            else
-                trace_packets(part);
+            trace_parts(
+                {scene_.top(), batch.query(), rays.subspan(first, count), std::span(hits_).subspan(first, count)},
+                in_streams_, batch.is_coherent());
         };
         parallel_for(count_tiles(rays.size()), trace_tiles, scene_.threads());
         return watch.ms();

@@ -5,12 +5,10 @@
 
 #include <algorithm>
 
-#include <twinray/scene.h>
 #include <twinray/tlas.h>
 
-#include "bench/figures.h"
 #include "bench/report.h"
-#include "engine/accel/feature_additions.h"
+#include "engine/accel/trace_desc.h"
 #include "engine/accel/trace_program.h"
 #include "engine/core/error.h"
 #include "engine/core/fnv1a.h"
@@ -127,9 +125,8 @@ void print_feature_costs(std::ostream& out, const FeatureCosts& costs) {
     print_table(out, rows);
 }
 
-// Returns a record for each step, added to the fields of `base`.
-std::vector<nlohmann::json> records_of(const nlohmann::json& base, const FeatureCosts& costs) {
-    std::vector<nlohmann::json> records;
+// Writes a record for each step, added to the fields of `base`.
+void record_feature_costs(const Session& session, const nlohmann::json& base, const FeatureCosts& costs) {
     for (std::size_t i = 0; i < costs.steps.size(); ++i) {
         const FeatureCosts::Step& step = costs.steps[i];
         const Spread ns = spread_of(step.rounds.ns_per_ray);
@@ -145,9 +142,8 @@ std::vector<nlohmann::json> records_of(const nlohmann::json& base, const Feature
                        {"ns_per_ray_max", ns.max},
                        {"of_needed", costs.ratio(i)},
                        {"hits_hash", hexadecimal(step.rounds.hash.value())}});
-        records.push_back(std::move(record));
+        session.record(record);
     }
-    return records;
 }
 
 // The memory that an accelerator keeps, and its build times, with one thing that a scene may not need.
@@ -182,13 +178,6 @@ std::vector<Configuration> configurations_on(const DeviceProperties& device) {
     if (SwTlas::capability_on(device, Feature::level_certified).support != Support::unsupported)
         configurations.push_back({"level certified", with({.level = Level::certified})});
     return configurations;
-}
-
-double sync_ms(SwTlas& accel) {
-    const Stopwatch watch;
-    accel.sync();
-    accel.wait_for_gpu();
-    return total_ms(accel.build_timings(), watch);
 }
 
 void move_vertices(SwTlas& accel, const Scene& scene, std::span<const AccelHandle> handles) {
@@ -249,10 +238,9 @@ void print_memory_costs(std::ostream& out, std::span<const MemoryCost> costs, st
     print_table(out, rows);
 }
 
-// Returns a record for each, added to the fields of `base`.
-std::vector<nlohmann::json> records_of(const nlohmann::json& base, std::span<const MemoryCost> costs,
-                                       std::size_t triangles) {
-    std::vector<nlohmann::json> records;
+// Writes a record for each, added to the fields of `base`.
+void record_memory_costs(const Session& session, const nlohmann::json& base, std::span<const MemoryCost> costs,
+                         std::size_t triangles) {
     for (const MemoryCost& cost : costs) {
         const Spread ms = spread_of(cost.build_ms);
         nlohmann::json record = base;
@@ -264,9 +252,8 @@ std::vector<nlohmann::json> records_of(const nlohmann::json& base, std::span<con
                        {"build_ms_max", ms.max}});
         for (const auto& [name, bytes] : shares_of(cost.usage, triangles))
             record[std::string(name) + "_bytes_per_triangle"] = bytes;
-        records.push_back(std::move(record));
+        session.record(record);
     }
-    return records;
 }
 
 }  // namespace
@@ -288,7 +275,7 @@ void bench_feature_costs(const Session& session, const BenchScene& scene) {
     for (const FeatureCosts& costs : measure_feature_costs(context, scene, run, rounds)) {
         session.out << '\n';
         print_feature_costs(session.out, costs);
-        record_all(session, records_of(step_base, costs));
+        record_feature_costs(session, step_base, costs);
         agree = agree && costs.agrees();
     }
     if (run.times_builds) {
@@ -297,7 +284,7 @@ void bench_feature_costs(const Session& session, const BenchScene& scene) {
         const std::vector<MemoryCost> costs = measure_memory_costs(context, scene, std::min<std::size_t>(rounds, 9));
         session.out << '\n';
         print_memory_costs(session.out, costs, triangles);
-        record_all(session, records_of(base, costs, triangles));
+        record_memory_costs(session, base, costs, triangles);
     }
     if (!agree) fail("bench: kernels with more features than needed found other hits");
 }

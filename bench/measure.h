@@ -3,9 +3,6 @@
 // Also checks how right the hits are.
 #pragma once
 
-#include <functional>
-#include <optional>
-
 #include "bench/backend.h"
 #include "validation/reference/reference_scene.h"
 

@@ -3,16 +3,14 @@
 #include "bench/command.h"
 
 #include <algorithm>
-#include <map>
 #include <mutex>
 
 #include "bench/report.h"
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
-#include "swtlas/check.h"
 #include "swtlas/plan.h"
 #include "swtlas/tree.h"
-#include "validation/cpu_reference/end_point_overlap.h"
+#include "validation/cpu_reference/reference.h"
 #include "validation/cpu_reference/reference_scene.h"
 
 namespace twinray::bench {
@@ -148,8 +146,7 @@ void print_trees(std::ostream& out, std::span<const TreeFigures> trees) {
     print_table(out, rows);
 }
 
-std::vector<nlohmann::json> records_of(const nlohmann::json& base, std::span<const TreeFigures> trees) {
-    std::vector<nlohmann::json> records;
+void record_trees(const Session& session, const nlohmann::json& base, std::span<const TreeFigures> trees) {
     for (const TreeFigures& tree : trees) {
         nlohmann::json record = base;
         record.update({{"schema", record_schema},
@@ -165,9 +162,8 @@ std::vector<nlohmann::json> records_of(const nlohmann::json& base, std::span<con
                                                                    {"boxes", steps.boxes},
                                                                    {"leaves", steps.leaves},
                                                                    {"triangles", steps.primitives}};
-        records.push_back(std::move(record));
+        session.record(record);
     }
-    return records;
 }
 
 }  // namespace
@@ -182,7 +178,7 @@ void bench_trees(const Session& session, const BenchScene& scene) {
     print_trees(session.out, trees);
     nlohmann::json base = base_record(session);
     base.update({{"scene", scene.name}, {"triangles", count_triangles(scene.scene)}});
-    record_all(session, records_of(base, trees));
+    record_trees(session, base, trees);
 }
 
 }  // namespace twinray::bench

@@ -2,14 +2,9 @@
 #include "cli/analysis_options.h"
 
 #include <array>
-#include <nlohmann/json.hpp>
 #include <utility>
 
-#include <twinray/scene.h>
-
-#include "cli/command/values.h"
 #include "cli/csv_files.h"
-#include "engine/core/error.h"
 
 namespace twinray::cli {
 
@@ -144,20 +139,19 @@ std::string speed_text(std::uint64_t rays, double seconds) {
 
 std::string text_of(const dvec3& v) { return text("(", v.x, ", ", v.y, ", ", v.z, ")"); }
 
-CsvFile::CsvFile(const std::filesystem::path& file, const std::string& header) : file_(file), out_(file) {
-    out_ << header << '\n';
-}
-
-void CsvFile::row(std::initializer_list<std::uint64_t> first, std::initializer_list<std::optional<double>> rest) {
-    const char* separator = "";
-    for (const std::uint64_t value : first) out_ << std::exchange(separator, ",") << value;
-    for (const std::optional<double>& value : rest)
-        out_ << std::exchange(separator, ",") << (value ? digits_of(*value) : "");
-    out_ << '\n';
-}
-
-void CsvFile::close() {
-    if (!out_.flush()) fail("'", file_.string(), "' cannot be written");
+void write_rows(const std::filesystem::path& file, const std::string& header, std::size_t count,
+                const std::function<CsvRow(std::size_t)>& row_of) {
+    std::ofstream out(file);
+    out << header << '\n';
+    for (std::size_t i = 0; i < count; ++i) {
+        const CsvRow row = row_of(i);
+        const char* separator = "";
+        for (const std::uint64_t value : row.first) out << std::exchange(separator, ",") << value;
+        for (const std::optional<double>& value : row.rest)
+            out << std::exchange(separator, ",") << (value ? digits_of(*value) : "");
+        out << '\n';
+    }
+    if (!out.flush()) fail("'", file.string(), "' cannot be written");
 }
 
 }  // namespace twinray::cli

@@ -6,11 +6,11 @@
 #include <twinray/analysis.h>
 
 #include <fstream>
-#include <optional>
-#include <vector>
 
 #include "cli/common.h"
-#include "viewer/picture/marks.h"
+#include "engine/core/stopwatch.h"
+#include "samples/support/progress.h"
+#include "viewer/picture/face_picture.h"
 #include "viewer/picture/page.h"
 #include "viewer/picture/scene_picture.h"
 
@@ -77,17 +77,13 @@ std::string speed_text(std::uint64_t rays, double seconds);
 // Returns "(1, 0, 0)".
 std::string text_of(const dvec3& v);
 
-// A table of numbers. Throws Error if it cannot be written.
-class CsvFile {
-  public:
-    CsvFile(const std::filesystem::path& file, const std::string& header);
-    // Writes numbers in as few digits as give the same float64; missing ones are empty.
-    void row(std::initializer_list<std::uint64_t> first, std::initializer_list<std::optional<double>> rest);
-    void close();
-
-  private:
-    std::filesystem::path file_;
-    std::ofstream out_;
+struct CsvRow {
+    std::vector<std::uint64_t> first;
+    std::vector<std::optional<double>> rest;
 };
+// Writes a table of numbers in as few digits as give the same float64; missing ones are empty. Throws Error if it
+// cannot be written.
+void write_rows(const std::filesystem::path& file, const std::string& header, std::size_t count,
+                const std::function<CsvRow(std::size_t)>& row_of);
 
 }  // namespace twinray::cli

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: MIT
 // `twinray bench`: build times and trace rates of both accelerators beside others, with their errors.
-#include <iostream>
-#include <nlohmann/json.hpp>
-
 #include "bench/command.h"
-#include "cli/command/values.h"
-#include "cli/commands.h"
 #include "cli/common.h"
 #include "twinray_version.h"
 

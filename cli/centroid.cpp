@@ -1,15 +1,6 @@
 // SPDX-License-Identifier: MIT
 // `twinray centroid`: the mean of what is seen along a direction.
-#include <twinray/analysis.h>
-
-#include <iostream>
-#include <nlohmann/json.hpp>
-
 #include "cli/analysis_options.h"
-#include "cli/commands.h"
-#include "engine/core/error.h"
-#include "engine/core/stopwatch.h"
-#include "samples/support/progress.h"
 
 namespace twinray::cli {
 namespace {
@@ -20,12 +11,10 @@ struct CentroidOptions : AnalysisOptions {
 
 // Writes the points in the coordinates of the scene's file.
 void write(const std::filesystem::path& file, const Centroid& result, const dvec3& origin) {
-    CsvFile csv(file, "x,y,z");
-    for (const dvec3& point : result.points) {
-        const dvec3 point_in_file = origin + point;
-        csv.row({}, {point_in_file.x, point_in_file.y, point_in_file.z});
-    }
-    csv.close();
+    write_rows(file, "x,y,z", result.points.size(), [&](std::size_t i) -> CsvRow {
+        const dvec3 point_in_file = origin + result.points[i];
+        return {{}, {point_in_file.x, point_in_file.y, point_in_file.z}};
+    });
 }
 
 void print(const CentroidOptions& options, const Analysed& analysed, const Centroid& result, double seconds) {

@@ -2,17 +2,10 @@
 // `twinray collide`: which triangles of a scene touch or intersect, or which boxes of instances overlap.
 #include <twinray/queries.h>
 
-#include <algorithm>
 #include <array>
-#include <iostream>
-#include <nlohmann/json.hpp>
 
 #include "cli/analysis_options.h"
-#include "cli/command/values.h"
-#include "cli/commands.h"
 #include "cli/csv_files.h"
-#include "engine/core/error.h"
-#include "engine/core/stopwatch.h"
 
 namespace twinray::cli {
 namespace {

@@ -1,19 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "cli/common.h"
 
-#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <iomanip>
-#include <iostream>
-#include <nlohmann/json.hpp>
 
-#include <twinray/scene.h>
-
-#include "cli/command/values.h"
-#include "engine/core/error.h"
 #include "engine/scene/local_origin.h"
-#include <twinray/tlas.h>
 
 namespace twinray::cli {
 
@@ -40,6 +32,12 @@ Section common_options(CommonOptions& options) {
               .value = {.kind = Value::Kind::folder, .metavar = "FOLDER", .least = 1, .most = 1, .store = pipelines},
               .help = "folder in which compiled pipelines are kept between runs; \"\" keeps none; without it, "
                       "twinray's folder in the user's cache"}}};
+}
+
+Section with(Section section, std::vector<Option> more) {
+    section.options.insert(section.options.end(), std::make_move_iterator(more.begin()),
+                           std::make_move_iterator(more.end()));
+    return section;
 }
 
 Option json_option(std::filesystem::path& path) {
@@ -82,18 +80,13 @@ std::vector<Option> tree_options(AccelOptions& options) {
              .help = "build quality of the software accelerator's trees"}};
 }
 
-ContextDesc context_desc(const CommonOptions& options) {
+ContextDesc context_desc(const CommonOptions& options, double most_wait_seconds) {
     ContextDesc desc{.device = options.device,
                      .validation = options.validation,
                      .pipeline_folder = options.pipelines.value_or(user_pipeline_folder())};
+    desc.most_wait_seconds = most_wait_seconds;
     if (options.quiet && !options.validation) desc.log = [](std::string_view) {};
     if (const char* disabled = std::getenv("TWINRAY_DISABLE")) disable_features(desc, disabled);
-    return desc;
-}
-
-ContextDesc watched_context_desc(const CommonOptions& options, double most_wait_seconds) {
-    ContextDesc desc = context_desc(options);
-    desc.most_wait_seconds = most_wait_seconds;
     return desc;
 }
 

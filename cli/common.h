@@ -1,28 +1,23 @@
 // SPDX-License-Identifier: MIT
-// Shared by the commands: options, making an accelerator, coordinates of files, JSON lines.
+// Shared by the commands, each of which is in the file of its name: options, making an accelerator, coordinates of
+// files, JSON lines.
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
+#include <iostream>
 #include <memory>
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "cli/command/command.h"
+#include <twinray/scene.h>
 #include <twinray/tlas.h>
+#include "cli/command/values.h"
+#include "engine/core/error.h"
 #include "twinray/glsl/cpp.h"
-#include "validation/records/recorded_device.h"
-
-namespace twinray {
-class AbstractAccel;
-class Context;
-struct AccelOptions;
-struct ContextDesc;
-struct Hit;
-struct Ray;
-struct Scene;
-}  // namespace twinray
+#include "validation/records/recorder.h"
 
 namespace twinray::cli {
 
@@ -36,6 +31,8 @@ struct CommonOptions {
     std::optional<std::filesystem::path> pipelines;  // none: the user's folder for them
 };
 Section common_options(CommonOptions& options);
+// Returns the section with further options.
+Section with(Section section, std::vector<Option> more);
 
 Option json_option(std::filesystem::path& file);
 // Returns the positional SCENE, the scene that a command asks about.
@@ -50,12 +47,11 @@ Option level_option(Level& level, const std::string& help = "precision of the tr
 std::vector<Option> tree_options(AccelOptions& options);
 
 // Describes a context for these options; TWINRAY_DISABLE (a comma-separated list of ray_query, ray_tracing_pipeline)
-// leaves features of the device unused.
-ContextDesc context_desc(const CommonOptions& options);
-std::unique_ptr<Context> make_context(const CommonOptions& options);
-// These are for commands that check drivers, which may hang: nothing that they submit takes so many seconds.
+// leaves features of the device unused. Commands that check drivers, which may hang, give the number of seconds that
+// nothing which they submit takes; 0: no limit.
+ContextDesc context_desc(const CommonOptions& options, double most_wait_seconds = 0);
 inline constexpr double most_suite_seconds = 300, most_conformance_seconds = 60;
-ContextDesc watched_context_desc(const CommonOptions& options, double most_wait_seconds);
+std::unique_ptr<Context> make_context(const CommonOptions& options);
 
 // Makes an accelerator that holds the scene, built.
 std::unique_ptr<AbstractAccel> make_accel(Context& context, const AccelChoice& choice, const Scene& scene,
@@ -82,5 +78,30 @@ nlohmann::json base_record(const char* schema, const Context& context, const std
 nlohmann::json describe(const AccelChoice& choice);  // "backend" and "backend_why"
 // Returns "by SwTlas (device 'llvmpipe' is a CPU, without hardware for rays)".
 std::string text_of(const AccelChoice& choice);
+
+// Returns the commands in the order of the list.
+std::vector<Command> all_commands();
+
+#ifdef TWINRAY_HAS_BENCH
+Command bench_command();
+#endif
+#ifdef TWINRAY_HAS_REPORT
+Command qualify_command();
+Command report_command();
+#endif
+Command centroid_command();
+Command collide_command();
+Command completion_command();  // of help.cpp
+Command devices_command();
+Command distance_command();
+Command help_command(const std::vector<std::string>& names);
+Command illumination_command();
+Command kernels_command();
+Command leaks_command();
+Command trace_command();
+Command verify_command();
+Command view_command();
+Command viewfactors_command();
+Command visible_command();
 
 }  // namespace twinray::cli

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <iomanip>
 
-#include "engine/scene/number_lines.h"
+#include "engine/scene/importers/words.h"
 
 namespace twinray::cli {
 

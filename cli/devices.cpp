@@ -1,17 +1,10 @@
 // SPDX-License-Identifier: MIT
 // `twinray devices`: every Vulkan device, what each accelerator can do there, and why not.
 #include <iomanip>
-#include <iostream>
-#include <nlohmann/json.hpp>
-#include <optional>
 #include <span>
 
-#include "cli/command/values.h"
-#include "cli/commands.h"
 #include "cli/common.h"
-#include "engine/core/error.h"
 #include "engine/core/requirement.h"
-#include <twinray/tlas.h>
 
 namespace twinray::cli {
 namespace {

@@ -2,24 +2,16 @@
 // `twinray distance`: the parts of a scene that are near points, as a table or as a picture of a plane.
 #include <twinray/queries.h>
 
-#include <algorithm>
-#include <iostream>
-#include <nlohmann/json.hpp>
 #include <random>
 
-#include "cli/command/values.h"
-#include "cli/commands.h"
-#include "cli/common.h"
 #include "cli/csv_files.h"
 #include "cli/shards.h"
 #include "engine/analysis/npz.h"
-#include "engine/core/error.h"
 #include "engine/core/stopwatch.h"
-#include "engine/scene/bytes.h"
+#include "engine/core/files.h"
 #include "twinray/glsl/cpp.h"
 #include "twinray/glsl/vector_math.h"
 #include "viewer/picture/page.h"
-#include "viewer/picture/slice_picture.h"
 
 namespace twinray::cli {
 namespace {
@@ -161,12 +153,11 @@ struct Search {
 };
 
 Agreement agreement_for(const DistanceOptions& options, const Search& search) {
-    Agreement agreement = agreement_of("distance", search.scene, "");
-    agreement.push_back({"points", checksum_text(std::as_bytes(std::span(search.points)))});
-    agreement.push_back({"--signed", options.is_signed ? "yes" : "no"});
-    agreement.push_back({"--max-distance", text(std::hexfloat, options.max_distance)});
-    agreement.push_back({"--within", options.within ? text(std::hexfloat, *options.within) : "no"});
-    return agreement;
+    return agreement_of("distance", search.scene, "",
+                        {{"points", checksum_text(std::as_bytes(std::span(search.points)))},
+                         {"--signed", options.is_signed ? "yes" : "no"},
+                         {"--max-distance", text(std::hexfloat, options.max_distance)},
+                         {"--within", options.within ? text(std::hexfloat, *options.within) : "no"}});
 }
 
 std::span<const dvec3> points_in(const Search& search, Rows rows) {

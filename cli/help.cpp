@@ -1,12 +1,5 @@
 // SPDX-License-Identifier: MIT
 // `twinray help` and `twinray completion`: what the commands say of themselves, for terminals, man and shells.
-#include <algorithm>
-#include <iostream>
-#include <memory>
-
-#include "cli/command/help_text.h"
-#include "cli/command/values.h"
-#include "cli/commands.h"
 #include "cli/common.h"
 #include "twinray_version.h"
 

@@ -1,21 +1,11 @@
 // SPDX-License-Identifier: MIT
 // `twinray illumination`: what parallel light, the sky or the sun bring to each face.
-#include <twinray/analysis.h>
-
-#include <algorithm>
 #include <cmath>
-#include <iostream>
-#include <nlohmann/json.hpp>
 
 #include "cli/analysis_options.h"
-#include "cli/command/values.h"
-#include "cli/commands.h"
 #include "cli/csv_files.h"
 #include "cli/shards.h"
-#include "engine/analysis/light_counts.h"
-#include "engine/core/error.h"
-#include "engine/core/stopwatch.h"
-#include "samples/support/progress.h"
+#include "engine/analysis/ray_grid.h"
 
 namespace twinray::cli {
 namespace {
@@ -39,18 +29,15 @@ double unit_of(const LitArea& lit, const std::string& measure) {
 }
 
 void write(const IlluminationOptions& options, const Illumination& result) {
-    const std::string& what = options.measure;
-    CsvFile csv(options.output, text(name_of(options.groups.by), ",hits,", what, ",ci_low,ci_high"));
-    const bool has_interval = options.grid.points == GridPoints::random;
-    for (std::size_t group = 0; group < result.groups.size(); ++group) {
+    const std::string header = text(name_of(options.groups.by), ",hits,", options.measure, ",ci_low,ci_high");
+    write_rows(options.output, header, result.groups.size(), [&](std::size_t group) -> CsvRow {
         const LitArea& lit = result.groups[group];
         const double unit = unit_of(lit, options.measure);
         const auto share = [&](double area) { return unit > 0 ? area / unit : 0; };
         std::optional<double> low, high;
-        if (has_interval) low = share(lit.interval.low), high = share(lit.interval.high);
-        csv.row({group, lit.hits}, {share(lit.area), low, high});
-    }
-    csv.close();
+        if (options.grid.points == GridPoints::random) low = share(lit.interval.low), high = share(lit.interval.high);
+        return {{group, lit.hits}, {share(lit.area), low, high}};
+    });
 }
 
 // Shows each face with the value of its group.
@@ -90,12 +77,12 @@ std::optional<Illumination> compute(const Shards& shards, const IlluminationOpti
             progress.advance(rays);
         }};
     if (shards.is_whole()) return illuminate(*analysed.accel, faces, desc);
-    Agreement agreement = agreement_of("illumination", analysed.scene, analysed.choice.name());
     const std::vector<uint> groups = faces.groups(options.groups.by);
-    agreement.push_back({"groups", checksum_text(std::as_bytes(std::span(groups)))});
-    agreement.push_back({"--sides", std::string(name_of(options.sides))});
-    agreement.push_back({"--seed", std::to_string(grid.seed)});
-    agreement.push_back({"grid", options.grid.record().dump()});
+    const Agreement agreement = agreement_of("illumination", analysed.scene, analysed.choice.name(),
+                                             {{"groups", checksum_text(std::as_bytes(std::span(groups)))},
+                                              {"--sides", std::string(name_of(options.sides))},
+                                              {"--seed", std::to_string(grid.seed)},
+                                              {"grid", options.grid.record().dump()}});
     const std::uint64_t rays = grid_ray_count(faces, desc);
     const auto parts = shards.parts((rays + 1) / 2, agreement, [&](Rows rows) {
         const std::vector<GroupCount> counts =
@@ -146,12 +133,10 @@ void run(IlluminationOptions options) {
 constexpr uint most_samples = 1u << 20;
 
 void write(const std::filesystem::path& file, const std::string& what, const SkyLight& light) {
-    CsvFile csv(file, "face,free_rays," + what + ",ci_low,ci_high");
-    for (std::size_t face = 0; face < light.faces.size(); ++face) {
+    write_rows(file, "face,free_rays," + what + ",ci_low,ci_high", light.faces.size(), [&](std::size_t face) -> CsvRow {
         const Received& received = light.faces[face];
-        csv.row({face, received.free_rays}, {received.value, received.interval.low, received.interval.high});
-    }
-    csv.close();
+        return {{face, received.free_rays}, {received.value, received.interval.low, received.interval.high}};
+    });
 }
 
 // Returns the mean by area.
@@ -205,14 +190,13 @@ std::vector<Received> receive(const Analysed& analysed, const Faces& faces, cons
 
 Agreement agreement_for(const Analysed& analysed, const IlluminationOptions& options, std::span<const SunPosition> sun,
                         const SkyRaysDesc& desc) {
-    Agreement agreement = agreement_of("illumination", analysed.scene, analysed.choice.name());
-    agreement.push_back({"light", options.sky ? "sky" : "sun"});
-    agreement.push_back({"up", checksum_text(std::as_bytes(std::span(options.up)))});
-    agreement.push_back({"sun", checksum_text(std::as_bytes(sun))});
-    agreement.push_back({"samples", std::to_string(desc.samples)});
-    agreement.push_back({"--sides", std::string(name_of(desc.sides))});
-    agreement.push_back({"--seed", std::to_string(desc.seed)});
-    return agreement;
+    return agreement_of("illumination", analysed.scene, analysed.choice.name(),
+                        {{"light", options.sky ? "sky" : "sun"},
+                         {"up", checksum_text(std::as_bytes(std::span(options.up)))},
+                         {"sun", checksum_text(std::as_bytes(sun))},
+                         {"samples", std::to_string(desc.samples)},
+                         {"--sides", std::string(name_of(desc.sides))},
+                         {"--seed", std::to_string(desc.seed)}});
 }
 
 void run_sky(IlluminationOptions options) {
@@ -254,22 +238,20 @@ void run_sky(IlluminationOptions options) {
 
 Command illumination_command() {
     const auto options = std::make_shared<IlluminationOptions>();
-    Section light = {"Light", ray_grid_options(options->grid)};
-    for (Option& option : sky_options(*options)) light.options.push_back(std::move(option));
-    light.options.push_back(sides_option(options->sides, "receive light"));
+    const Section light = with(with({"Light", ray_grid_options(options->grid)}, sky_options(*options)),
+                               {sides_option(options->sides, "receive light")});
     Section output = analysis_output(*options,
                                      "write a CSV file with one line per face: face, hits, area, ci_low, ci_high; with "
                                      "--sky or --sun: face, free_rays, sky or hours, ci_low, ci_high");
-    for (Option& option : face_group_options(options->groups, "one line of the CSV", {"--direction"}))
-        output.options.push_back(std::move(option));
+    output = with(output, face_group_options(options->groups, "one line of the CSV", {"--direction"}));
     output.options.push_back(
         {.name = "--measure",
          .value = choice(options->measure, {"area", "fraction", "irradiance"}),
          .help = "third column of the CSV: lit area perpendicular to the light, fraction of the area that faces the "
                  "light, or irradiance, which is lit area perpendicular to the light per unit of surface",
          .needs = {"--direction"}});
-    Section pictures = picture_options(options->pictures, "the third column of the CSV");
-    pictures.options.push_back(color_scale_option(options->pictures));
+    const Section pictures = with(picture_options(options->pictures, "the third column of the CSV"),
+                                  {color_scale_option(options->pictures)});
     return {.name = "illumination",
             .group = "Analyses",
             .summary = "compute the parallel light, sky light or hours of sun of each face",

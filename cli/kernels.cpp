@@ -1,15 +1,7 @@
 // SPDX-License-Identifier: MIT
 // `twinray kernels`: what a driver's compiler makes of every kernel, for GPUs that need not be there.
-#include <algorithm>
-#include <iostream>
-#include <nlohmann/json.hpp>
-
-#include "cli/command/values.h"
-#include "cli/commands.h"
 #include "cli/common.h"
-#include "engine/core/error.h"
-#include "cli/kernels/kernel_list.h"
-#include "cli/kernels/family.h"
+#include "cli/kernels/kernels.h"
 
 namespace twinray::cli {
 namespace {

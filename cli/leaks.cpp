@@ -1,21 +1,12 @@
 // SPDX-License-Identifier: MIT
 // `twinray leaks`: as many rays as one likes from inside a closed mesh at its vertices and edges, and no way out.
-#include <algorithm>
 #include <iomanip>
-#include <iostream>
-#include <nlohmann/json.hpp>
 
-#include <twinray/scene.h>
-
-#include "cli/command/values.h"
-#include "cli/commands.h"
 #include "cli/common.h"
-#include "validation/leaks/crossings.h"
-#include "engine/core/error.h"
+#include "validation/leaks/leak_test.h"
 #include "samples/support/progress.h"
-#include "validation/leaks/inside_rays.h"
+#include "validation/leaks/closed_mesh.h"
 #include <twinray/abstract_accel.h>
-#include "validation/leaks/leak_state.h"
 
 namespace twinray::cli {
 namespace {

@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The command `twinray`.
-#include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <iostream>
 
-#include "cli/command/help_text.h"
-#include "cli/command/parse.h"
-#include "cli/command/values.h"
-#include "cli/commands.h"
+#include "cli/common.h"
 #include "engine/core/platform.h"
 #include "twinray_version.h"
 #include <twinray/context.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/qualified_devices.h"
 
-#include "engine/core/cpu_vectors.h"
+#include "engine/core/device_properties.h"
 #include "engine/core/error.h"
 #include <twinray/context.h>
 

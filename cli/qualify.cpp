@@ -1,14 +1,7 @@
 // SPDX-License-Identifier: MIT
 // `twinray qualify`: the report's checks alone, for continuous integration.
-#include <iostream>
-#include <optional>
-
-#include "cli/command/values.h"
-#include "cli/commands.h"
-#include "cli/common.h"
 #include "cli/verify_conformance.h"
 #include "cli/qualified_devices.h"
-#include "engine/core/error.h"
 #include "twinray_version.h"
 #include "validation/records/recorder.h"
 #include "validation/reference/float_probe.h"
@@ -31,7 +24,7 @@ struct QualifyOptions {
 // Makes the records of this process's device.
 std::vector<Record> records_here(const QualifyOptions& options) {
     std::filesystem::create_directories(options.folder);
-    frame::Devices devices(watched_context_desc(options.common, most_suite_seconds));
+    frame::Devices devices(context_desc(options.common, most_suite_seconds));
     Context& context = devices.context(frame::Backend::software);
     Recorder recorder({utc_now(), twinray_version, probed_device(context)}, options.folder / "report.jsonl");
     std::cout << "qualify " << context.properties().name << ", " << context.properties().driver << '\n';

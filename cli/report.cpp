@@ -1,23 +1,14 @@
 // SPDX-License-Identifier: MIT
 // `twinray report`: error against run time over the suite of stiff and extreme cases.
-#include <algorithm>
 #include <array>
-#include <iostream>
-#include <nlohmann/json.hpp>
 
-#include <twinray/scene.h>
-
-#include "cli/command/values.h"
-#include "cli/commands.h"
-#include "cli/common.h"
 #include "cli/verify_conformance.h"
 #include "report/page/compare.h"
-#include "report/page/gnuplot.h"
+#include "report/page/figure.h"
 #include "report/page/page.h"
 #include "report/page/verdict.h"
-#include "report/reproducer/write.h"
+#include "report/reproducer/reproduce.h"
 #include "report/suite/suite.h"
-#include "engine/core/error.h"
 #include "validation/reference/float_probe.h"
 #include "twinray_version.h"
 
@@ -129,7 +120,7 @@ int run(const ReportOptions& options) {
     // Read before anything is written: it may be the report that this one replaces.
     const JsonLines baseline = options.baseline.empty() ? JsonLines() : read_json_lines(options.baseline);
     std::filesystem::create_directories(options.folder);
-    frame::Devices devices(watched_context_desc(options.common, most_suite_seconds), options.trees);
+    frame::Devices devices(context_desc(options.common, most_suite_seconds), options.trees);
     Context& context = devices.context(frame::Backend::software);
     const RecordedDevice device = probed_device(context);
     suite::SuiteState state = state_of(options, device);
@@ -221,17 +212,18 @@ Command report_command() {
                             {.name = "--levels",
                              .value = choices(options->levels, names_of(all_levels)),
                              .help = "levels to measure; without it, all"}}};
-    Section output = {"Output and trees",
-                      {output_option(folder(options->folder), "folder for report.jsonl, report.csv and report.html"),
-                       {.name = "--baseline",
-                        .value = file(options->baseline),
-                        .help = "print the changes since this report.jsonl, or --json output, of an earlier run; lines "
-                                "of other commands are counted"},
-                       {.name = "--compare",
-                        .value = paths(options->compared, 2, "REPORT REPORT ..."),
-                        .help = "run nothing; print the changes from the first report (a folder or its JSON lines) to "
-                                "each of the others, beyond noise; the exit status is 1 if something is worse"}}};
-    for (Option& option : tree_options(options->trees)) output.options.push_back(std::move(option));
+    const Section output = with(
+        {"Output and trees",
+         {output_option(folder(options->folder), "folder for report.jsonl, report.csv and report.html"),
+          {.name = "--baseline",
+           .value = file(options->baseline),
+           .help = "print the changes since this report.jsonl, or --json output, of an earlier run; lines of other "
+                   "commands are counted"},
+          {.name = "--compare",
+           .value = paths(options->compared, 2, "REPORT REPORT ..."),
+           .help = "run nothing; print the changes from the first report (a folder or its JSON lines) to each of the "
+                   "others, beyond noise; the exit status is 1 if something is worse"}}},
+        tree_options(options->trees));
     return {.name = "report",
             .group = "Checking",
             .summary = "measure error against run time in a suite of stiff and extreme cases",

@@ -3,14 +3,10 @@
 
 #include <charconv>
 #include <exception>
-#include <iostream>
 #include <sstream>
 
 #include <twinray/analysis.h>
-#include <twinray/scene.h>
-#include "cli/command/values.h"
-#include "engine/core/error.h"
-#include "engine/scene/bytes.h"
+#include "engine/core/files.h"
 #include "twinray_version.h"
 
 namespace twinray::cli {
@@ -98,11 +94,12 @@ Section shard_options(ShardOptions& options, std::vector<std::string> whole, con
               .needs = {output}}}};
 }
 
-Agreement agreement_of(const std::string& command, const Scene& scene, const std::string& accel) {
-    return {{"twinray", twinray_version},
-            {"command", command},
-            {"scene", text(count_triangles(scene), " triangles, checksum ", checksum_of(scene))},
-            {"accelerator", accel}};
+Agreement agreement_of(const std::string& command, const Scene& scene, const std::string& accel, Agreement more) {
+    more.insert(more.begin(), {{"twinray", twinray_version},
+                               {"command", command},
+                               {"scene", text(count_triangles(scene), " triangles, checksum ", checksum_of(scene))},
+                               {"accelerator", accel}});
+    return more;
 }
 
 std::string checksum_text(std::span<const std::byte> bytes) {

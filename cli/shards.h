@@ -3,12 +3,8 @@
 #pragma once
 
 #include <cstring>
-#include <filesystem>
 #include <functional>
-#include <optional>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "cli/common.h"
 #include "samples/support/ranks.h"
@@ -31,8 +27,8 @@ struct Rows {
 // The names and values on which all parts must agree.
 using Agreement = std::vector<std::pair<std::string, std::string>>;
 
-// Returns the version, the command, the scene and the accelerator ("" if there is none).
-Agreement agreement_of(const std::string& command, const Scene& scene, const std::string& accel);
+// Returns the version, the command, the scene and the accelerator ("" if there is none), then `more`.
+Agreement agreement_of(const std::string& command, const Scene& scene, const std::string& accel, Agreement more);
 
 class Shards {
   public:

@@ -1,25 +1,14 @@
 // SPDX-License-Identifier: MIT
 // `twinray trace`: a file of rays in, a file of hits out.
-#include <algorithm>
 #include <charconv>
-#include <iostream>
 #include <map>
-#include <nlohmann/json.hpp>
-
-#include <twinray/scene.h>
 
 #include "cli/analysis_options.h"
-#include "cli/command/values.h"
-#include "cli/commands.h"
-#include "cli/common.h"
 #include "cli/shards.h"
 #include "engine/scene/ray_file.h"
 #include <twinray/queries.h>
-#include "engine/core/error.h"
-#include "engine/core/stopwatch.h"
 #include "engine/core/files.h"
-#include "viewer/picture/ray_picture.h"
-#include "samples/support/progress.h"
+#include "viewer/picture/scene_picture.h"
 
 namespace twinray::cli {
 namespace {
@@ -105,15 +94,14 @@ std::vector<Hit> trace_in_batches(AbstractAccel& accel, std::span<const Ray> ray
 
 Agreement agreement_for(const TraceOptions& options, const Scene& scene, const AccelChoice& choice,
                         std::span<const Ray> rays) {
-    Agreement agreement = agreement_of("trace", scene, choice.name());
-    agreement.push_back({"rays", checksum_text(std::as_bytes(rays))});
-    agreement.push_back({"--query", options.query});
-    agreement.push_back({"--level", std::string(name_of(options.level))});
-    agreement.push_back({"--cull", std::to_string(static_cast<int>(options.cull))});
     std::string masks = std::to_string(options.mask);
     for (const std::string& mask : options.instance_masks) masks += ' ' + mask;
-    agreement.push_back({"masks", masks});
-    return agreement;
+    return agreement_of("trace", scene, choice.name(),
+                        {{"rays", checksum_text(std::as_bytes(rays))},
+                         {"--query", options.query},
+                         {"--level", std::string(name_of(options.level))},
+                         {"--cull", std::to_string(static_cast<int>(options.cull))},
+                         {"masks", masks}});
 }
 
 // Computes the hits of all rays; with --query all it writes their counts. Returns nothing if another process goes on.
@@ -236,20 +224,20 @@ Command trace_command() {
                                     {"instance", HitColor::instance},
                                     {"facing", HitColor::facing},
                                     {"normal", HitColor::normal}};
-    Section pictures = picture_options(options->pictures, "the hits");
-    pictures.options.push_back({.name = "--hit-color",
-                                .value = choice(options->rays_shown.color, colors),
-                                .help = "quantity that the colour of a hit shows",
-                                .needs = {"--picture"}});
-    pictures.options.push_back(color_scale_option(options->pictures));
-    pictures.options.push_back({.name = "--labels",
-                                .value = flag(options->rays_shown.has_labels),
-                                .help = "print the number and distance of each hit beside it",
-                                .needs = {"--picture"}});
-    pictures.options.push_back({.name = "--most-rays",
-                                .value = number(options->rays_shown.most_rays, {1, 1'000'000}),
-                                .help = "largest number of rays to draw, chosen evenly",
-                                .needs = {"--picture"}});
+    const Section pictures = with(picture_options(options->pictures, "the hits"),
+                                  {{.name = "--hit-color",
+                                    .value = choice(options->rays_shown.color, colors),
+                                    .help = "quantity that the colour of a hit shows",
+                                    .needs = {"--picture"}},
+                                   color_scale_option(options->pictures),
+                                   {.name = "--labels",
+                                    .value = flag(options->rays_shown.has_labels),
+                                    .help = "print the number and distance of each hit beside it",
+                                    .needs = {"--picture"}},
+                                   {.name = "--most-rays",
+                                    .value = number(options->rays_shown.most_rays, {1, 1'000'000}),
+                                    .help = "largest number of rays to draw, chosen evenly",
+                                    .needs = {"--picture"}}});
     return {.name = "trace",
             .group = "Tracing",
             .summary = "trace a file of rays",

@@ -1,24 +1,14 @@
 // SPDX-License-Identifier: MIT
 // `twinray verify`: hardware against software against the references, float64 and exact.
-#include <iostream>
-#include <nlohmann/json.hpp>
-
-#include <twinray/scene.h>
-
-#include "cli/command/values.h"
-#include "cli/commands.h"
 #include "cli/common.h"
 #include "engine/scene/ray_file.h"
-#include "engine/core/error.h"
 #include "twinray_version.h"
 #include "validation/exact/exact_reference.h"
-#include "report/replay/scene_file.h"
 #include "report/explain/explain.h"
-#include "report/reproducer/write.h"
+#include "report/reproducer/reproduce.h"
 #include "validation/verify/comparison.h"
 #include "samples/support/progress.h"
 #include "validation/reference/aimed_rays.h"
-#include <twinray/tlas.h>
 #include "report/replay/replay.h"
 #ifdef TWINRAY_HAS_REPORT
 #include "cli/verify_conformance.h"

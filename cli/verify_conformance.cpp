@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "cli/verify_conformance.h"
 
-#include <algorithm>
 #include <fstream>
-#include <iostream>
-#include <nlohmann/json.hpp>
 
-#include "cli/command/values.h"
 #include "cli/qualified_devices.h"
-#include "engine/core/error.h"
 #include "twinray_version.h"
-#include "report/conformance/output.h"
+#include "report/conformance/suite.h"
 #include "report/suite/suite.h"
-#include "validation/records/temporary_folder.h"
+#include "engine/core/files.h"
 
 namespace twinray::cli {
 namespace {
@@ -46,7 +41,7 @@ std::vector<conformance::Case> cases_left(const std::vector<std::string>& only, 
 
 // Runs the cases in that process, appends the records to options.json and prints nothing.
 int run_conformance_here(const CommonOptions& options, const std::vector<std::string>& only, bool is_full) {
-    Context context(watched_context_desc(options, most_conformance_seconds));
+    Context context(context_desc(options, most_conformance_seconds));
     Recorder recorder({utc_now(), twinray_version, probed_device(context)});
     conformance::run(context, {.is_full = is_full, .seed = options.seed, .only = only}, recorder, options.quiet,
                      [&](const Record& record) { append_json(options.json, nlohmann::json::parse(to_json(record))); });

@@ -1,21 +1,14 @@
 // SPDX-License-Identifier: MIT
 // `twinray view`: a window, or its pictures without one.
-#include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <iostream>
 #include <numbers>
-#include <nlohmann/json.hpp>
 
-#include "cli/command/values.h"
-#include "cli/commands.h"
 #include "cli/common.h"
-#include "engine/core/error.h"
 #include "engine/core/stopwatch.h"
 #include "twinray_version.h"
-#include "viewer/export.h"
+#include "viewer/files.h"
 #include "viewer/viewer.h"
-#include "viewer/window.h"
 
 namespace twinray::cli {
 namespace {

@@ -1,26 +1,13 @@
 // SPDX-License-Identifier: MIT
 // `twinray viewfactors`: the view factors of a scene with their errors, as a matrix and as pictures.
-#include <twinray/analysis.h>
-
-#include <algorithm>
 #include <cmath>
-#include <iostream>
-#include <nlohmann/json.hpp>
-#include <optional>
 
 #include "cli/analysis_options.h"
-#include "cli/command/values.h"
-#include "cli/commands.h"
-#include "cli/common.h"
 #include "cli/shards.h"
-#include "engine/analysis/matrix_file.h"
 #include "engine/analysis/row_run.h"
-#include "engine/core/error.h"
-#include "engine/core/stopwatch.h"
-#include "engine/scene/bytes.h"
+#include "engine/core/files.h"
 #include "twinray_version.h"
-#include "samples/support/progress.h"
-#include "viewer/picture/matrix_picture.h"
+#include "viewer/picture/page.h"
 
 namespace twinray::cli {
 namespace {
@@ -282,21 +269,21 @@ Command viewfactors_command() {
         {output_option(
             file(options->output, {".npz", ".csv"}),
             "write the matrix: a SciPy CSR matrix with confidence intervals, or lines i,j,F,ci_low,ci_high")}};
-    for (Option& option : face_group_options(options->groups, "one row")) output.options.push_back(std::move(option));
+    output = with(output, face_group_options(options->groups, "one row"));
     output.options.push_back(
         {.name = "--project",
          .value = flag(options->projects),
          .help = "write the nearest matrix that satisfies reciprocity and closure, instead of the counted one"});
-    Section pictures =
-        picture_options(options->pictures, "the open fraction, or the view factors of one row with --from");
-    pictures.options.push_back(color_scale_option(options->pictures));
-    pictures.options.push_back({.name = "--from",
-                                .value = number(options->from),
-                                .help = "row whose view factors --picture shows, numbered from 0",
-                                .needs = {"--picture"}});
-    pictures.options.push_back({.name = "--matrix",
-                                .value = file(options->matrix, {".png"}),
-                                .help = "write a picture of the matrix on a logarithmic scale"});
+    const Section pictures =
+        with(picture_options(options->pictures, "the open fraction, or the view factors of one row with --from"),
+             {color_scale_option(options->pictures),
+              {.name = "--from",
+               .value = number(options->from),
+               .help = "row whose view factors --picture shows, numbered from 0",
+               .needs = {"--picture"}},
+              {.name = "--matrix",
+               .value = file(options->matrix, {".png"}),
+               .help = "write a picture of the matrix on a logarithmic scale"}});
     return {.name = "viewfactors",
             .group = "Analyses",
             .summary = "compute view factors between faces or groups of faces, with confidence intervals",

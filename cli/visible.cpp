@@ -1,23 +1,13 @@
 // SPDX-License-Identifier: MIT
 // `twinray visible`: which patches of the sky sensors see.
-#include <twinray/analysis.h>
-
-#include <algorithm>
 #include <cmath>
-#include <iostream>
-#include <nlohmann/json.hpp>
 
 #include "cli/analysis_options.h"
-#include "cli/command/values.h"
-#include "cli/commands.h"
 #include "cli/shards.h"
 #include "engine/analysis/npz.h"
-#include "engine/core/error.h"
-#include "engine/core/stopwatch.h"
-#include "engine/scene/bytes.h"
-#include "engine/scene/number_lines.h"
+#include "engine/core/files.h"
+#include "engine/scene/importers/words.h"
 #include "twinray/glsl/vector_math.h"
-#include "samples/support/progress.h"
 
 namespace twinray::cli {
 namespace {
@@ -78,14 +68,11 @@ std::vector<double> shares_of(std::span<const std::uint8_t> free, const Sensors&
 
 void write(const std::filesystem::path& file, std::span<const std::uint8_t> free, std::span<const double> shares,
            std::span<const vec3> directions, std::span<const SkyPatch> sky) {
-    if (lower_suffix(file) == ".csv") {
-        CsvFile csv(file, "sensor,free_patches,share");
-        for (std::size_t i = 0; i < shares.size(); ++i) {
+    if (lower_suffix(file) == ".csv")
+        return write_rows(file, "sensor,free_patches,share", shares.size(), [&](std::size_t i) -> CsvRow {
             const auto row = free.subspan(i * sky.size(), sky.size());
-            csv.row({i, static_cast<std::uint64_t>(std::count(row.begin(), row.end(), 1))}, {shares[i]});
-        }
-        return csv.close();
-    }
+            return {{i, static_cast<std::uint64_t>(std::count(row.begin(), row.end(), 1))}, {shares[i]}};
+        });
     std::vector<float> along;
     std::vector<double> angles;
     for (std::size_t k = 0; k < sky.size(); ++k) {
@@ -104,11 +91,11 @@ void write(const std::filesystem::path& file, std::span<const std::uint8_t> free
 std::optional<std::vector<std::uint8_t>> free_patches(const Shards& shards, const VisibleOptions& options,
                                                       const Analysed& analysed, const Sensors& sensors,
                                                       std::span<const vec3> directions) {
-    Agreement agreement = agreement_of("visible", analysed.scene, analysed.choice.name());
-    agreement.push_back({"points", checksum_text(std::as_bytes(std::span(sensors.points)))});
-    agreement.push_back({"normals", checksum_text(std::as_bytes(std::span(sensors.normals)))});
-    agreement.push_back({"directions", checksum_text(std::as_bytes(directions))});
-    agreement.push_back({"--t-near", text(std::hexfloat, options.t_near)});
+    const Agreement agreement = agreement_of("visible", analysed.scene, analysed.choice.name(),
+                                             {{"points", checksum_text(std::as_bytes(std::span(sensors.points)))},
+                                              {"normals", checksum_text(std::as_bytes(std::span(sensors.normals)))},
+                                              {"directions", checksum_text(std::as_bytes(directions))},
+                                              {"--t-near", text(std::hexfloat, options.t_near)}});
     return compute_rows<std::uint8_t>(shards, sensors.points.size(), agreement, [&](Rows rows) {
         samples::Progress progress("visible", rows.count() * directions.size(), options.common.quiet);
         return visibility(*analysed.accel, std::span(sensors.points).subspan(rows.first, rows.count()), directions,

@@ -87,8 +87,12 @@ function(twinray_add_trace_program target name file)
     twinray_compile_shader(${target} ${name}_hw_refined ${root}/shaders/engine/trace.comp ${flags} -DTWINRAY_HW
         -DTWINRAY_REFINED
     )
-    twinray_compile_shader(${target} ${name}_rahit ${root}/shaders/hwtlas/trace.rahit ${flags})
-    twinray_compile_shader(${target} ${name}_rint ${root}/shaders/hwtlas/trace.rint ${flags})
+    twinray_compile_shader(${target} ${name}_rahit ${root}/shaders/hwtlas/trace.glsl ${flags} -S rahit
+        -DSTAGE_RAHIT
+    )
+    twinray_compile_shader(${target} ${name}_rint ${root}/shaders/hwtlas/trace.glsl ${flags} -S rint
+        -DSTAGE_RINT
+    )
     file(
         CONFIGURE
         OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/spirv/${name}.trace_program.h

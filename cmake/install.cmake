@@ -52,7 +52,7 @@ install(DIRECTORY include/twinray DESTINATION ${headers_dir})
 set(glsl_dir ${headers_dir}/twinray/glsl)
 install(DIRECTORY shaders/shared shaders/scene DESTINATION ${glsl_dir}/shaders)
 install(FILES shaders/engine/trace.comp DESTINATION ${glsl_dir}/shaders/engine)
-install(DIRECTORY shaders/hwtlas DESTINATION ${glsl_dir}/shaders FILES_MATCHING PATTERN "*.glsl" PATTERN "trace.r*")
+install(DIRECTORY shaders/hwtlas DESTINATION ${glsl_dir}/shaders FILES_MATCHING PATTERN "*.glsl")
 
 # A host of a static library links the library's dependencies itself.
 set(find_link_only "")
@@ -106,3 +106,35 @@ file(RELATIVE_PATH prefix_from_pc ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE
 string(REGEX REPLACE "/$" "" prefix_from_pc ${prefix_from_pc})
 configure_file(cmake/twinray.pc.in ${generated_dir}/twinray.pc @ONLY)
 install(FILES ${generated_dir}/twinray.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+
+if(NOT PROJECT_IS_TOP_LEVEL)
+    return()
+endif()
+# `cpack` packs the tree that `cmake --install` makes: as an archive, and on Linux as a Debian package.
+set(CPACK_GENERATOR TGZ DEB)
+if(WIN32)
+    set(CPACK_GENERATOR ZIP)
+    if(BUILD_SHARED_LIBS)
+        set(CPACK_PACKAGE_FILE_NAME ${PROJECT_NAME}-${PROJECT_VERSION}-win64-dll)
+    endif()
+endif()
+set(CPACK_PACKAGE_VENDOR twinray)
+# To publish the packages, pass -DCPACK_PACKAGE_CONTACT="NAME <ADDRESS>", the Debian package's maintainer.
+if(NOT CPACK_PACKAGE_CONTACT)
+    set(CPACK_PACKAGE_CONTACT "twinray developers")
+endif()
+set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
+set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/packages)
+set(CPACK_STRIP_FILES ON)
+# The Python package goes into a wheel.
+set(CPACK_INSTALL_CMAKE_PROJECTS "${PROJECT_BINARY_DIR};${PROJECT_NAME};Unspecified;/")
+
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
+# dpkg-shlibdeps (Debian: dpkg-dev and file) finds what the command links. Without the window it loads Vulkan only when
+# it runs.
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+# Recommended: a driver, and what programs that link the static libraries need to build.
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libvulkan1, mesa-vulkan-drivers, libvulkan-dev, libopenexr-dev, zlib1g-dev")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "glslang-tools, spirv-tools")
+include(CPack)

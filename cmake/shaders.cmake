@@ -1,6 +1,7 @@
 # twinray_add_shaders(<target> <pattern>... [EXCEPT <file>...]): compiles each GLSL file under shaders/ that a pattern
-# names to SPIR-V at build time and gives <target> a header per file, "<folder>_<stem>.spv.h" with
-# `const uint32_t <folder>_<stem>_spirv[]` (ray tracing stages keep their suffix: <folder>_<stem>_rgen).
+# names to SPIR-V at build time and gives <target> a header per module, "<folder>_<stem>.spv.h" with
+# `const uint32_t <folder>_<stem>_spirv[]`. A file may be several modules: "#ifdef KERNEL_<NAME>" makes the kernel
+# <folder>_<name> of it, "#ifdef STAGE_<NAME>" the stage <folder>_<stem>_<name> of a ray tracing pipeline.
 include(${CMAKE_CURRENT_LIST_DIR}/TwinrayShaders.cmake)
 
 function(twinray_add_shaders target)
@@ -13,13 +14,22 @@ function(twinray_add_shaders target)
         endif()
         get_filename_component(folder ${source} DIRECTORY)
         get_filename_component(stem ${source} NAME_WE)
-        get_filename_component(extension ${source} LAST_EXT)
-        set(name ${folder}_${stem})
-        if(NOT extension STREQUAL ".comp")
-            string(REPLACE "." "_" suffix ${extension})
-            string(APPEND name ${suffix})
+        set(file ${PROJECT_SOURCE_DIR}/shaders/${source})
+        file(STRINGS ${file} parts REGEX "^#ifdef (KERNEL|STAGE)_")
+        if(NOT parts)
+            twinray_compile_shader(${target} ${folder}_${stem} ${file})
         endif()
-        twinray_compile_shader(${target} ${name} ${PROJECT_SOURCE_DIR}/shaders/${source})
+        set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+        foreach(part ${parts})
+            string(REGEX REPLACE "^#ifdef " "" macro ${part})
+            string(REGEX REPLACE "^(KERNEL|STAGE)_" "" name ${macro})
+            string(TOLOWER ${name} name)
+            if(macro MATCHES "^STAGE_")
+                twinray_compile_shader(${target} ${folder}_${stem}_${name} ${file} -S ${name} -D${macro})
+            else()
+                twinray_compile_shader(${target} ${folder}_${name} ${file} -D${macro})
+            endif()
+        endforeach()
     endforeach()
 endfunction()
 

@@ -4,6 +4,10 @@
 import pathlib
 import re
 import sys
+import textwrap
+
+from docutils import nodes
+from sphinx.directives.code import LiteralInclude
 
 root = pathlib.Path(__file__).resolve().parent.parent
 build = root / "build/docs"
@@ -41,3 +45,27 @@ html_show_search_summary = False  # it would be fetched, which a page without a 
 html_last_updated_fmt = None
 pygments_style = "a11y-light"
 pygments_dark_style = "a11y-dark"
+
+
+class Region(LiteralInclude):
+    """`{region} FILE NAME`: lines of a file in the folder of a tutorial, from the comment [NAME] to the next such
+    comment, which is [/NAME] or begins another region, or to the end."""
+
+    required_arguments = 2
+    final_argument_whitespace = True
+
+    def run(self):
+        file, name = self.arguments
+        languages = {".comp": "glsl", ".glsl": "glsl", ".py": "python", ".sh": "sh", ".txt": "cmake"}
+        language = languages.get(pathlib.Path(file).suffix, "cpp")
+        mark = "//" if language in ("cpp", "glsl") else "#"
+        self.arguments = [f"../../samples/{self.env.docname}/{file}"]
+        self.options |= {"language": language, "start-after": f"{mark} [{name}]"}
+        [block] = super().run()
+        block.rawsource = textwrap.dedent(re.split(rf"^ *{mark} \[", block.astext(), flags=re.M)[0]).rstrip()
+        block[:] = [nodes.Text(block.rawsource)]
+        return [block]
+
+
+def setup(app):
+    app.add_directive("region", Region)

@@ -54,6 +54,18 @@ VkAccelerationStructureBuildGeometryInfoKHR build_info(const StructureWork& work
 
 }  // namespace
 
+StructureBuild structure_build(const std::string& name, VkAccelerationStructureTypeKHR type, VkGeometryTypeKHR geometry,
+                               std::size_t primitive_count) {
+    StructureBuild build{};
+    build.name = name;
+    build.type = type;
+    build.primitive_count = static_cast<std::uint32_t>(primitive_count);
+    build.geometry.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR;
+    build.geometry.geometryType = geometry;
+    build.geometry.flags = VK_GEOMETRY_OPAQUE_BIT_KHR;
+    return build;
+}
+
 VkAccelerationStructureBuildSizesInfoKHR sizes_of(const Context& context, const StructureBuild& build) {
     const VkAccelerationStructureBuildGeometryInfoKHR info = build_info(build);
     VkAccelerationStructureBuildSizesInfoKHR sizes{};

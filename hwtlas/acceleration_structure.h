@@ -41,6 +41,10 @@ struct StructureBuild {
     VkBuildAccelerationStructureFlagsKHR flags = VK_BUILD_ACCELERATION_STRUCTURE_PREFER_FAST_TRACE_BIT_KHR;
 };
 
+// Describes one, of opaque geometry, but for the geometry's data.
+StructureBuild structure_build(const std::string& name, VkAccelerationStructureTypeKHR type, VkGeometryTypeKHR geometry,
+                               std::size_t primitive_count);
+
 // Returns the memory that a build of up to primitive_count primitives takes.
 VkAccelerationStructureBuildSizesInfoKHR sizes_of(const Context& context, const StructureBuild& build);
 Buffer make_build_scratch(Context& context, const std::string& name, std::uint64_t bytes);

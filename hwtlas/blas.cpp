@@ -6,7 +6,6 @@
 
 #include "engine/accel/batches.h"
 #include "engine/accel/morton_order.h"
-#include "engine/core/ray.h"
 
 namespace twinray {
 namespace {
@@ -30,20 +29,10 @@ Buffer upload(Commands& commands, const std::string& name, const std::vector<T>&
     return buffer;
 }
 
-StructureBuild build_of(const std::string& name, VkGeometryTypeKHR type, std::size_t primitive_count) {
-    StructureBuild build{};
-    build.name = "blas " + name;
-    build.type = VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR;
-    build.primitive_count = static_cast<std::uint32_t>(primitive_count);
-    build.geometry.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR;
-    build.geometry.geometryType = type;
-    build.geometry.flags = VK_GEOMETRY_OPAQUE_BIT_KHR;
-    return build;
-}
-
 StructureBuild build_of_boxes(const std::string& name, const Buffer& boxes) {
     static_assert(sizeof(Bounds) == sizeof(VkAabbPositionsKHR));
-    StructureBuild build = build_of(name, VK_GEOMETRY_TYPE_AABBS_KHR, boxes.bytes() / sizeof(Bounds));
+    StructureBuild build = structure_build("blas " + name, VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR,
+                                           VK_GEOMETRY_TYPE_AABBS_KHR, boxes.bytes() / sizeof(Bounds));
     VkAccelerationStructureGeometryAabbsDataKHR& data = build.geometry.geometry.aabbs;
     data.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_AABBS_DATA_KHR;
     data.data.deviceAddress = boxes.address();
@@ -95,7 +84,8 @@ BlasInput blas_input(const Geometry& geometry, bool reorder) {
 
 StructureBuild triangle_build(const std::string& name, std::uint64_t positions, std::size_t vertex_count,
                               std::size_t triangle_count) {
-    StructureBuild build = build_of(name, VK_GEOMETRY_TYPE_TRIANGLES_KHR, triangle_count);
+    StructureBuild build = structure_build("blas " + name, VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR,
+                                           VK_GEOMETRY_TYPE_TRIANGLES_KHR, triangle_count);
     VkAccelerationStructureGeometryTrianglesDataKHR& data = build.geometry.geometry.triangles;
     data.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_TRIANGLES_DATA_KHR;
     data.vertexFormat = VK_FORMAT_R32G32B32_SFLOAT;

@@ -1,21 +1,20 @@
 // SPDX-License-Identifier: MIT
-// Bottom levels of HwTlas over meshes in host memory, and the structs that its kernels share with C++.
+// Bottom levels of HwTlas over meshes in host memory and on the device, and the structs that its kernels share with
+// C++.
 #pragma once
 
 #include <memory>
 #include <vector>
 
-#include <twinray/abstract_accel.h>
-
-#include "engine/accel/geometry.h"
-#include "engine/accel/surface_area.h"
+#include "engine/accel/accel_backend.h"
+#include "engine/accel/mesh_store.h"
 #include "engine/accel/world_bound.h"
+#include "engine/core/radix_sort.h"
 #include "hwtlas/acceleration_structure.h"
 
 namespace twinray {
 using std::uint64_t;
 #include "twinray/glsl/cpp_begin.h"
-#include "shaders/shared/hw_tlas_header.h"
 #include "shaders/shared/hw_build.h"
 #include "twinray/glsl/cpp_end.h"
 
@@ -40,7 +39,7 @@ BlasInput blas_input(const Geometry& geometry, bool reorder);
 
 // The built form of one geometry. It has no structure if nothing can be hit: Vulkan takes an instance of address 0 as
 // inactive.
-struct Blas {
+struct Blas : AccelBackend::BuiltGeometry {
     uint kind = GEOMETRY_TRIANGLES;
     Bounds bounds;  // of the active primitives; empty where the device alone knows them
     AccelerationStructure structure;
@@ -55,7 +54,6 @@ struct Blas {
         context.fill_absent(block.triangles);
         return block;
     }
-    std::uint64_t bytes() const { return structure.bytes() + (original ? original->bytes() : 0); }
 };
 
 // Describes a build of triangles from a device address; with uint indices unless the caller changes that.
@@ -72,5 +70,42 @@ std::vector<Blas> build_blases(Commands& commands, std::span<const Geometry* con
 
 // Returns the memory that this takes for meshes of triangles on the host.
 BuildBytes blas_bytes(const Context& context, std::span<const GeometrySize> meshes, const BlasOptions& options);
+
+// A mesh with moving vertices, all on the device, and at least one triangle.
+struct MovingMesh {
+    PackedMesh mesh;
+    uint triangle_count;
+    const Buffer* block;  // HwGeometry; gets the mesh's box, and by a build the addresses of `blas`
+    const Blas* blas;     // can_update
+    CostTarget cost;
+};
+
+// Builds bottom levels from vertices in device memory, and updates them. Kernels do what blas_input() does on the host:
+// the box, the order for drivers that build in input order, and triangles without non-finite vertices.
+class MovingBlasBuilder {
+  public:
+    MovingBlasBuilder(Context& context, bool reorder);
+
+    // Makes room for a mesh of so many triangles, not built yet.
+    Blas make(const std::string& name, uint triangle_count) const;
+    // Returns the memory that building meshes on the device takes.
+    BuildBytes bytes(std::span<const GeometrySize> meshes, std::uint64_t scratch_budget) const;
+    // Works in batches whose scratch fits into `scratch_budget`. update: every mesh was built before.
+    void record(Commands& commands, std::span<const MovingMesh> meshes, BuildMode mode,
+                std::uint64_t scratch_budget) const;
+
+  private:
+    struct Batch;
+    std::uint64_t scratch_bytes(uint triangle_count, BuildMode mode) const;
+    Batch begin(Commands& commands, std::span<const MovingMesh> meshes, BuildMode mode, const Buffer& scratch) const;
+    void record_batch(Commands& commands, Batch& batch) const;
+    void record_order(Commands& commands, Batch& batch) const;
+
+    Context& context_;
+    bool reorder_;
+    RadixSort sort_;
+    SurfaceArea areas_;
+    Kernel<HwTrianglesArgs> bound_, codes_, gather_;
+};
 
 }  // namespace twinray

@@ -5,11 +5,8 @@
 #include <cstddef>
 #include <utility>
 
-#include "engine/accel/accel_backend.h"
-#include "engine/accel/geometry.h"
 #include "engine/accel/trace_program.h"
 #include "engine/core/error.h"
-#include "hwtlas/moving_blas.h"
 #include "hwtlas/ray_tracing_pipeline.h"
 #include "hwtlas/tlas.h"
 #include "hwtlas_trace_query.spv.h"
@@ -75,6 +72,11 @@ const RayTracingPipeline& PipelineProgram::pipeline(Query query, Level level) co
     return *pipeline;
 }
 
+std::unique_ptr<Blas> held(Blas&& built) {
+    built.bytes = built.structure.bytes() + (built.original ? built.original->bytes() : 0);
+    return std::make_unique<Blas>(std::move(built));
+}
+
 class HwBackend final : public AccelBackend {
   public:
     HwBackend(Context& context, BuildOrder order, const AccelOptions& options);
@@ -100,34 +102,12 @@ class HwBackend final : public AccelBackend {
     void measure_tlas(Commands& commands, const TlasInput& input, const BuiltTlas& current) const override;
     std::unique_ptr<TraceProgram> create_program(const TraceProgramCode* code, uint features) const override;
 
-    struct HwBuiltGeometry;
-    struct HwTopLevel;
     void build_still(Commands& commands, std::span<const GeometryInput> inputs, Built& built);
-    twinray::TlasInput builder_input(const TlasInput& input) const;
     MovingMesh prepare_moving(const GeometryInput& input, std::unique_ptr<BuiltGeometry>& built) const;
 
     bool reorder_;
     MovingBlasBuilder moving_;
     TlasBuilder tlas_builder_;
-};
-
-struct HwBackend::HwBuiltGeometry : BuiltGeometry {
-    explicit HwBuiltGeometry(Blas&& built) : blas(std::move(built)) { bytes = blas.bytes(); }
-    Blas blas;
-
-    static const Blas* of(const BuiltGeometry* built) {
-        return built ? &static_cast<const HwBuiltGeometry*>(built)->blas : nullptr;
-    }
-};
-
-struct HwBackend::HwTopLevel : BuiltTlas {
-    explicit HwTopLevel(Tlas&& built) : tlas(std::move(built)) {
-        address = tlas.scene.address();
-        bytes = tlas.bytes();
-        scratch_bytes = tlas.scratch_bytes();
-        capacity = tlas.capacity;
-    }
-    Tlas tlas;
 };
 
 HwBackend::HwBackend(Context& context, BuildOrder order, const AccelOptions& options)
@@ -162,17 +142,17 @@ void HwBackend::build_still(Commands& commands, std::span<const GeometryInput> i
     const auto pass = commands.pass("hwtlas geometry blocks");
     for (std::size_t i = 0; i < indices.size(); ++i) {
         commands.write(*inputs[indices[i]].block, blases[i].block(context()));
-        built[indices[i]] = std::make_unique<HwBuiltGeometry>(std::move(blases[i]));
+        built[indices[i]] = held(std::move(blases[i]));
     }
 }
 
 // Uses the memory of `current` if that was made for meshes that move.
 MovingMesh HwBackend::prepare_moving(const GeometryInput& input, std::unique_ptr<BuiltGeometry>& built) const {
     const auto count = static_cast<uint>(input.geometry->triangle_count());
-    const Blas* blas = HwBuiltGeometry::of(input.current);
+    const auto* blas = static_cast<const Blas*>(input.current);
     if (!blas || !blas->can_update) {
-        built = std::make_unique<HwBuiltGeometry>(moving_.make(input.geometry->name, count));
-        blas = HwBuiltGeometry::of(built.get());
+        built = held(moving_.make(input.geometry->name, count));
+        blas = static_cast<const Blas*>(built.get());
     }
     return {input.mesh, count, input.block, blas, input.cost};
 }
@@ -211,11 +191,11 @@ BuildBytes HwBackend::scene_bytes(std::size_t count, std::size_t capacity) const
 }
 
 bool HwBackend::has_compaction(const BuiltGeometry& built) const {
-    return HwBuiltGeometry::of(&built)->compacted != nullptr;
+    return static_cast<const Blas&>(built).compacted != nullptr;
 }
 
 AccelBackend::Compaction HwBackend::compaction_of(const BuiltGeometry& built, SyncPoint done) const {
-    const Blas& blas = *HwBuiltGeometry::of(&built);
+    const auto& blas = static_cast<const Blas&>(built);
     if (!blas.compacted) return Compaction::none;
     const auto bytes = blas.compacted->of(blas.compacted_index, done);
     if (!bytes) return Compaction::untold;
@@ -227,7 +207,7 @@ HwBackend::Built HwBackend::compact_geometries(Commands& commands, std::span<con
     if (inputs.empty()) return built;
     const auto pass = commands.pass("hwtlas_compact_blases");
     for (const GeometryInput& input : inputs) {
-        const Blas& large = *HwBuiltGeometry::of(input.current);
+        const auto& large = static_cast<const Blas&>(*input.current);
         Blas blas;
         blas.kind = large.kind;
         blas.bounds = large.bounds;
@@ -235,36 +215,30 @@ HwBackend::Built HwBackend::compact_geometries(Commands& commands, std::span<con
                                            large.compacted->bytes_of(large.compacted_index));
         blas.original = large.original;
         commands.write(*input.block, blas.structure.address(), offsetof(HwGeometry, blas));
-        built.push_back(std::make_unique<HwBuiltGeometry>(std::move(blas)));
+        built.push_back(held(std::move(blas)));
     }
     return built;
 }
 
-twinray::TlasInput HwBackend::builder_input(const TlasInput& input) const {
-    twinray::TlasInput builders{input.records, input.count, input.bound, input.cost, {}};
-    if (input.sole) builders.sole = {input.sole->record, HwBuiltGeometry::of(&input.sole->geometry)->block(context())};
-    return builders;
-}
-
 std::unique_ptr<AccelBackend::BuiltTlas> HwBackend::build_tlas(Commands& commands, const TlasInput& input,
                                                                const BuiltTlas* current) {
-    const auto* level = static_cast<const HwTopLevel*>(current);
-    std::unique_ptr<HwTopLevel> made;
-    const std::size_t capacity = capacity_for(input.count, level ? level->tlas.capacity : 0);
-    if (!level || capacity != level->tlas.capacity) {
-        made = std::make_unique<HwTopLevel>(tlas_builder_.make(commands, capacity, input.header));
+    const auto* level = static_cast<const Tlas*>(current);
+    std::unique_ptr<Tlas> made;
+    const std::size_t capacity = capacity_for(input.count, level ? level->capacity : 0);
+    if (!level || capacity != level->capacity) {
+        made = tlas_builder_.make(commands, capacity, input.header);
         level = made.get();
     }
-    tlas_builder_.record_build(commands, level->tlas, builder_input(input), input.will_move);
+    tlas_builder_.record_build(commands, *level, input);
     return made;
 }
 
 void HwBackend::measure_tlas(Commands& commands, const TlasInput& input, const BuiltTlas& current) const {
-    tlas_builder_.record_measure(commands, static_cast<const HwTopLevel&>(current).tlas, builder_input(input));
+    tlas_builder_.record_measure(commands, static_cast<const Tlas&>(current), input);
 }
 
 void HwBackend::refit_tlas(Commands& commands, const TlasInput& input, const BuiltTlas& current) {
-    tlas_builder_.record_update(commands, static_cast<const HwTopLevel&>(current).tlas, builder_input(input));
+    tlas_builder_.record_update(commands, static_cast<const Tlas&>(current), input);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "hwtlas/moving_blas.h"
+#include "hwtlas/blas.h"
 
 #include <cmath>
 #include <utility>

@@ -6,13 +6,13 @@
 #include <cstring>
 
 #include "engine/core/error.h"
-#include "engine/core/kernel_addresses.h"
+#include "engine/core/pipelines.h"
 #include "engine/core/vulkan.h"
 
 namespace twinray {
 namespace {
 
-// Every device allows at least 65535 invocations along x; trace.rgen makes one index of x and y.
+// Every device allows at least 65535 invocations along x; trace.glsl makes one index of x and y.
 constexpr std::uint32_t launch_width = 32768;
 
 constexpr VkShaderStageFlags stages = VK_SHADER_STAGE_RAYGEN_BIT_KHR | VK_SHADER_STAGE_MISS_BIT_KHR |
@@ -20,7 +20,7 @@ constexpr VkShaderStageFlags stages = VK_SHADER_STAGE_RAYGEN_BIT_KHR | VK_SHADER
                                       VK_SHADER_STAGE_INTERSECTION_BIT_KHR;
 
 // Positions of the groups in the pipeline and of their records in the table. The last two are hit records: the
-// instance's GEOMETRY_TRIANGLES or GEOMETRY_BOXES, which shaders/hwtlas/gather_instances.comp writes, chooses one.
+// instance's GEOMETRY_TRIANGLES or GEOMETRY_BOXES, which shaders/hwtlas/instances.comp writes, chooses one.
 enum Group : std::uint32_t { ray_generation, miss_group, triangle_group, box_group, group_count };
 
 VkPhysicalDeviceRayTracingPipelinePropertiesKHR limits_of(const Context& context) {

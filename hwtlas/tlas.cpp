@@ -22,27 +22,23 @@ constexpr std::uint64_t record_alignment = 16;  // of the device address of an a
 constexpr std::uint32_t group_size = 256;       // of all kernels
 
 StructureBuild build_of(std::uint64_t driver_records, std::size_t count, bool can_update) {
-    StructureBuild build{};
-    build.name = "tlas";
-    build.type = VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR;
-    build.primitive_count = static_cast<std::uint32_t>(count);
+    StructureBuild build =
+        structure_build("tlas", VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR, VK_GEOMETRY_TYPE_INSTANCES_KHR, count);
     if (can_update) build.flags |= VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_UPDATE_BIT_KHR;
-    build.geometry.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR;
-    build.geometry.geometryType = VK_GEOMETRY_TYPE_INSTANCES_KHR;
-    build.geometry.flags = VK_GEOMETRY_OPAQUE_BIT_KHR;
     build.geometry.geometry.instances.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_INSTANCES_DATA_KHR;
     build.geometry.geometry.instances.data.deviceAddress = driver_records;
     return build;
 }
 
 // Writes the same as the kernel that gathers many instances.
-void write_sole(Commands& commands, const Tlas& tlas, const SoleInstance& sole) {
+void write_sole(Commands& commands, const Tlas& tlas, const AccelBackend::SoleInstance& sole) {
+    const HwGeometry geometry = static_cast<const Blas&>(sole.geometry).block(commands.context());
     const auto pass = commands.pass("hwtlas instance");
     InstanceRecord record = sole.record;
-    record.geometry = sole.geometry.blas;
-    record.sbt_offset_flags |= sole.geometry.kind;
+    record.geometry = geometry.blas;
+    record.sbt_offset_flags |= geometry.kind;
     commands.write(tlas.driver_records, record);
-    if (tlas.instances.bytes()) commands.write(tlas.instances, HwInstance{sole.geometry.triangles, 0, 0});
+    if (tlas.instances.bytes()) commands.write(tlas.instances, HwInstance{geometry.triangles, 0, 0});
 }
 
 RadixSort::Scratch order_scratch(std::uint64_t address, std::size_t count) { return {address, count, 16}; }
@@ -74,22 +70,25 @@ BuildBytes TlasBuilder::bytes(std::size_t count, std::size_t capacity) const {
             sizes.scratch + capacity * sizeof(InstanceRecord) + sort + areas.bytes()};
 }
 
-Tlas TlasBuilder::make(Commands& commands, std::size_t capacity, const AccelHeader& header) const {
-    Tlas tlas;
-    tlas.capacity = capacity;
-    tlas.driver_records = Buffer(
+std::unique_ptr<Tlas> TlasBuilder::make(Commands& commands, std::size_t capacity, const AccelHeader& header) const {
+    auto tlas = std::make_unique<Tlas>();
+    tlas->capacity = capacity;
+    tlas->driver_records = Buffer(
         context_, {.name = "tlas records", .bytes = capacity * sizeof(InstanceRecord), .alignment = record_alignment});
-    tlas.instances =
+    tlas->instances =
         Buffer(context_, {.name = "tlas instances", .bytes = reorder_ ? capacity * sizeof(HwInstance) : 0});
-    tlas.scene = Buffer(context_, {.name = "hw scene", .bytes = sizeof(HwTlasHeader)});
+    tlas->scene = Buffer(context_, {.name = "hw scene", .bytes = sizeof(HwTlasHeader)});
     const Sizes sizes = this->sizes(capacity);
-    tlas.structure =
+    tlas->structure =
         AccelerationStructure(context_, "tlas", VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR, sizes.structure);
-    tlas.scratch = make_build_scratch(context_, "tlas scratch", sizes.scratch);
+    tlas->scratch = make_build_scratch(context_, "tlas scratch", sizes.scratch);
     const auto pass = commands.pass("hwtlas scene");
-    HwTlasHeader scene{header, tlas.structure.address(), tlas.instances.ref<HwInstance>()};
+    HwTlasHeader scene{header, tlas->structure.address(), tlas->instances.ref<HwInstance>()};
     context_.fill_absent(scene.instances);
-    commands.write(tlas.scene, scene);
+    commands.write(tlas->scene, scene);
+    tlas->address = tlas->scene.address();
+    tlas->bytes = tlas->structure.bytes() + tlas->instances.bytes() + tlas->scene.bytes();
+    tlas->scratch_bytes = tlas->driver_records.bytes() + tlas->scratch.bytes();
     return tlas;
 }
 
@@ -127,10 +126,10 @@ void TlasBuilder::record_instances(Commands& commands, const Tlas& tlas, const T
                      input.count);
 }
 
-void TlasBuilder::record_build(Commands& commands, const Tlas& tlas, const TlasInput& input, bool can_update) const {
+void TlasBuilder::record_build(Commands& commands, const Tlas& tlas, const TlasInput& input) const {
     record_instances(commands, tlas, input, record_order(commands, input));
     record_areas(commands, tlas, input, true);
-    const StructureWork work{build_of(tlas.driver_records.address(), input.count, can_update), BuildMode::build,
+    const StructureWork work{build_of(tlas.driver_records.address(), input.count, input.will_move), BuildMode::build,
                              &tlas.structure};
     record_builds(commands, "hwtlas_build_tlas", std::span(&work, 1), tlas.scratch.address());
 }

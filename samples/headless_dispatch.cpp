@@ -5,14 +5,11 @@
 #include <iostream>
 
 #include <twinray/scene.h>
+#include <twinray/tlas.h>
+#include "twinray/glsl/vector_math.h"
 
-#include <twinray/context.h>
-#include "samples/support/text.h"
-#include <twinray/commands.h>
 #include "headless_dispatch_hw.spv.h"
 #include "headless_dispatch_sw.spv.h"
-#include "twinray/glsl/vector_math.h"
-#include <twinray/tlas.h>
 
 using namespace twinray;
 

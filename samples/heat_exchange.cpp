@@ -5,8 +5,6 @@
 #include <cmath>
 #include <iostream>
 
-#include <twinray/scene.h>
-#include <twinray/geometry.h>
 #include <twinray/tlas.h>
 
 namespace {

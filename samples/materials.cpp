@@ -5,8 +5,6 @@
 #include <twinray/scene.h>
 #include <twinray/sets.h>
 
-#include <twinray/commands.h>
-#include <twinray/geometry.h>
 #include "materials_buffers.spv.h"
 #include "materials_images.spv.h"
 

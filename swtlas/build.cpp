@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "swtlas/build_batch.h"
+// Records builds and refits of trees, and measures their cost.
+#include "swtlas/build.h"
 
 #include <algorithm>
 #include <bit>
@@ -49,12 +50,9 @@ KernelDesc of_width(KernelDesc desc, Layout layout) {
     return desc;
 }
 
-KernelDesc leaves_stage(const Context& context, const char* name, std::span<const std::uint32_t> spirv) {
-    return grouped(context, lazy_kernel(name, spirv), LEAVES_GROUP);
-}
-
-KernelDesc build_stage(const Context& context, const char* name, std::span<const std::uint32_t> spirv) {
-    return grouped(context, lazy_kernel(name, spirv), BUILD_GROUP);
+KernelDesc build_stage(const Context& context, const char* name, std::span<const std::uint32_t> spirv,
+                       uint own_size = BUILD_GROUP) {
+    return grouped(context, lazy_kernel(name, spirv), own_size);
 }
 
 KernelDesc hierarchy_stage(const Context& context, BuildQuality quality) {
@@ -67,12 +65,46 @@ KernelDesc collapse_stage(uint step, Layout layout) {
 }
 
 KernelDesc subtrees_stage(const Context& context, Layout layout) {
-    return of_width(
-        grouped(context, lazy_kernel("swtlas_collapse_subtrees", swtlas_collapse_subtrees_spirv), COLLAPSE_GROUP),
-        layout);
+    return of_width(build_stage(context, "swtlas_collapse_subtrees", swtlas_collapse_subtrees_spirv, COLLAPSE_GROUP),
+                    layout);
+}
+
+Buffer build_scratch(Context& context, const BuildPlan& plan) {
+    return Buffer(context,
+                  {.name = "swtlas build scratch", .bytes = plan.scratch.bytes, .alignment = cache_line_bytes});
+}
+
+// Returns the number of nodes, or of records, whose areas are summed.
+uint area_count(uint leaf_count, Layout layout) {
+    return has_records(layout) ? record_count(leaf_count, width_of(layout)) : inner_count(leaf_count);
+}
+
+std::uint64_t area_groups(uint leaf_count, Layout layout) {
+    return (std::uint64_t{area_count(leaf_count, layout)} + AREA_GROUP - 1) / AREA_GROUP;
 }
 
 }  // namespace
+
+// A batch in its scratch.
+struct Builder::Batch {
+    const Buffer& scratch;
+    BuildArgs args;
+    Uints counters;
+    RadixSort::Pairs pairs, spare;
+
+    const RadixSort::Pairs& other(const RadixSort::Pairs& of) const {
+        return of.keys.address == pairs.keys.address ? spare : pairs;
+    }
+    // Has the leaves in order, and the lists of clusters in the half of the ping-pong that the sort has left.
+    BuildArgs sorted(const RadixSort::Pairs& order) const {
+        BuildArgs in_order = args;
+        in_order.codes = order.keys;
+        in_order.order = order.values;
+        in_order.tops = other(order).keys;
+        in_order.last_leaves = other(order).values;
+        return in_order;
+    }
+};
 
 Builder::Builder(Context& context, const AccelOptions& options)
     : layout_(options.layout),
@@ -80,11 +112,13 @@ Builder::Builder(Context& context, const AccelOptions& options)
       leaves_per_invocation_(context.state().tuning().leaves_per_invocation),
       sort_(context),
       areas_(context),
-      leaves_triangles_(context, leaves_stage(context, "swtlas_leaves_triangles", swtlas_leaves_triangles_spirv)),
-      leaves_instances_(context, leaves_stage(context, "swtlas_leaves_instances", swtlas_leaves_instances_spirv)),
+      leaves_triangles_(context,
+                        build_stage(context, "swtlas_leaves_triangles", swtlas_leaves_triangles_spirv, LEAVES_GROUP)),
+      leaves_instances_(context,
+                        build_stage(context, "swtlas_leaves_instances", swtlas_leaves_instances_spirv, LEAVES_GROUP)),
       lone_instance_(context, of_width(lazy_kernel("swtlas_lone_instance", swtlas_lone_instance_spirv, 32), layout_)),
       morton_(context, build_stage(context, "swtlas_morton", swtlas_morton_spirv)),
-      node_areas_(context, grouped(context, lazy_kernel("swtlas_node_areas", swtlas_node_areas_spirv), AREA_GROUP)),
+      node_areas_(context, build_stage(context, "swtlas_node_areas", swtlas_node_areas_spirv, AREA_GROUP)),
       duplicate_codes_(context, build_stage(context, "swtlas_duplicate_codes", swtlas_duplicate_codes_spirv)),
       low_codes_(context, lazy_kernel("swtlas_low_codes", swtlas_low_codes_spirv, BUILD_GROUP)),
       gather_keys_(context, lazy_kernel("swtlas_gather_keys", swtlas_gather_keys_spirv, BUILD_GROUP)),
@@ -280,6 +314,60 @@ void Builder::record_instances(Commands& commands, const BuildPlan& plan, const 
     if (plan.has_lone_leaves) return record_lone_instance(commands, tree);
     Buffer scratch = build_scratch(commands.context(), plan);
     record_tree(commands, plan, begin_instances(commands, plan, tree, scratch));
+    commands.retain(std::move(scratch));
+}
+
+// Computes the boxes of all inner nodes, and the records, from the boxes of the leaves. A refit sorts nothing: in
+// layout bvh2, edges take the place of keys.
+void Builder::record_boxes(Commands& commands, const BuildPlan& plan, const Batch& batch) const {
+    if (plan.has_lone_leaves) return lone_leaves_.dispatch(commands, batch.args, plan.leaf_count);
+    const std::uint64_t base = batch.scratch.address();
+    const uint chunks = batch.args.chunk_count;
+    RefitArgs args{batch.args.trees, batch.args.chunks, batch.args.boxes, {}, {}, {}, chunks, 0};
+    if (has_records(plan.layout)) {
+        args.slot_boxes.address = base + plan.scratch.slot_boxes;
+        args.parents.address = base + plan.scratch.parents;
+        args.missing.address = base + plan.scratch.missing;
+        record_parents_.dispatch_groups(commands, args, chunks);
+        refit_records_.dispatch_groups(commands, args, chunks);
+        return;
+    }
+    args.parents = batch.pairs.keys;
+    args.missing = batch.args.other_bounds;
+    if (batch.args.leaves_are_sorted) refit_triangles_.dispatch_groups(commands, args, chunks);
+    leaf_edges_.dispatch_groups(commands, args, chunks);
+    refit_.dispatch_groups(commands, args, chunks);
+}
+
+std::uint64_t Builder::cost_bytes(uint leaf_count, Layout layout) {
+    return AreaWork{area_groups(leaf_count, layout), {}, {}, false}.bytes();
+}
+
+void Builder::record_costs(Commands& commands, std::span<const Measured> trees, bool is_build) const {
+    std::vector<AreaWork> work;
+    for (const Measured& tree : trees)
+        work.push_back({area_groups(tree.leaf_count, layout_), {tree.tree.address}, tree.target, is_build});
+    SurfaceArea::place(commands, work);
+    if (!work.empty()) {
+        const auto pass = commands.pass(node_areas_.name());
+        for (std::size_t i = 0; i < trees.size(); ++i)
+            node_areas_.dispatch_groups(
+                commands, {trees[i].tree, trees[i].records, work[i].items, area_count(trees[i].leaf_count, layout_), 0},
+                work[i].item_count);
+    }
+    areas_.record(commands, std::move(work));
+}
+
+void Builder::record_triangle_refit(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,
+                                    const Buffer& scratch) const {
+    if (plan.leaf_count != 0) record_boxes(commands, plan, begin(commands, plan, trees, scratch));
+}
+
+void Builder::record_refit(Commands& commands, const BuildPlan& plan, const InstanceTree& tree) const {
+    if (plan.leaf_count == 0) return;
+    if (plan.has_lone_leaves) return record_lone_instance(commands, tree);
+    Buffer scratch = build_scratch(commands.context(), plan);
+    record_boxes(commands, plan, begin_instances(commands, plan, tree, scratch));
     commands.retain(std::move(scratch));
 }
 

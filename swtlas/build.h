@@ -2,7 +2,6 @@
 // The stages of a build of SwTlas, recorded.
 #pragma once
 
-#include "engine/core/radix_sort.h"
 #include "swtlas/plan.h"
 
 namespace twinray {

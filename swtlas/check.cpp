@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "swtlas/check.h"
+#include "swtlas/tree.h"
 
 #include <algorithm>
 

@@ -5,9 +5,7 @@
 #include <bit>
 
 #include "engine/accel/geometry.h"
-#include "engine/core/commands.h"
 #include "engine/core/error.h"
-#include "engine/core/radix_sort.h"
 
 namespace twinray {
 namespace {

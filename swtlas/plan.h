@@ -5,8 +5,6 @@
 #include <span>
 #include <vector>
 
-#include "engine/accel/trace_desc.h"
-#include "engine/core/kernel_tuning.h"
 #include "swtlas/structures.h"
 
 namespace twinray {

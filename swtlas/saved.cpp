@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "engine/core/error.h"
-#include "engine/scene/bytes.h"
-#include "swtlas/check.h"
+#include "engine/core/files.h"
+#include "swtlas/tree.h"
 #include "swtlas/triangle_pairs.h"
 
 namespace twinray {

@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "engine/accel/geometry.h"
-#include "engine/accel/trace_desc.h"
 #include "swtlas/structures.h"
 
 namespace twinray {

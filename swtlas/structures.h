@@ -4,11 +4,9 @@
 
 #include <array>
 
-#include "engine/accel/instance_record.h"
 #include "engine/accel/surface_area.h"
 #include "engine/accel/trace_desc.h"
 #include "engine/core/radix_sort.h"
-#include "engine/core/ray.h"
 
 namespace twinray {
 using glm::bitCount;
@@ -36,13 +34,10 @@ inline TraversalSteps& traversal_steps() {
 }
 
 #include "twinray/glsl/cpp_begin.h"
-#include "shaders/shared/build.h"
 #include "shaders/shared/collapse.h"
-#include "shaders/shared/morton.h"
 #include "shaders/shared/place_instance.h"
 #include "shaders/shared/ploc.h"
 #include "shaders/shared/rotate.h"
-#include "shaders/shared/splits.h"
 #include "shaders/shared/traverse.h"
 #include "twinray/glsl/cpp_end.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "engine/accel/geometry.h"
+#include "swtlas/sw_backend.h"
+
 #include "engine/accel/trace_program.h"
 #include "engine/accel/world_bound.h"
-#include "swtlas/sw_backend.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,6 @@
 
 #include "engine/accel/batches.h"
 #include "engine/core/error.h"
-#include "swtlas/built.h"
 #include "swtlas/triangle_pairs.h"
 #include "swtlas_trace.spv.h"
 #include "swtlas_trace_int64.spv.h"

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
+// The calls of SwTlas; saves its structures, and loads them.
 #include <twinray/tlas.h>
 
+#include "engine/core/error.h"
 #include "engine/core/files.h"
-#include "swtlas/saved.h"
 #include "swtlas/sw_backend.h"
+#include "swtlas/saved.h"
+#include "swtlas/triangle_pairs.h"
 
 namespace twinray {
 
@@ -39,5 +42,48 @@ BuiltTree download_geometry(const SwTlas& accel, AccelHandle handle) {
     return accel.backend().download_geometry(handle);
 }
 BuiltTree download_scene(const SwTlas& accel) { return accel.backend().download_scene(); }
+
+void SwBackend::save(const std::filesystem::path& file) const {
+    check_synced("save");
+    std::vector<SavedGeometry> geometries;
+    for (const AccelHandle handle : handles()) {
+        BuiltTree tree = download_geometry(handle);
+        tree.bvh.nodes = {};
+        std::vector<InstanceRecord> instances;
+        for (const InstanceState& state : get_instances(handle))
+            instances.push_back(make_instance_record(state.transform, state.options));
+        Geometry mesh = geometry(handle);
+        name_vertices(tree.records, mesh.triangles);
+        geometries.push_back({std::move(mesh), tree.bvh, std::move(tree.nodes), std::move(tree.triangles),
+                              std::move(tree.records), std::move(instances)});
+    }
+    const EncodedSave encoded = encode_save(options().layout, geometries);
+    std::vector<std::span<const std::byte>> regions = {encoded.head};
+    regions.insert(regions.end(), encoded.body.begin(), encoded.body.end());
+    write_file(file, regions);
+}
+
+AccelHandle SwBackend::push_saved(Commands& commands, SavedGeometry&& saved) {
+    Buffer block(context(), {.name = "geometry block", .bytes = geometry_block_bytes});
+    if (!saved.mesh.leaves.empty()) saved.mesh.welded = weld(saved.mesh.positions, saved.mesh.triangles);
+    const HostMesh mesh(saved.mesh);
+    name_vertices(saved.records, mesh.triangles);
+    auto built = std::make_unique<SwBuiltGeometry>(context(), saved.mesh, false, options().layout);
+    SwGeometry written = block_of(*built, built->vertices(), saved.mesh.kind);
+    saved.bvh.nodes = written.bvh.nodes;
+    written.bvh = saved.bvh;
+    {
+        const auto pass = commands.pass("swtlas load");
+        commands.write(block, written);
+        const Commands::Region regions[] = {
+            {built->layout.nodes, std::as_bytes(std::span(saved.nodes))},
+            {built->layout.triangles, std::as_bytes(std::span(saved.leaves))},
+            {built->layout.records, std::as_bytes(std::span(saved.records))},
+            {built->layout.vertices, std::as_bytes(mesh.positions.first(built->layout.vertex_count))}};
+        commands.upload_regions(built->buffer, regions);
+    }
+    saved.mesh.welded = {};
+    return push_built(std::move(saved.mesh), std::move(block), std::move(built), saved.instances);
+}
 
 }  // namespace twinray

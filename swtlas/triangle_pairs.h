@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Leaves of two triangles, for which a record has room as for one: half as many leaves, and nodes above them.
+// Leaves of two triangles, for which a record has room as for one: half as many leaves, and nodes above them; and the
+// copy of positions that a tree keeps for them, welded.
 #pragma once
 
 #include <algorithm>
@@ -29,5 +30,10 @@ inline bool has_pairs(std::span<const CompressedRecord> records) {
     return std::ranges::any_of(records,
                                [](const CompressedRecord& record) { return is_leaf(record) && is_pair(record); });
 }
+
+// Returns the mesh with one vertex for each position that triangles use, in their order, or nothing if that saves less
+// than a sixteenth. Positions are equal if their bits are. Files often repeat a vertex: on both sides of a hard edge or
+// of a seam of textures.
+Welded weld(std::span<const vec3> positions, std::span<const uvec3> triangles);
 
 }  // namespace twinray

@@ -36,7 +36,6 @@ if [[ -e $room && -n $(ls -A "$room") ]]; then
 fi
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 . tools/lib.sh
-. tools/room.sh
 can_make_rooms
 
 # shellcheck disable=SC2317,SC2329

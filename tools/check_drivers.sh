@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Runs the programs and tests that are built on other Vulkan drivers than this machine's: each has a room, a minimal
-# Debian with nothing else (tools/room.sh). Ends with a table. Exit status 1: something failed on one of them; 77: a
+# Debian with nothing else (tools/lib.sh). Ends with a table. Exit status 1: something failed on one of them; 77: a
 # room could not be made, for the printed reason.
 #   tools/check_drivers.sh [--quick] [--build FOLDER] [--rooms FOLDER] [NAME...]
 #     NAME       mesa-25.0 (backports of Debian 12), mesa-26.1 (of Debian 13), mesa-26.2 (sid), swiftshader
@@ -36,7 +36,6 @@ for name in "${names[@]}"; do
 done
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 . tools/lib.sh
-. tools/room.sh
 can_make_rooms || exit 77
 build=${build:-$PWD/build/release}
 rooms=${rooms:-$PWD/build/rooms}

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Builds this checkout with the oldest and the newest compilers and libraries that it is for, with warnings as errors, and
-# runs the tests of `tools/test.sh quick`, each in a room (tools/room.sh). Ends with a table. Exit status 1: one failed.
+# runs the tests of `tools/test.sh quick`, each in a room (tools/lib.sh). Ends with a table. Exit status 1: one failed.
 #   tools/check_toolchains.sh [--rooms FOLDER] [NAME...]
 #     NAME       gcc-oldest, clang-oldest (Debian 12's), gcc-newest, clang-newest (the newest of sid); default:
 #                all of them
@@ -25,7 +25,6 @@ for name in "${names[@]}"; do
 done
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 . tools/lib.sh
-. tools/room.sh
 can_make_rooms
 rooms=${rooms:-$PWD/build/rooms}
 

@@ -22,7 +22,7 @@ for text in *.dot; do
     picture=${text%.dot}.svg
     dot -Tsvg "$text" -o "$new"
     if [[ ${1-} != --check ]]; then
-        sed 's/[ \t]*$//' "$new" >"$picture"
+        sed '/^<!--.*-->$/d; s/[ \t]*$//' "$new" >"$picture" # its titles repeat the comments
     elif [[ ! -e $picture ]] || ! diff <(words "$picture") <(words "$new"); then
         echo "figures: docs/figures/$picture is not what docs/figures/$text says; run tools/figures.sh" >&2
         status=1

@@ -14,23 +14,23 @@ importers=engine/scene/importers
 declare -A readers=(
     [accel]="engine/accel/accel_backend.cpp engine/accel/instances.cpp engine/accel/sync.cpp engine/accel/geometry.cpp
         engine/accel/instance_array.cpp validation/reference/reference_accel.cpp"
-    [command]="cli/command/parse.cpp cli/command/values.cpp cli/command/number_values.cpp"
-    [csv]="cli/csv_files.cpp engine/scene/number_lines.cpp $importers/words.cpp"
-    [encodings]="engine/scene/bytes.cpp"
+    [command]="cli/command/parse.cpp cli/command/values.cpp"
+    [csv]="cli/csv_files.cpp $importers/words.cpp"
+    [encodings]="engine/core/files.cpp"
     [events]="viewer/events.cpp"
-    [exr]="engine/scene/image_exr.cpp"
+    [exr]="engine/scene/image_formats.cpp"
     [film]="renderer/film_file.cpp"
     [gltf]="$(echo $importers/gltf*.cpp)"
     [hdr]="engine/scene/image.cpp"
     [image]="engine/scene/image.cpp"
-    [json]="validation/records/record_json.cpp report/replay/replay.cpp validation/leaks/leak_state.cpp
+    [json]="validation/records/record_json.cpp report/replay/replay.cpp validation/leaks/leak_test.cpp
         cli/kernels/limits.cpp"
-    [obj]="$(echo $importers/{obj,obj_lines,mtl,polygon}.cpp)"
-    [ply]="$(echo $importers/{ply,polygon}.cpp)"
+    [obj]="$(echo $importers/{obj,mtl,faces}.cpp)"
+    [ply]="$(echo $importers/{ply,faces}.cpp)"
     [rays]="engine/scene/ray_file.cpp"
     [rows]="engine/analysis/row_file.cpp"
     [saved_accel]="swtlas/saved.cpp swtlas/check.cpp"
-    [stl]="$importers/stl.cpp $importers/weld.cpp"
+    [stl]="$importers/stl.cpp $importers/faces.cpp"
 )
 
 limit=(-max_total_time=60)

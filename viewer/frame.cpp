@@ -5,13 +5,11 @@
 #include <numbers>
 #include <sstream>
 
-#include <twinray/queries.h>
-
 #include "engine/core/error.h"
 #include "engine/core/stopwatch.h"
 #include "engine/core/parallel.h"
 #include "twinray/glsl/vector_math.h"
-#include "viewer/tree_lines.h"
+#include "viewer/layers.h"
 #include "viewer/viewer.h"
 
 namespace twinray::viewer {

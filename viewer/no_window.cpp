@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "engine/core/error.h"
-#include "viewer/window.h"
+#include "viewer/viewer.h"
 
 namespace twinray::viewer {
 

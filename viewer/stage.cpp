@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/viewer.h"
 
+#include <bit>
+#include <cmath>
+
 #include "engine/core/error.h"
+#include "engine/core/parallel.h"
 #include "engine/core/stopwatch.h"
-#include "engine/core/uploaded.h"
+#include "engine/core/commands.h"
+#include "renderer/camera.h"
 #include "renderer/moving_scene.h"
 
 namespace twinray::viewer {
@@ -12,11 +17,6 @@ namespace {
 // Allows all levels that the device can compute.
 AccelOptions options_for(const DeviceProperties& device, bool is_software) {
     return {.level = !device.shader_float64 ? Level::watertight : is_software ? Level::certified : Level::refined};
-}
-
-std::string lacking_for(const DeviceProperties& device) {
-    const std::vector<std::string> missing = missing_for_hardware(device);
-    return missing.empty() ? "" : missing.front();
 }
 
 // Transforms come from device memory, where one may be singular: its instance is then not seen.
@@ -40,6 +40,8 @@ void move(AbstractAccel& accel, const Scene& scene, const std::vector<AccelHandl
     accel.sync();
 }
 
+constexpr uint most_samples = 1 << 20;
+
 }  // namespace
 
 Stage::Stage(Context& context, const std::filesystem::path& file)
@@ -49,8 +51,9 @@ Stage::Stage(Context& context, const std::filesystem::path& file)
       software_(context, options_for(context.properties(), true)) {
     if (scene_.rig) show_hidden(scene_);
     bounds_ = bounds_of(scene_);
-    why_no_hardware_ = lacking_for(context.properties());
-    if (why_no_hardware_.empty())
+    if (const std::vector<std::string> missing = missing_for_hardware(context.properties()); !missing.empty())
+        why_no_hardware_ = missing.front();
+    else
         hardware_ = std::make_unique<HwTlas>(context, BuildOrder::automatic, options_for(context.properties(), false));
     const Stopwatch start;
     push();
@@ -121,6 +124,58 @@ bool Stage::has_level(Level level) const { return level <= software_.options().l
 const Faces& Stage::faces() {
     if (!faces_) faces_ = std::make_unique<Faces>(software_);
     return *faces_;
+}
+
+PathPicture::PathPicture(Context& context, const Scene& scene, std::uint64_t version, bool has_all_features)
+    : context_(context),
+      version_(version),
+      has_all_features_(has_all_features),
+      lights_(path_tracer::collect_lights(scene)) {
+    if (!path_tracer::has_lamps(scene))
+        environment_ = std::make_unique<path_tracer::EnvironmentMap>(path_tracer::default_sky());
+    device_scene_ = std::make_unique<path_tracer::DeviceScene>(
+        context, scene, lights_, environment_.get(),
+        has_all_features ? path_tracer::all_features(scene)
+                         : path_tracer::features_of(scene, lights_, environment_.get()));
+}
+
+void PathPicture::look(const Orbit& orbit, uint width, uint height) {
+    const View view{orbit, width, height};
+    if (renderer_ && view == view_) return;
+    const path_tracer::CameraRays camera =
+        path_tracer::camera_rays(camera_of(orbit), static_cast<float>(width) / static_cast<float>(height));
+    if (!renderer_ || view.width != view_.width || view.height != view_.height) {
+        path_tracer::RenderSettings settings{.width = width, .height = height, .samples = most_samples};
+        settings.camera = camera;
+        renderer_ = std::make_unique<path_tracer::Renderer>(context_, *device_scene_, settings);
+    }
+    renderer_->set_frame(camera, 1);
+    film_ = renderer_->make_film();
+    renderer_->start(film_);
+    samples_ = 0;
+    error_ = INFINITY;
+    view_ = view;
+}
+
+void PathPicture::add_sample(AbstractAccel& accel) {
+    renderer_->add_block(accel, samples_);
+    ++samples_;
+    renderer_->read(film_);
+    film_.blocks.insert(samples_ - 1);
+    if (std::has_single_bit(samples_)) error_ = film_.error();
+}
+
+double PathPicture::seconds() const { return renderer_ ? renderer_->stats().seconds : 0; }
+std::uint64_t PathPicture::rays() const {
+    return renderer_ ? renderer_->stats().path_rays + renderer_->stats().shadow_rays : 0;
+}
+
+Raster PathPicture::picture(float exposure) const {
+    const HdrImage mean = film_.mean();
+    Raster raster(mean.width, mean.height);
+    const float factor = std::exp2(exposure);
+    parallel_for(raster.pixels.size(), [&](std::size_t i) { raster.pixels[i] = rgb_of_linear(mean.rgb[i] * factor); });
+    return raster;
 }
 
 }  // namespace twinray::viewer

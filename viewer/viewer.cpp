@@ -7,9 +7,9 @@
 
 #include "engine/core/error.h"
 #include "report/explain/explain.h"
-#include "report/replay/scene_file.h"
+#include "report/replay/replay.h"
 #include "twinray/glsl/vector_math.h"
-#include "viewer/export.h"
+#include "viewer/files.h"
 
 namespace twinray::viewer {
 namespace {
@@ -30,6 +30,11 @@ std::string quoted(const std::string& word) {
 }
 
 double aspect_of(const State& state) { return static_cast<double>(state.width) / state.height; }
+
+uvec2 pixel_at(const State& state, double x, double y) {
+    return {static_cast<uint>(std::clamp(x, 0.0, state.width - 1.0)),
+            static_cast<uint>(std::clamp(y, 0.0, state.height - 1.0))};
+}
 
 std::string text_of(const Hit& hit) {
     std::ostringstream out;
@@ -182,15 +187,21 @@ void Viewer::forget_pick() {
     state_.picked.reset();
 }
 
-void Viewer::reload() {
+bool Viewer::try_open(const std::filesystem::path& file) {
     try {
-        open(stage_->file());
-        message_ = "read again";
+        open(file);
+        return true;
     } catch (const DeviceLost&) {
         throw;
     } catch (const Error& error) {
         message_ = error.what();
+        return false;
     }
+}
+
+void Viewer::reload() {
+    // A copy, since opening ends the stage.
+    if (try_open(std::filesystem::path(stage_->file()))) message_ = "read again";
 }
 
 void Viewer::reload_if_changed() {
@@ -243,15 +254,9 @@ void Viewer::handle(const Event& event) {
         state.picked.reset();  // it is a pixel of the former size
         set_state(state);
     } else if (const auto* dropped = std::get_if<Dropped>(&event)) {
-        try {
-            open(dropped->file);
-            look_at_all();
-            message_ = "shows " + dropped->file.string();
-        } catch (const DeviceLost&) {
-            throw;
-        } catch (const Error& error) {
-            message_ = error.what();
-        }
+        if (!try_open(dropped->file)) return;
+        look_at_all();
+        message_ = "shows " + dropped->file.string();
     } else if (std::get_if<Closed>(&event)) {
         is_closed_ = true;
     }
@@ -283,8 +288,7 @@ void Viewer::fly() {
 }
 
 void Viewer::pick_at(double x, double y) {
-    const uvec2 pixel(static_cast<uint>(std::clamp(x, 0.0, state_.width - 1.0)),
-                      static_cast<uint>(std::clamp(y, 0.0, state_.height - 1.0)));
+    const uvec2 pixel = pixel_at(state_, x, y);
     stage_->set_time(state_.seconds);
     set_reach();
     pick_ = pick(*stage_, ray_of_pixel(state_.orbit, state_.width, state_.height, pixel));
@@ -300,10 +304,8 @@ const std::string& Viewer::explanation() {
 }
 
 void Viewer::center_at(double x, double y) {
-    const uvec2 pixel(static_cast<uint>(std::clamp(x, 0.0, state_.width - 1.0)),
-                      static_cast<uint>(std::clamp(y, 0.0, state_.height - 1.0)));
     set_reach();
-    const Ray ray = ray_of_pixel(state_.orbit, state_.width, state_.height, pixel);
+    const Ray ray = ray_of_pixel(state_.orbit, state_.width, state_.height, pixel_at(state_, x, y));
     const Hit hit = stage_->software().closest_hits(std::span(&ray, 1))[0];
     if (hit.hit) state_.orbit = centered(state_.orbit, dvec3(ray.origin) + dvec3(ray.direction) * double(hit.t));
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The viewer without its window: events in, frames out. It shows its State; the window only brings events and shows
-// frames, so that every state can be made, and tested, without a display.
+// frames, so that every state can be made, and tested, without a display. The window of a Viewer comes last.
 #pragma once
 
 #include <cmath>
@@ -19,11 +19,7 @@
 #include "renderer/lights.h"
 #include "renderer/renderer.h"
 #include "renderer/scene_upload.h"
-#include "validation/cpu_reference/reference_scene.h"
-#include "viewer/picture/face_picture.h"
-#include "viewer/picture/marks.h"
 #include "viewer/events.h"
-#include "viewer/keys.h"
 #include "viewer/layers.h"
 
 namespace twinray::viewer {
@@ -182,6 +178,7 @@ class Viewer {
 
   private:
     void open(const std::filesystem::path& file);
+    bool try_open(const std::filesystem::path& file);  // false: the message says why not
     void look_at_all();
     void set_reach();
     void reload();
@@ -242,5 +239,14 @@ class Viewer {
     double x_ = 0, y_ = 0;
     std::vector<std::string> held_;  // keys, while the right button is down
 };
+
+struct WindowDesc {
+    ContextDesc context;  // name, device and log of it
+    ViewerDesc viewer;
+    std::filesystem::path play, record;  // events; empty: none
+};
+// Runs until the window is closed; returns the exit status. Throws Error if there is no display, or if twinray was
+// built without GLFW or Dear ImGui.
+int run_window(const WindowDesc& desc);
 
 }  // namespace twinray::viewer

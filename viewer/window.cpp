@@ -7,7 +7,7 @@
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_vulkan.h>
 
-#include "viewer/window.h"
+#include "viewer/viewer.h"
 
 #include <deque>
 #include <fstream>
@@ -15,7 +15,7 @@
 #include <utility>
 
 #include "engine/core/error.h"
-#include "viewer/recent_files.h"
+#include "viewer/files.h"
 #include "viewer/screen.h"
 
 namespace twinray::viewer {

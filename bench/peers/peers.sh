@@ -1,14 +1,20 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Installs the packages that compare.py measures beside twinray into a folder of their own, and runs it.
-#   bench/peers/peers.sh FOLDER TWINRAY [option of compare.py...]
+# Installs the packages that compare.py or renderers.py needs beside twinray into a folder of their own, and runs it.
+#   bench/peers/peers.sh compare FOLDER TWINRAY [option of compare.py...]
+#   bench/peers/peers.sh renderers FOLDER references|check|times TARGET [option of renderers.py...]
 set -euo pipefail
-if (($# < 2)); then
-    sed -n '3,4s/^# *//p' "${BASH_SOURCE[0]}" >&2
+case ${1-} in
+compare) packages=(numpy trimesh python-fcl rtree embreex pyvista pyviewfactor) least=3 ;;
+renderers) packages=(numpy scipy mitsuba) least=4 ;;
+*) least=$(($# + 1)) ;;
+esac
+if (($# < least)); then
+    sed -n '3,5s/^# *//p' "${BASH_SOURCE[0]}" >&2
     exit 2
 fi
-folder=$1
-shift
+program=$1.py folder=$2
+shift 2
 if [[ ! -x $folder/bin/python ]]; then python3 -m venv "$folder"; fi
-"$folder/bin/pip" install --quiet numpy trimesh python-fcl rtree embreex pyvista pyviewfactor
-"$folder/bin/python" "$(dirname "${BASH_SOURCE[0]}")/compare.py" "$@"
+"$folder/bin/pip" install --quiet "${packages[@]}"
+"$folder/bin/python" "$(dirname "${BASH_SOURCE[0]}")/$program" "$@"

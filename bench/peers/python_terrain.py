@@ -67,6 +67,16 @@ def cpu_seconds():
     return used.ru_utime + used.ru_stime
 
 
+def timed(rounds, work):
+    """The median of the seconds, and what is found."""
+    times = []
+    for _ in range(rounds):
+        start = time.perf_counter()
+        found = work()
+        times.append(time.perf_counter() - start)
+    return statistics.median(times), found
+
+
 def digest(values):
     return hashlib.sha256(np.ascontiguousarray(values).tobytes()).hexdigest()[:16]
 
@@ -234,12 +244,7 @@ def packages(options):
             return terrain.sky_view(heights, CELL, tile=options.side, **what).compute(scheduler="sync")
 
         ours()
-        times = []
-        for _ in range(options.rounds):
-            start = time.perf_counter()
-            found = ours()
-            times.append(time.perf_counter() - start)
-        tell(f"twinray {name}", statistics.median(times), found, true)
+        tell(f"twinray {name}", *timed(options.rounds, ours), true)
     for directions in (16, 64) if options.xrspatial else ():
         version, took, found = sky_of_xrspatial(options.xrspatial, heights, options.rounds, directions)
         tell(f"xarray-spatial {version}, {directions} directions, solid angle", took, found, solid_angle)
@@ -266,12 +271,7 @@ def packages(options):
                 seen += weight * ~scene.test_occlusions(open3d.core.Tensor(rays)).numpy()
             return (seen / weights.sum()).reshape(heights.shape)
 
-        times = []
-        for _ in range(options.rounds):
-            start = time.perf_counter()
-            found = theirs()
-            times.append(time.perf_counter() - start)
-        tell(f"Open3D {patches}", statistics.median(times), found)
+        tell(f"Open3D {patches}", *timed(options.rounds, theirs))
     return record
 
 

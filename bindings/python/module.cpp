@@ -1,79 +1,25 @@
 // SPDX-License-Identifier: MIT
-// twinray._core: scene.h and analysis.h for Python, and memory that Python's array packages share. Arguments are
-// checked and cast in Python, which has the public names. One file of more than 400 lines, since all bindings share the
-// helpers that convert arrays and give back Python's lock.
-#include <array>
+// twinray._core: scene.h and analyses for Python, and memory that Python's array packages share. Arguments are checked
+// and cast in Python, which has the public names.
 #include <atomic>
-#include <cstddef>
-#include <memory>
-#include <span>
-#include <type_traits>
 #include <tuple>
 #include <utility>
-#include <vector>
 
-#include <nanobind/nanobind.h>
-#include <nanobind/ndarray.h>
-#include <nanobind/stl/array.h>
-#include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
-#include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
-#include <nanobind/stl/vector.h>
 
-#include "bindings/python/analysis.h"
-#include "bindings/python/parallel.h"
-#include "bindings/python/scene.h"
+#include "bindings/python/convert.h"
 
 namespace twinray::python {
 namespace {
 
-namespace nb = nanobind;
-
-// Rows of N numbers; the Python side has cast and checked them.
-template <class T, int N>
-using Rows = nb::ndarray<const T, nb::shape<-1, N>, nb::c_contig, nb::device::cpu>;
-
-// Rows as structs of the same numbers.
-template <class Row, class Array>
-std::span<const Row> as(const Array& rows) {
-    static_assert(sizeof(Row) == 3 * sizeof(*rows.data()));
-    return {reinterpret_cast<const Row*>(rows.data()), rows.shape(0)};
-}
-
-// Makes an array that owns its memory, of `columns` numbers of type T a row; 0: one number, without the second axis.
-template <class T, class Rows>
-nb::object given(Rows&& rows, std::size_t columns = 0) {
-    auto owner = std::make_unique<Rows>(std::move(rows));
-    const std::size_t shape[] = {owner->size(), columns};
-    auto* data = reinterpret_cast<T*>(owner->data());
-    nb::capsule capsule(owner.get(), [](void* p) noexcept { delete static_cast<Rows*>(p); });
-    owner.release();
-    return nb::cast(nb::ndarray<nb::numpy, T>(data, columns ? 2 : 1, shape, capsule));
-}
-
-template <class T>
-using RayArray = Rows<T, 6>;
-using Vector = std::array<double, 3>;
 using PointRows = Rows<double, 3>;
 using TransformRows = nb::ndarray<const float, nb::shape<3, 4>, nb::c_contig, nb::device::cpu>;
 
-dvec3 vector_of(const Vector& v) { return {v[0], v[1], v[2]}; }
-
-template <class T>
-RayRows rows_of(const RayArray<T>& array, const Vector& origin) {
-    const std::span<const T> numbers(array.data(), 6 * array.shape(0));
-    if constexpr (std::is_same_v<T, float>)
-        return {.floats = numbers, .doubles = {}, .origin = vector_of(origin)};
-    else
-        return {.floats = {}, .doubles = numbers, .origin = vector_of(origin)};
-}
-
-template <class T>
-RayRows rows_of(const RayArray<T>& array, const Vector& origin, double t_near, double t_far) {
-    RayRows rows = rows_of(array, origin);
-    rows.t_near = t_near, rows.t_far = t_far;
-    return rows;
+template <class Row, class Array>
+std::vector<Row> copied(const Array& rows) {
+    const std::span<const Row> span = as<Row>(rows);
+    return {span.begin(), span.end()};
 }
 
 Transform transform_of(const TransformRows& matrix) {
@@ -82,31 +28,7 @@ Transform transform_of(const TransformRows& matrix) {
     return transform;
 }
 
-template <class Row, class Array>
-std::vector<Row> copied(const Array& rows) {
-    const std::span<const Row> span = as<Row>(rows);
-    return {span.begin(), span.end()};
-}
-
 std::atomic<bool> calls_end = false;
-
-bool no_signal_ends_it() {
-    const nb::gil_scoped_acquire acquired;
-    if (calls_end) PyErr_SetNone(PyExc_KeyboardInterrupt);
-    return !calls_end && PyErr_CheckSignals() == 0;
-}
-
-// Calls without the GIL, so that others go on while the device works. Ctrl-C ends the call.
-template <class Call>
-auto unlocked(const Call& call) {
-    try {
-        const nb::gil_scoped_release released;
-        const InterruptScope scope(&no_signal_ends_it);
-        return call();
-    } catch (const Interrupted&) {
-        throw nb::python_error();  // the one of the signal's handler
-    }
-}
 
 void add_places(nb::dict& arrays, Places&& places) {
     arrays["geometry_ids"] = given<uint>(std::move(places.geometry));
@@ -130,19 +52,6 @@ nb::dict dict_of(Nearest&& found) {
     return arrays;
 }
 
-nb::dict dict_of(const Backend& backend) {
-    nb::dict names;
-    names["device"] = backend.device;
-    names["driver"] = backend.driver;
-    names["kind"] = backend.kind;
-    names["accel"] = backend.accel;
-    names["why"] = backend.why;
-    names["path"] = backend.path;
-    names["level"] = backend.level;
-    names["lists"] = backend.lists;
-    return names;
-}
-
 uint add(Scene& scene, const Rows<float, 3>& positions, const Rows<uint, 3>& triangles,
          const TransformRows& transform) {
     Mesh mesh;
@@ -157,43 +66,38 @@ nb::object corners_of(const Bounds& box) {
     return given<double>(std::move(corners), 3);
 }
 
-// Binds questions about rays in float32 or float64, which are not converted.
+// Binds a question about rays in numbers of type T, which are not converted.
+template <class T, class... More, class Answer, class... Args>
+void bind_question(nb::class_<Scene>& scene_class, const char* name, const Answer& answer, const Args&... more) {
+    scene_class.def(
+        name,
+        [answer](Scene& scene, const RayArray<T>& array, const Vector& origin, double t_near, double t_far,
+                 More... options) { return answer(scene, rows_of(array, origin, t_near, t_far), options...); },
+        nb::arg("rays").noconvert(), nb::arg("origin"), nb::arg("t_near"), nb::arg("t_far"), more...);
+}
+
 template <class T>
 void bind_rays(nb::class_<Scene>& scene_class) {
-    const auto rays = nb::arg("rays").noconvert();
-    const nb::arg origin("origin"), near("t_near"), far("t_far"), normals("with_normals");
-    scene_class
-        .def(
-            "cast",
-            [](Scene& scene, const RayArray<T>& array, const Vector& origin, double t_near, double t_far,
-               bool with_normals) {
-                const RayRows rows = rows_of(array, origin, t_near, t_far);
-                return dict_of(unlocked([&] { return scene.cast(rows, with_normals); }));
-            },
-            rays, origin, near, far, normals)
-        .def(
-            "occlusions",
-            [](Scene& scene, const RayArray<T>& array, const Vector& origin, double t_near, double t_far) {
-                const RayRows rows = rows_of(array, origin, t_near, t_far);
-                return given<bool>(unlocked([&] { return scene.occlusions(rows); }));
-            },
-            rays, origin, near, far)
-        .def(
-            "counts",
-            [](Scene& scene, const RayArray<T>& array, const Vector& origin, double t_near, double t_far) {
-                const RayRows rows = rows_of(array, origin, t_near, t_far);
-                return given<int>(unlocked([&] { return scene.counts(rows); }));
-            },
-            rays, origin, near, far)
-        .def(
-            "list",
-            [](Scene& scene, const RayArray<T>& array, const Vector& origin, double t_near, double t_far,
-               bool with_normals) {
-                const RayRows rows = rows_of(array, origin, t_near, t_far);
-                Listed found = unlocked([&] { return scene.list(rows, with_normals); });
-                return nb::make_tuple(given<std::uint64_t>(std::move(found.first)), dict_of(std::move(found.hits)));
-            },
-            rays, origin, near, far, normals);
+    const nb::arg normals("with_normals");
+    bind_question<T, bool>(
+        scene_class, "cast",
+        [](Scene& scene, const RayRows& rows, bool with_normals) {
+            return dict_of(unlocked([&] { return scene.cast(rows, with_normals); }));
+        },
+        normals);
+    bind_question<T>(scene_class, "occlusions", [](Scene& scene, const RayRows& rows) {
+        return given<bool>(unlocked([&] { return scene.occlusions(rows); }));
+    });
+    bind_question<T>(scene_class, "counts", [](Scene& scene, const RayRows& rows) {
+        return given<int>(unlocked([&] { return scene.counts(rows); }));
+    });
+    bind_question<T, bool>(
+        scene_class, "list",
+        [](Scene& scene, const RayRows& rows, bool with_normals) {
+            Listed found = unlocked([&] { return scene.list(rows, with_normals); });
+            return nb::make_tuple(given<std::uint64_t>(std::move(found.first)), dict_of(std::move(found.hits)));
+        },
+        normals);
 }
 
 nb::tuple add_file(Scene& scene, const std::string& file, const std::optional<Vector>& asked) {
@@ -274,115 +178,15 @@ void bind_scene(nb::module_& m) {
              })
         .def("world_triangles",
              [](Scene& scene) { return given<double>(unlocked([&] { return scene.world_triangles(); }), 3); })
-        .def("backend", [](Scene& scene) { return dict_of(unlocked([&] { return scene.backend(); })); })
+        .def("backend",
+             [](Scene& scene) {
+                 nb::dict names;
+                 for (const auto& [name, value] : unlocked([&] { return scene.backend(); })) names[name] = value;
+                 return names;
+             })
         .def("progress",
              [](Scene& scene) { return nb::make_tuple(scene.progress().done.load(), scene.progress().total.load()); })
         .def("take_log", [](Scene& scene) { return unlocked([&] { return scene.take_log(); }); });
-}
-
-nb::dict bound_rows(MatrixRows& rows, std::size_t first, std::size_t last) {
-    Matrix matrix = unlocked([&] { return rows.rows(first, last); });
-    nb::dict arrays;
-    arrays["first"] = given<std::uint64_t>(std::move(matrix.first));
-    arrays["column"] = given<uint>(std::move(matrix.column));
-    arrays["value"] = given<float>(std::move(matrix.value));
-    arrays["low"] = given<float>(std::move(matrix.low));
-    arrays["high"] = given<float>(std::move(matrix.high));
-    arrays["open"] = given<double>(std::move(matrix.open));
-    arrays["rays"] = matrix.rays;
-    return arrays;
-}
-
-void make_rows(MatrixRows* to, Scene& scene, std::vector<uint> groups, bool both_sides, std::uint64_t rays,
-               std::optional<double> target_error, std::uint32_t seed, const std::string& estimator) {
-    unlocked([&] { new (to) MatrixRows(scene, {std::move(groups), both_sides, rays, target_error, seed, estimator}); });
-}
-
-nb::tuple bound_centroid(Scene& scene, const Vector& direction, std::uint32_t side, std::uint64_t seed) {
-    const Centroid found = unlocked([&] { return centroid_of(scene, vector_of(direction), side, seed); });
-    const auto tuple = [](const std::optional<dvec3>& v) {
-        return v ? nb::object(nb::make_tuple(v->x, v->y, v->z)) : nb::object(nb::none());
-    };
-    return nb::make_tuple(tuple(found.mean), tuple(found.standard_error), found.point_count, found.ray_count);
-}
-
-template <class T>
-nb::dict bound_verify(Scene& scene, const RayArray<T>& array, const Vector& origin, std::size_t count,
-                      std::uint64_t seed) {
-    std::vector<Ray> rays = rays_of(rows_of(array, origin));
-    VerifyResult result = unlocked([&] { return verify(scene, std::move(rays), count, seed); });
-    nb::dict counts, found;
-    for (std::size_t i = 0; i < hit_class_count; ++i) {
-        const std::string_view name = name_of(static_cast<HitClass>(i));
-        counts[nb::str(name.data(), name.size())] = result.counts.counts[i];
-    }
-    found["counts"] = counts;
-    found["faults"] = result.counts.faults_of_ours() + result.counts.faults_of_hardware();
-    found["bound_95"] = result.counts.bound_95();
-    found["classes"] = given<std::uint8_t>(std::move(result.classes));
-    found["rays"] = given<float>(std::move(result.rays), 8);
-    return found;
-}
-
-void bind_analysis(nb::module_& m) {
-    nb::class_<MatrixRows>(m, "ViewFactors")
-        .def("__init__", &make_rows, nb::keep_alive<1, 2>(), nb::arg("scene"), nb::arg("groups"), nb::arg("both_sides"),
-             nb::arg("rays"), nb::arg("target_error").none(), nb::arg("seed"), nb::arg("estimator"))
-        .def("count", &MatrixRows::count)
-        .def("rows", &bound_rows);
-    m.def("illumination", [](Scene& scene, const Vector& direction, std::uint32_t side, bool both_sides,
-                             std::uint64_t seed, const std::vector<uint>& groups) {
-        Light light =
-            unlocked([&] { return illumination(scene, vector_of(direction), side, both_sides, seed, groups); });
-        return nb::make_tuple(given<double>(std::move(light.groups), 6), light.rays);
-    });
-    m.def("sky_light",
-          [](Scene& scene, const Vector& zenith, std::uint32_t samples, bool both_sides, std::uint64_t seed) {
-              return given<double>(
-                  unlocked([&] { return sky_light(scene, vector_of(zenith), samples, both_sides, seed); }), 3);
-          });
-    m.def("centroid", &bound_centroid);
-    m.def("collide", [](Scene& scene, bool self, bool by_position, bool segments) {
-        Touching found = unlocked([&] { return collide(scene, self, by_position, segments); });
-        return nb::make_tuple(given<uint>(std::move(found.contacts), 5), given<double>(std::move(found.segments), 6));
-    });
-    const auto unconverted = nb::arg("rays").noconvert();
-    m.def("verify", &bound_verify<float>, nb::arg("scene"), unconverted, nb::arg("origin"), nb::arg("count"),
-          nb::arg("seed"));
-    m.def("verify", &bound_verify<double>, nb::arg("scene"), unconverted, nb::arg("origin"), nb::arg("count"),
-          nb::arg("seed"));
-    m.def("sky_patches", [](const std::string& name) {
-        std::vector<std::array<double, 4>> rows;
-        for (const SkyPatch& patch : sky_patches(name))
-            rows.push_back({patch.direction.x, patch.direction.y, patch.direction.z, patch.solid_angle});
-        return given<double>(std::move(rows), 4);
-    });
-    m.def("visible", [](Scene& scene, const Rows<float, 3>& points, const Rows<float, 3>& vectors,
-                        const Rows<float, 3>& normals, float t_near, float t_far) {
-        return given<std::uint8_t>(unlocked(
-            [&] { return visible(scene, as<vec3>(points), as<vec3>(vectors), as<vec3>(normals), t_near, t_far); }));
-    });
-    nb::enum_<HorizonMeasure>(m, "HorizonMeasure")
-        .value("slope", HorizonMeasure::slope)
-        .value("light", HorizonMeasure::light)
-        .value("solid_angle", HorizonMeasure::solid_angle);
-    // corner and size: column and row
-    m.def("horizon",
-          [](Scene& scene, const nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu>& heights,
-             std::array<uint, 2> corner, std::array<uint, 2> size, const Rows<float, 2>& ways, HorizonMeasure measure,
-             float lift, float curvature, float reach) {
-              const HeightRaster raster{.heights = {heights.data(), heights.size()},
-                                        .columns = static_cast<uint>(heights.shape(1)),
-                                        .rows = static_cast<uint>(heights.shape(0))};
-              const HorizonDesc desc{.corner = {corner[0], corner[1]},
-                                     .size = {size[0], size[1]},
-                                     .ways = {reinterpret_cast<const vec2*>(ways.data()), ways.shape(0)},
-                                     .measure = measure,
-                                     .lift = lift,
-                                     .curvature = curvature,
-                                     .reach = reach};
-              return given<float>(unlocked([&] { return horizon(scene, raster, desc); }));
-          });
 }
 
 Buffer make_buffer(Context& context, std::uint64_t bytes, bool in_host_memory) {
@@ -500,6 +304,12 @@ nb::list devices() {
 }
 
 }  // namespace
+
+bool no_signal_ends_it() {
+    const nb::gil_scoped_acquire acquired;
+    if (calls_end) PyErr_SetNone(PyExc_KeyboardInterrupt);
+    return !calls_end && PyErr_CheckSignals() == 0;
+}
 
 LastLock::LastLock(Device& device) : device_(device) {
     const nb::gil_scoped_release released;

@@ -9,12 +9,22 @@
 #include <cmath>
 #include <limits>
 
-#include "bindings/python/parallel.h"
-
 namespace twinray::python {
 namespace {
 
 constexpr uint invalid = 0xffffffffu;
+
+// Calls body(first, last) for parts of 0 .. count, on as many threads as pay. The body must not throw.
+template <class Body>
+void in_parts(std::size_t count, const Body& body) {
+    constexpr std::size_t least = 1 << 15;  // items a thread
+    const std::size_t most = std::max(1u, std::thread::hardware_concurrency());
+    const std::size_t parts = std::clamp<std::size_t>(count / least, 1, most);
+    std::vector<std::jthread> threads;
+    for (std::size_t i = 1; i < parts; ++i)
+        threads.emplace_back([&, i] { body(count * i / parts, count * (i + 1) / parts); });
+    body(0, count / parts);
+}
 
 Level level_of(const std::string& name) {
     for (const Level level : all_levels)
@@ -430,18 +440,18 @@ std::vector<dvec3> Scene::world_triangles() {
     return vertices;
 }
 
-Backend Scene::backend() {
+std::vector<std::pair<const char*, std::string>> Scene::backend() {
     const Lock lock(*this);
     const DeviceProperties& device = device_->context.properties();
     const auto* hardware = dynamic_cast<const HwTlas*>(accel_.get());
-    return {device.name,
-            device.driver,
-            name_of(device.kind),
-            choice_.name(),
-            choice_.why,
-            hardware ? hardware->trace_path() : "compute",
-            std::string(name_of(level_)),
-            "sw"};
+    return {{"device", device.name},
+            {"driver", device.driver},
+            {"kind", name_of(device.kind)},
+            {"accel", choice_.name()},
+            {"why", choice_.why},
+            {"path", hardware ? hardware->trace_path() : "compute"},
+            {"level", std::string(name_of(level_))},
+            {"lists", "sw"}};
 }
 
 std::vector<std::string> Scene::take_log() {

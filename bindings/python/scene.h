@@ -120,10 +120,6 @@ class LastLock {
     Device& device_;
 };
 
-struct Backend {
-    std::string device, driver, kind, accel, why, path, level, lists;
-};
-
 // Places on triangles. Where there is no place, both numbers are 2^32 - 1 and the rest is 0.
 struct Places {
     Places() = default;
@@ -137,9 +133,9 @@ struct Places {
 
 // Rays as Python has them: origin and direction, one after the other, with an interval for all.
 struct RayRows {
-    std::span<const float> floats;    // six per ray
-    std::span<const double> doubles;  // in place of `floats`
-    dvec3 origin = dvec3(0);          // of the device's coordinates, in those of the rays
+    std::span<const float> floats = {};    // six per ray
+    std::span<const double> doubles = {};  // in place of `floats`
+    dvec3 origin = dvec3(0);               // of the device's coordinates, in those of the rays
     double t_near = 0, t_far = std::numeric_limits<double>::infinity();
 
     std::size_t size() const { return (floats.size() + doubles.size()) / 6; }
@@ -220,7 +216,8 @@ class Scene {
     // Returns three vertices per triangle. Mirrored ones have the last two exchanged, so that fronts stay fronts.
     std::vector<dvec3> world_triangles();
 
-    Backend backend();
+    // Returns what computes, each with its name.
+    std::vector<std::pair<const char*, std::string>> backend();
     std::vector<std::string> take_log();
     // Returns the device of this process.
     std::shared_ptr<Device> device();

@@ -8,6 +8,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -99,5 +100,38 @@ std::string text_of(const Option& option);
 std::string synopsis_of(const Command& command);
 std::vector<Item> exit_statuses_of(const Command& command);
 std::vector<Item> environment_variables();  // those that commands heed
+
+// Reads the arguments after the command's name into what its values are bound to. Returns false if they ask for --help.
+// Throws UsageError that names the option, the value and what is allowed.
+bool parse(const Command& command, const std::vector<std::string>& arguments);
+
+// Returns how many letters must be inserted, removed, replaced or swapped with their neighbour to turn one into the
+// other (optimal string alignment).
+std::size_t edit_distance(std::string_view a, std::string_view b);
+
+// Returns the first candidate that begins with the whole word, of two or more letters; else the nearest one, the first
+// among equals; empty if none is near: at most a third of the word's letters may be wrong, and one always may.
+std::string nearest_to(std::string_view word, std::span<const std::string> candidates);
+
+// The texts that describe commands: --help, man pages, and scripts that let shells complete words ---------------------
+
+// Breaks a paragraph into lines of at most `width` letters, each after `indent` blanks. A longer word has its own line.
+std::string wrapped(const std::string& paragraph, std::size_t width, std::size_t indent);
+
+// Returns the help of one command, in the style of a man page.
+std::string help_text(const Command& command, std::size_t width);
+// Returns a line for each command, under the headings of their groups.
+std::string list_text(std::span<const Command> commands, std::size_t width);
+
+// Returns the width of the terminal that stdout is, else 80.
+std::size_t terminal_width();
+
+// Returns a man page of section 1, in roff with the macros of man(7): twinray-COMMAND.1, or twinray.1 of all commands.
+std::string man_page(const Command& command, const std::string& version);
+std::string man_page(std::span<const Command> commands, const std::string& version);
+
+std::string bash_completion(std::span<const Command> commands);
+std::string zsh_completion(std::span<const Command> commands);
+std::string fish_completion(std::span<const Command> commands);
 
 }  // namespace twinray::cli

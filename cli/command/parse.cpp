@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// CLI11 tells which words belong to which option; everything else about them is decided here.
-#include "cli/command/parse.h"
+// Parses arguments into values: CLI11 tells which words belong to which option; everything else about them is decided
+// here.
+#include "cli/command/command.h"
 
 #include <algorithm>
 #include <iostream>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/kernels/kernel_list.h"
+#include "cli/kernels/kernels.h"
 
 #include <cmath>
 #include <iomanip>
@@ -8,9 +8,8 @@
 
 #include <twinray/geometry.h>
 #include <twinray/tlas.h>
-#include "cli/kernels/family.h"
 #include "engine/accel/trace_desc.h"
-#include "engine/core/dry_device.h"
+#include "engine/core/context.h"
 #include "engine/core/parallel.h"
 #include "swtlas/structures.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/kernels/family.h"
+#include "cli/kernels/kernels.h"
 
 #include <algorithm>
 #include <cstdlib>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/kernels/kernel_statistics.h"
+#include "cli/kernels/kernels.h"
 
 #include <algorithm>
 #include <cctype>
@@ -8,14 +8,12 @@
 #include "engine/core/error.h"
 #include "engine/core/vulkan.h"
 
-namespace twinray {
+namespace twinray::kernels {
 namespace {
-
-using Figure = std::optional<std::uint64_t> KernelFigures::*;
 
 struct Word {
     std::string_view name;  // in lower case
-    Figure figure;
+    KernelFigure figure;
 };
 
 constexpr std::string_view registers_of_turnip = "registers used";  // each is four words per lane
@@ -134,4 +132,4 @@ KernelFigures figures_of(std::span<const Statistic> told) {
     return figures;
 }
 
-}  // namespace twinray
+}  // namespace twinray::kernels

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/kernels/limits.h"
+#include "cli/kernels/kernels.h"
 
 #include <algorithm>
 #include <fstream>
@@ -16,13 +16,11 @@
 namespace twinray::kernels {
 namespace {
 
-using Figure = std::optional<std::uint64_t> KernelFigures::*;
-
 struct Column {
     const char* key;    // in files
     const char* title;  // in tables; null: not there
     const char* words;  // in sentences; null: it has no limit
-    Figure figure;
+    KernelFigure figure;
     bool has_margin;
 };
 

@@ -8,7 +8,11 @@ cd "$site/../.."
 
 case ${1-} in
 cpp) input=include/twinray words=AMD_VULKAN_MEMORY_ALLOCATOR_H ;;
-glsl) input=include/twinray/glsl words=$(tr '\n' ' ' <docs/site/glsl_words.txt) ;;
+glsl)
+    input=include/twinray/glsl
+    words='"layout(x)=" "REF(T)=T##_ref" FUNC= PRECISE= "INOUT(T)=inout T" "BUFFER_OF(T,a)=" "REFERENCE(a,b,c,d)="'
+    words+=' "FEATURE(id,name)=const bool name = true;" "spirv_instruction(a,b)=" TWINRAY_SW TWINRAY_PROGRAM'
+    ;;
 *)
     echo "doxygen.sh: what is '${1-}'? usage: doxygen.sh cpp|glsl FOLDER" >&2
     exit 2

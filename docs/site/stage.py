@@ -11,9 +11,7 @@ import re
 import shutil
 import sys
 
-import commands_pages
-import cpp_pages
-import glsl_pages
+import reference_pages
 
 root = pathlib.Path(__file__).resolve().parents[2]
 # Pages that lie elsewhere in the tree, by their names on the site.
@@ -52,16 +50,6 @@ def relinked(text, path):
     return LINK.sub(replaced, text)
 
 
-def without_empty_trees(folder):
-    """Sphinx warns of a tree of contents whose pattern finds no page; such a tree is taken out."""
-    for page in folder.rglob("index.md"):
-        text = page.read_text(encoding="utf-8")
-        for tree in re.findall(r"```{toctree}\n(?::.*\n)*:glob:\n.*?```\n", text, re.S):
-            pattern = tree.split("\n\n")[1].split("\n")[0]
-            if not list(page.parent.glob(pattern)):
-                page.write_text(text.replace(tree, "*No page is here yet.*\n"), encoding="utf-8")
-
-
 def stage_pages(folder):
     files = [file for file in sorted((root / "docs").rglob("*")) if file.is_file()]
     for path in [file.relative_to(root).as_posix() for file in files] + list(ELSEWHERE):
@@ -80,12 +68,11 @@ def main(folder, twinray):
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     stage_pages(folder)
-    without_empty_trees(folder)
-    # Pages of tutorials show parts of programs, the gallery its commands.
+    # Pages of tutorials show parts of programs.
     shutil.copytree(root / "samples", folder.parent / "samples", dirs_exist_ok=True)
-    cpp_pages.write(folder / "reference/cpp", root / "include/twinray")
-    glsl_pages.write(folder / "reference/glsl", folder.parent / "glsl/xml", root / "include/twinray/glsl")
-    commands_pages.write(folder / "reference/commands", twinray)
+    reference_pages.write_cpp(folder / "reference/cpp", root / "include/twinray")
+    reference_pages.write_glsl(folder / "reference/glsl", folder.parent / "glsl/xml", root / "include/twinray/glsl")
+    reference_pages.write_commands(folder / "reference/commands", twinray)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "engine/accel/features_of.h"
 #include "engine/accel/held_geometry.h"
 
 #include <algorithm>
@@ -10,8 +9,6 @@
 #include "engine/accel/pipeline_variants.h"
 #include "engine/accel/ray_sort.h"
 #include "engine/accel/refinement.h"
-#include "engine/accel/surface_kernels.h"
-#include "engine/accel/world_bound.h"
 #include "engine/core/error.h"
 #include "engine/scene/mesh.h"
 

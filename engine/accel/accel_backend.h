@@ -15,7 +15,6 @@
 #include "engine/accel/geometry.h"
 #include "engine/accel/instance_array.h"
 #include "engine/accel/surface_area.h"
-#include "engine/core/commands.h"
 
 namespace twinray {
 
@@ -123,33 +122,11 @@ class AccelBackend {
     Context& context() const { return context_; }
     const std::string& name() const { return name_; }
 
-  protected:
-    // Throws Error naming the level that the device does not support.
-    AccelBackend(Context& context, std::string name, const AccelOptions& options = {});
-
     // A geometry as the implementation built it.
     struct BuiltGeometry {
         virtual ~BuiltGeometry() = default;
         std::uint64_t bytes = 0;
     };
-    // The input for building a geometry. `block` is the target of InstanceRecord::geometry, geometry_block_bytes long;
-    // the implementation fills it, beginning with a GeometryBox. It stays when the geometry is replaced.
-    struct GeometryInput {
-        const Geometry* geometry;
-        const Buffer* block;
-        PackedMesh mesh;               // the source of the build instead of the host's copy, unless null
-        PackedMesh kept;               // the device's copy as long as it has the geometry, or null
-        const BuiltGeometry* current;  // from an earlier sync and the same triangles, or null
-        CostTarget cost;               // measures the cost for sah(), unless null
-    };
-    // Returns whether a build asked the GPU how small it can be.
-    virtual bool has_compaction(const BuiltGeometry&) const { return false; }
-    // Tells whether geometries built by `done` can be smaller, or the GPU's answer is not there yet; it must not wait.
-    enum class Compaction : std::uint8_t { none, untold, possible };
-    virtual Compaction compaction_of(const BuiltGeometry&, SyncPoint) const { return Compaction::none; }
-    // Moves each `current` that can be smaller into less memory.
-    virtual std::vector<std::unique_ptr<BuiltGeometry>> compact_geometries(Commands& commands,
-                                                                           std::span<const GeometryInput> inputs);
     // The top level as the implementation built it.
     struct BuiltTlas {
         virtual ~BuiltTlas() = default;
@@ -173,6 +150,29 @@ class AccelBackend {
         AccelHeader header = {};       // the start of the top level
         std::optional<SoleInstance> sole = {};
     };
+
+  protected:
+    // Throws Error naming the level that the device does not support.
+    AccelBackend(Context& context, std::string name, const AccelOptions& options = {});
+
+    // The input for building a geometry. `block` is the target of InstanceRecord::geometry, geometry_block_bytes long;
+    // the implementation fills it, beginning with a GeometryBox. It stays when the geometry is replaced.
+    struct GeometryInput {
+        const Geometry* geometry;
+        const Buffer* block;
+        PackedMesh mesh;               // the source of the build instead of the host's copy, unless null
+        PackedMesh kept;               // the device's copy as long as it has the geometry, or null
+        const BuiltGeometry* current;  // from an earlier sync and the same triangles, or null
+        CostTarget cost;               // measures the cost for sah(), unless null
+    };
+    // Returns whether a build asked the GPU how small it can be.
+    virtual bool has_compaction(const BuiltGeometry&) const { return false; }
+    // Tells whether geometries built by `done` can be smaller, or the GPU's answer is not there yet; it must not wait.
+    enum class Compaction : std::uint8_t { none, untold, possible };
+    virtual Compaction compaction_of(const BuiltGeometry&, SyncPoint) const { return Compaction::none; }
+    // Moves each `current` that can be smaller into less memory.
+    virtual std::vector<std::unique_ptr<BuiltGeometry>> compact_geometries(Commands& commands,
+                                                                           std::span<const GeometryInput> inputs);
     static constexpr std::uint64_t geometry_block_bytes = GEOMETRY_SOURCE_OFFSET + sizeof(GeometrySource);
     static constexpr double default_rebuild_ratio = 1.5;
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
+// What accelerators can do on a device, and the choice of one.
 #include <twinray/tlas.h>
 
+#include "engine/accel/trace_desc.h"
 #include "engine/core/error.h"
 
 namespace twinray {
@@ -38,6 +40,31 @@ AccelChoice choose_accel(const DeviceProperties& device, const std::string& requ
 std::unique_ptr<AbstractAccel> make_accel(Context& context, const AccelChoice& choice, const AccelOptions& options) {
     if (choice.is_software) return std::make_unique<SwTlas>(context, options);
     return std::make_unique<HwTlas>(context, BuildOrder::automatic, options);
+}
+
+const char* name_of(Feature feature) {
+    constexpr std::array<const char*, feature_count> names = {
+        "closest hit",   "any hit",         "deterministic ties", "masks",        "culling",
+        "boxes",         "filters",         "queries in kernels", "level fast",   "level watertight",
+        "level refined", "level certified", "instance refit",     "vertex refit", "compaction",
+        "save and load"};
+    return names.at(static_cast<std::size_t>(feature));
+}
+
+const char* name_of(Support support) {
+    return support == Support::native ? "native" : support == Support::emulated ? "emulated" : "unsupported";
+}
+
+Feature feature_of(Level level) {
+    return static_cast<Feature>(static_cast<int>(Feature::level_fast) + static_cast<int>(level));
+}
+
+void check_level(const std::string& name, const char* doing, const Capability& can, Level level, Level made_for) {
+    if (can.support == Support::unsupported)
+        fail(name, ": ", doing, ": ", name_of(can.feature), " is unsupported: ", can.note);
+    if (level >= Level::refined && level > made_for)
+        fail(name, ": ", doing, ": ", name_of(feature_of(level)), " is more than the accelerator was made for, ",
+             name_of(feature_of(made_for)), "; see AccelOptions");
 }
 
 }  // namespace twinray

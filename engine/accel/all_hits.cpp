@@ -6,8 +6,7 @@
 
 #include "all_hits_hw.spv.h"
 #include "all_hits_sw.spv.h"
-#include "engine/accel/features_of.h"
-#include "engine/accel/instance_record.h"
+#include "engine/accel/trace_desc.h"
 #include "engine/core/device_list.h"
 #include "engine/core/error.h"
 #include "engine/core/kernel.h"

@@ -7,14 +7,14 @@
 #include <vector>
 
 #include <twinray/device_mesh.h>
-#include <twinray/geometry.h>
 #include <twinray/trace.h>
 
-#include "engine/accel/instance_record.h"
+#include "twinray/glsl/cpp.h"
 
 namespace twinray {
 
 #include "twinray/glsl/cpp_begin.h"
+#include "twinray/glsl/instance.h"
 #include "shaders/shared/leaf.h"
 #include "twinray/glsl/cpp_end.h"
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "engine/accel/accel_backend.h"
-#include "engine/accel/geometry.h"
 #include "engine/accel/surface_tables.h"
 #include "engine/accel/mesh_store.h"
 

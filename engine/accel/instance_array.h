@@ -6,13 +6,11 @@
 #include <set>
 #include <vector>
 
-#include "engine/accel/instance_record.h"
 #include "engine/core/kernel.h"
-#include <twinray/geometry.h>
 
 namespace twinray {
 #include "twinray/glsl/cpp_begin.h"
-#include "shaders/shared/copy_transforms.h"
+#include "shaders/shared/copies.h"
 #include "twinray/glsl/cpp_end.h"
 
 // Returns the number of instances to make room for: the present capacity if `count` fits it well, else `count` with

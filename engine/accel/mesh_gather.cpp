@@ -5,7 +5,6 @@
 #include <cstring>
 #include <utility>
 
-#include "engine/accel/geometry.h"
 #include "engine/core/error.h"
 #include "engine_gather_mesh.spv.h"
 

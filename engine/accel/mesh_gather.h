@@ -7,8 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include <twinray/device_mesh.h>
-
 #include "engine/accel/geometry.h"
 #include "engine/core/kernel.h"
 

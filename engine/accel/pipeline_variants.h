@@ -17,7 +17,7 @@ namespace twinray {
 
 // The first trace compiles the leanest program that fits, and waits for it. The next one has the program that fits all
 // scenes compiled in the background. That one serves from then on while leaner ones are also compiled there: a user who
-// traces once pays for one program. There are at most 32 sets of features of an accelerator (see features_of.h), so
+// traces once pays for one program. There are at most 32 sets of features of an accelerator (see trace_desc.h), so
 // that none has to be dropped.
 //
 // It is used by one thread at a time and compiles on a thread of its own. The context must outlive it.

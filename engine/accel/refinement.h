@@ -7,11 +7,9 @@
 #include <vector>
 
 #include "engine/accel/world_bound.h"
-#include "engine/core/kernel.h"
 
 namespace twinray {
 #include "twinray/glsl/cpp_begin.h"
-#include "shaders/shared/trace.h"
 #include "shaders/shared/exact_hit.h"
 #include "twinray/glsl/cpp_end.h"
 

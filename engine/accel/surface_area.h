@@ -7,7 +7,6 @@
 #include <span>
 #include <vector>
 
-#include "engine/accel/instance_record.h"
 #include "engine/core/kernel.h"
 
 namespace twinray {

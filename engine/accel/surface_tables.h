@@ -12,7 +12,6 @@
 
 #include <twinray/device_mesh.h>
 
-#include "engine/core/commands.h"
 #include "engine/core/kernel.h"
 #include "twinray/glsl/cpp_spawn.h"
 
@@ -20,8 +19,7 @@ namespace twinray {
 #include "twinray/glsl/cpp_begin.h"
 #include "twinray/glsl/accel_header.h"
 #include "shaders/shared/copies.h"
-#include "shaders/shared/intersect.h"
-#include "twinray/glsl/surface_at.h"
+#include "shaders/shared/surface_args.h"
 #include "twinray/glsl/cpp_end.h"
 
 static_assert(sizeof(SurfaceAttribute) == 16 && sizeof(SurfaceGeometry) == 32 && sizeof(SurfaceTable) == 40);
@@ -120,6 +118,14 @@ class SurfaceTables {
     Kernel<CopyWordsArgs> copy_words_;
     AttributeNames names_;
     Buffer table_, rows_;
+};
+
+// Kernels that find the surfaces of hits for the host.
+struct SurfaceKernels {
+    explicit SurfaceKernels(Context& context);
+
+    Kernel<SurfaceArgs> surfaces;
+    Kernel<InterpolateArgs> interpolate;
 };
 
 }  // namespace twinray

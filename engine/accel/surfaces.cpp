@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Finds surfaces and handles of hits for the host.
-#include "engine/accel/surface_kernels.h"
 
 #include <algorithm>
 #include <numeric>

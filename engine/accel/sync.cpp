@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "engine/accel/features_of.h"
+#include "engine/accel/trace_desc.h"
 #include "engine/accel/held_geometry.h"
 #include "engine/accel/refinement.h"
-#include "engine/accel/scene_update.h"
-#include "engine/accel/world_bound.h"
+#include "engine/accel/batches.h"
 #include "engine/core/error.h"
 
 namespace twinray {

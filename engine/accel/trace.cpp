@@ -3,14 +3,11 @@
 #include <algorithm>
 #include <cstring>
 
-#include "engine/accel/check_level.h"
-#include "engine/accel/features_of.h"
 #include "engine/accel/held_geometry.h"
 #include "engine/accel/pipeline_variants.h"
 #include "engine/accel/ray_sort.h"
-#include "engine/accel/trace_program.h"
 #include "engine/core/error.h"
-#include "engine/core/pace.h"
+#include "engine/core/commands.h"
 
 namespace twinray {
 namespace {

@@ -2,7 +2,6 @@
 // WorldBound for C++, and its computation on the GPU.
 #pragma once
 
-#include "engine/accel/instance_record.h"
 #include "engine/core/kernel.h"
 #include "engine/core/ray.h"
 

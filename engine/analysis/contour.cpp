@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/analysis/contour.h"
+#include "engine/analysis/polygon64.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,8 +8,7 @@
 #include "engine/accel/accel_backend.h"
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
-#include "engine/core/ray.h"
-#include "engine/scene/bytes.h"
+#include "engine/core/files.h"
 
 namespace twinray {
 namespace {

@@ -6,13 +6,16 @@
 
 #include "engine/accel/placed_meshes.h"
 #include "engine/core/commands.h"
+#include "twinray/glsl/cpp_sampling.h"
 #include "twinray/glsl/cpp_spawn.h"
 
 namespace twinray {
 #include "twinray/glsl/cpp_begin.h"
-#include "shaders/analysis/faces.h"
+#include "shaders/analysis/count_faces.h"
+#include "shaders/analysis/view_factors.h"
 #include "twinray/glsl/cpp_end.h"
 static_assert(sizeof(Face) == 8 && sizeof(FacesOfInstance) == 72);
+static_assert(sizeof(GroupCount) == 8 && sizeof(CountFacesArgs) == 48);
 
 // Computes in float64, like all that the host computes about faces.
 dvec3 in_world(const Transform& transform, vec3 point);

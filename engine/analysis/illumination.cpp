@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "analysis_count_faces.spv.h"
-#include "engine/analysis/light_counts.h"
 #include "engine/analysis/estimate.h"
 #include "engine/analysis/ray_grid.h"
 #include "engine/core/error.h"

@@ -5,7 +5,6 @@
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
-#include "engine/scene/bytes.h"
 
 namespace twinray {
 namespace {

@@ -5,12 +5,8 @@
 #include <cmath>
 #include <optional>
 
-#include "engine/analysis/faces.h"
-#include "engine/analysis/ray_chunks.h"
-#include "engine/analysis/shaft.h"
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
-#include <twinray/geometry.h>
 
 namespace twinray {
 namespace {

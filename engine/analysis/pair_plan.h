@@ -2,18 +2,13 @@
 // Chooses the estimator for each pair of groups of faces: pure functions.
 #pragma once
 
-#include <twinray/analysis.h>
-
 #include <span>
 #include <vector>
 
-#include "engine/accel/placed_meshes.h"
-#include "engine/analysis/contour.h"
+#include "engine/analysis/faces.h"
+#include "engine/analysis/polygon64.h"
 
 namespace twinray {
-#include "twinray/glsl/cpp_begin.h"
-#include "shaders/analysis/face_part.h"
-#include "twinray/glsl/cpp_end.h"
 
 // All faces of a scene, in its order; those without an area have no vertices.
 struct FacePolygons {

@@ -3,10 +3,8 @@
 #pragma once
 
 #include "engine/analysis/pair_plan.h"
-#include "engine/analysis/pair_sums.h"
-#include "engine/analysis/ray_chunks.h"
-#include "engine/core/kernel.h"
-#include "engine/core/pace.h"
+#include "engine/analysis/estimate.h"
+#include "engine/core/commands.h"
 
 namespace twinray {
 #include "twinray/glsl/cpp_begin.h"

@@ -3,9 +3,7 @@
 #pragma once
 
 #include "engine/analysis/faces.h"
-#include "engine/core/kernel.h"
-#include "engine/core/pace.h"
-#include "twinray/glsl/cpp_sampling.h"
+#include "engine/core/commands.h"
 
 namespace twinray {
 #include "twinray/glsl/cpp_begin.h"
@@ -59,5 +57,16 @@ class RayGridTrace {
     Buffer rays_, hits_;
     Pace pace_;
 };
+
+// illuminate() in two steps, for processes that share its rays.
+std::uint64_t grid_ray_count(const Faces& faces, const IlluminationDesc& desc);
+
+// Counts the hits of rays [first, last) of the grid; both are even, or the number of rays. Counts of parts add up to
+// those of all. There is one entry per group, and one for all groups.
+std::vector<GroupCount> count_light(AbstractAccel& accel, const Faces& faces, const IlluminationDesc& desc,
+                                    std::uint64_t first, std::uint64_t last);
+
+// Makes the result of the counts of all rays.
+Illumination illumination_of(const Faces& faces, const IlluminationDesc& desc, std::span<const GroupCount> hits);
 
 }  // namespace twinray

@@ -8,7 +8,6 @@
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
-#include "engine/scene/bytes.h"
 
 namespace twinray {
 namespace {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Computes rows of view factors, one after the other, in a run that a later one can continue.
+// Computes rows of view factors, one after the other, in a run that a later one can continue, and writes them as files.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <map>
+#include <span>
 #include <string_view>
 
 #include <twinray/analysis.h>
@@ -33,5 +35,14 @@ struct MatrixTotals {
     double widest = 0;                                     // half interval
 };
 MatrixTotals totals_of(std::span<const ViewFactorRow> rows);
+
+// All rows are passed in order. Files are written whole or not at all; throws Error naming the file.
+
+// Writes lines i,j,F,ci_low,ci_high.
+void write_matrix_csv(const std::filesystem::path& file, std::span<const ViewFactorRow> rows);
+// Writes a csr_matrix in the format of scipy.sparse.save_npz, with the intervals, each entry's estimator, and for each
+// row its area, the fractions that leave the scene and meet backs, and its number of rays. `areas`: one per row.
+void write_matrix_npz(const std::filesystem::path& file, std::span<const ViewFactorRow> rows,
+                      std::span<const double> areas);
 
 }  // namespace twinray

@@ -2,10 +2,8 @@
 // Counts on the device how many rays from the faces of a scene leave it.
 #pragma once
 
-#include "engine/analysis/count_faces.h"
-#include "engine/core/kernel.h"
-#include "engine/core/pace.h"
-#include "twinray/glsl/cpp_sampling.h"
+#include "engine/analysis/faces.h"
+#include "engine/core/commands.h"
 
 namespace twinray {
 #include "twinray/glsl/cpp_begin.h"

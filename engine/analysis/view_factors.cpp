@@ -6,16 +6,16 @@
 
 #include "analysis_face_rays.spv.h"
 #include "analysis_face_targets.spv.h"
-#include "engine/analysis/ray_chunks.h"
-#include "engine/analysis/row_sums.h"
+#include "engine/analysis/faces.h"
+#include "engine/analysis/estimate.h"
 #include "engine/core/error.h"
-#include "engine/core/kernel.h"
-#include "engine/core/pace.h"
+#include "engine/core/commands.h"
 #include "engine/core/parallel.h"
-#include "engine/core/uploaded.h"
 
 namespace twinray {
 namespace {
+
+static_assert(REPLICATES == replicate_count && CHUNK == REPLICATES * SAMPLES_OF_CHUNK);
 
 constexpr std::size_t ray_chunks_of_batch = 1 << 14;
 constexpr std::uint64_t most_rays = 1ull << 31;

@@ -8,7 +8,7 @@
 #include "analysis_visible_rays.spv.h"
 #include "engine/core/error.h"
 #include "engine/core/kernel.h"
-#include "engine/core/uploaded.h"
+#include "engine/core/commands.h"
 
 namespace twinray {
 #include "twinray/glsl/cpp_begin.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "collide_instance_boxes.spv.h"
-#include "engine/collide/pair_search.h"
+#include "engine/collide/box_tree.h"
 #include "engine/core/error.h"
 
 namespace twinray {

@@ -4,10 +4,9 @@
 #include <algorithm>
 #include <numeric>
 
-#include "engine/accel/placed_meshes.h"
 #include "engine/collide/pair_classifier.h"
 #include "engine/collide/triangle_set.h"
-#include "engine/core/float64.h"
+#include "engine/core/kernel.h"
 #include "engine/core/stopwatch.h"
 
 namespace twinray {

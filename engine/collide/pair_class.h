@@ -4,7 +4,6 @@
 
 #include <twinray/queries.h>
 
-#include "engine/accel/instance_record.h"
 #include "engine/accel/world_bound.h"
 
 namespace twinray {

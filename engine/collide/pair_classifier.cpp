@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "collide_classify.spv.h"
-#include "engine/collide/exact_sign.h"
 #include "engine/core/error.h"
 #include "engine/core/stopwatch.h"
 

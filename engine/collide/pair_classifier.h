@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/collide/exact_class.h"
-#include "engine/collide/pair_search.h"
+#include "engine/collide/box_tree.h"
 
 namespace twinray {
 

@@ -8,7 +8,6 @@
 #include "engine/accel/placed_meshes.h"
 #include "engine/collide/box_tree.h"
 #include "engine/collide/pair_class.h"
-#include "engine/core/kernel.h"
 #include "engine/scene/mesh.h"
 
 namespace twinray {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "engine/core/commands.h"
 
-#include <utility>
-
 #include "engine/core/error.h"
 #include "engine/core/platform.h"
 #include "engine/core/vulkan.h"
@@ -17,17 +15,13 @@ struct ExternalBuffer {
 };
 
 VkBuffer new_buffer(const VulkanTable& vk, VkDevice device, std::uint64_t bytes, VkBufferUsageFlags usage) {
-    VkExternalMemoryBufferCreateInfo external{};
-    external.sType = VK_STRUCTURE_TYPE_EXTERNAL_MEMORY_BUFFER_CREATE_INFO;
+    VkExternalMemoryBufferCreateInfo external = OfType{VK_STRUCTURE_TYPE_EXTERNAL_MEMORY_BUFFER_CREATE_INFO};
     external.handleTypes = platform::shared_memory.type;
-    VkBufferCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
+    VkBufferCreateInfo info = OfType{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
     info.pNext = &external;
     info.size = bytes;
     info.usage = usage;
-    VkBuffer buffer = VK_NULL_HANDLE;
-    vk_check(vk.vkCreateBuffer(device, &info, nullptr, &buffer), "create a shared buffer");
-    return buffer;
+    return created(vk.vkCreateBuffer, device, info, "create a shared buffer");
 }
 
 // Returns the first allowed type in the device's own memory.
@@ -42,24 +36,20 @@ std::uint32_t memory_type(const Context::State& state, std::uint32_t allowed) {
 
 // Makes memory to be exported or, with a handle, imports that.
 VkDeviceMemory new_memory(const Context::State& state, std::uint32_t type, std::uint64_t bytes, std::intptr_t handle) {
-    VkExportMemoryAllocateInfo exports{};
-    exports.sType = VK_STRUCTURE_TYPE_EXPORT_MEMORY_ALLOCATE_INFO;
+    VkExportMemoryAllocateInfo exports = OfType{VK_STRUCTURE_TYPE_EXPORT_MEMORY_ALLOCATE_INFO};
     exports.handleTypes = platform::shared_memory.type;
-    VkMemoryAllocateFlagsInfo flags{};
-    flags.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO;
+    VkMemoryAllocateFlagsInfo flags = OfType{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO};
     flags.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
-    VkMemoryAllocateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+    VkMemoryAllocateInfo info = OfType{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
     info.pNext = &flags;
     info.allocationSize = bytes;
     info.memoryTypeIndex = type;
-    VkDeviceMemory memory = VK_NULL_HANDLE;
     const PFN_vkAllocateMemory allocate = state.vk().vkAllocateMemory;
     if (handle == platform::no_handle) {
         flags.pNext = &exports;
-        vk_check(allocate(state.device(), &info, nullptr, &memory), "allocate memory to be shared");
-        return memory;
+        return created(allocate, state.device(), info, "allocate memory to be shared");
     }
+    VkDeviceMemory memory = VK_NULL_HANDLE;
     // A copy, because the driver owns an imported file descriptor, whatever fails then.
     const std::intptr_t copy = platform::copy_handle(handle);
     if (copy == platform::no_handle) fail("handle ", handle, " cannot be copied");
@@ -101,15 +91,6 @@ ExternalBuffer make_external(Context& context, const BufferDesc& desc, VkBufferU
     throw;
 } catch (const Error& error) {
     fail("buffer '", desc.name, "' to be shared: ", error.what());
-}
-
-// Returns a new handle.
-std::intptr_t export_memory(const Context::State& state, VkDeviceMemory memory, const std::string& name) {
-    if (!memory) fail("buffer '", name, "' is not exportable");
-    const PFN_vkVoidFunction get = state.vk().vkGetDeviceProcAddr(state.device(), platform::shared_memory.get_handle);
-    std::intptr_t handle = platform::no_handle;
-    vk_check(platform::export_memory(get, state.device(), memory, handle), "export memory");
-    return handle;
 }
 
 VkBufferUsageFlags usage_of(const Context& context, const BufferDesc& desc) {
@@ -157,13 +138,17 @@ Buffer Buffer::imported(Context& context, const BufferDesc& desc, const Exported
 
 ExportedMemory Buffer::exported() const {
     if (!context_) fail("a buffer without memory is not exportable");
-    return {export_memory(context_->state(), external_.memory, name_), external_.bytes};
+    if (!external_.memory) fail("buffer '", name_, "' is not exportable");
+    const Context::State& state = context_->state();
+    const PFN_vkVoidFunction get = state.vk().vkGetDeviceProcAddr(state.device(), platform::shared_memory.get_handle);
+    std::intptr_t handle = platform::no_handle;
+    vk_check(platform::export_memory(get, state.device(), external_.memory, handle), "export memory");
+    return {handle, external_.bytes};
 }
 
 void Buffer::take_address(std::uint64_t alignment) {
     Context& context = *context_;
-    VkBufferDeviceAddressInfo address{};
-    address.sType = VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO;
+    VkBufferDeviceAddressInfo address = OfType{VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO};
     address.buffer = made_.buffer;
     address_ = context.state().vk().vkGetBufferDeviceAddress(context.device(), &address);
     if (!address_ || address_ % alignment) {

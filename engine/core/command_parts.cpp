@@ -1,54 +1,37 @@
 // SPDX-License-Identifier: MIT
 // The command buffers of Commands: their start, submission and timing.
 #include <algorithm>
-#include <utility>
 
 #include "engine/core/commands.h"
 #include "engine/core/error.h"
 #include "engine/core/stopwatch.h"
-#include "engine/core/pace.h"
 #include "engine/core/vulkan.h"
 
 namespace twinray {
 namespace {
 
-VkCommandPool new_pool(Context& context) {
-    VkCommandPoolCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
-    info.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
-    info.queueFamilyIndex = context.queue_family();
-    VkCommandPool pool = VK_NULL_HANDLE;
-    vk_check(context.state().vk().vkCreateCommandPool(context.device(), &info, nullptr, &pool),
-             "create a command pool");
-    return pool;
-}
-
 // Returns null if the queue has none.
 VkQueryPool new_timestamps(Context& context, VkCommandBuffer commands, std::uint32_t count) {
     if (context.state().timestamp_period_ns() == 0) return VK_NULL_HANDLE;
-    VkQueryPoolCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
+    VkQueryPoolCreateInfo info = OfType{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
     info.queryType = VK_QUERY_TYPE_TIMESTAMP;
     info.queryCount = count;
-    VkQueryPool pool = VK_NULL_HANDLE;
-    vk_check(context.state().vk().vkCreateQueryPool(context.device(), &info, nullptr, &pool),
-             "create a timestamp pool");
-    context.state().vk().vkCmdResetQueryPool(commands, pool, 0, count);
+    const VulkanTable& vk = context.state().vk();
+    const VkQueryPool pool = created(vk.vkCreateQueryPool, context.device(), info, "create a timestamp pool");
+    vk.vkCmdResetQueryPool(commands, pool, 0, count);
     return pool;
 }
 
 VkCommandBuffer begun_buffer(Context& context, VkCommandPool pool, const std::string& name) {
     const VulkanTable& vk = context.state().vk();
-    VkCommandBufferAllocateInfo allocate{};
-    allocate.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+    VkCommandBufferAllocateInfo allocate = OfType{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
     allocate.commandPool = pool;
     allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
     allocate.commandBufferCount = 1;
     VkCommandBuffer handle = VK_NULL_HANDLE;
     vk_check(vk.vkAllocateCommandBuffers(context.device(), &allocate, &handle), "allocate a command buffer");
     context.state().set_name(VK_OBJECT_TYPE_COMMAND_BUFFER, reinterpret_cast<std::uint64_t>(handle), name);
-    VkCommandBufferBeginInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+    VkCommandBufferBeginInfo info = OfType{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
     vk_check(vk.vkBeginCommandBuffer(handle, &info), "begin a command buffer");
     return handle;
@@ -83,8 +66,7 @@ Commands::Commands(Context& context, const std::string& name, const CallerComman
     const VkQueryPool queries = new_timestamps(context, caller.handle, 2 * State::max_timed_passes);
     state_->parts.push_back({VK_NULL_HANDLE, caller.handle, queries});
     context.announce(caller.done);
-    VkMemoryBarrier barrier{};
-    barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
+    VkMemoryBarrier barrier = OfType{VK_STRUCTURE_TYPE_MEMORY_BARRIER};
     barrier.srcAccessMask = caller.producer_access;
     barrier.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
     context.state().vk().vkCmdPipelineBarrier(caller.handle, caller.producer_stages | context.state().stages(),
@@ -104,12 +86,16 @@ SyncPoint Commands::promise() {
 }
 
 void Commands::State::begin_part() {
-    const VkCommandPool pool = new_pool(context);
+    VkCommandPoolCreateInfo info = OfType{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
+    info.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
+    info.queueFamilyIndex = context.queue_family();
+    const VulkanTable& vk = context.state().vk();
+    const VkCommandPool pool = created(vk.vkCreateCommandPool, context.device(), info, "create a command pool");
     try {
         const VkCommandBuffer handle = begun_buffer(context, pool, name);
         parts.push_back({pool, handle, new_timestamps(context, handle, 2 * max_timed_passes)});
     } catch (...) {
-        context.state().vk().vkDestroyCommandPool(context.device(), pool, nullptr);
+        vk.vkDestroyCommandPool(context.device(), pool, nullptr);
         throw;
     }
     groups = 0;
@@ -179,23 +165,19 @@ std::vector<PassTiming> Commands::timings() const {
 }
 
 std::vector<PassTiming> Commands::State::timings_of_parts() const {
+    const Context::State& state = context.state();
     std::vector<PassTiming> timings;
-    for (const Part& part : parts) std::ranges::copy(timings_of(part), std::back_inserter(timings));
-    return timings;
-}
-
-std::vector<PassTiming> Commands::State::timings_of(const Part& part) const {
-    const std::uint32_t count = std::min(static_cast<std::uint32_t>(part.passes.size()), max_timed_passes);
-    if (!part.queries || count == 0) return {};
-    std::vector<std::uint64_t> stamps(2 * count);
-    context.state().check(
-        context.state().vk().vkGetQueryPoolResults(context.device(), part.queries, 0, 2 * count, stamps.size() * 8,
-                                                   stamps.data(), 8, VK_QUERY_RESULT_64_BIT),
-        "read timestamps");
-    std::vector<PassTiming> timings;
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const double ticks = static_cast<double>(stamps[2 * i + 1] - stamps[2 * i]);
-        timings.push_back({part.passes[i].name, ticks * context.state().timestamp_period_ns() * 1e-6});
+    for (const Part& part : parts) {
+        const std::uint32_t count = std::min(static_cast<std::uint32_t>(part.passes.size()), max_timed_passes);
+        if (!part.queries || count == 0) continue;
+        std::vector<std::uint64_t> stamps(2 * count);
+        state.check(state.vk().vkGetQueryPoolResults(context.device(), part.queries, 0, 2 * count, stamps.size() * 8,
+                                                     stamps.data(), 8, VK_QUERY_RESULT_64_BIT),
+                    "read timestamps");
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const double ticks = static_cast<double>(stamps[2 * i + 1] - stamps[2 * i]);
+            timings.push_back({part.passes[i].name, ticks * state.timestamp_period_ns() * 1e-6});
+        }
     }
     return timings;
 }

@@ -14,12 +14,10 @@ namespace twinray {
 namespace {
 
 void check_queue_family(const AdoptedDevice& adopted, const VulkanTable& vk) {
-    std::uint32_t count = 0;
-    vk.vkGetPhysicalDeviceQueueFamilyProperties(adopted.physical_device, &count, nullptr);
-    if (adopted.queue_family >= count)
-        fail("adopted device: queue family ", adopted.queue_family, " does not exist; the device has ", count);
-    std::vector<VkQueueFamilyProperties> families(count);
-    vk.vkGetPhysicalDeviceQueueFamilyProperties(adopted.physical_device, &count, families.data());
+    const std::vector<VkQueueFamilyProperties> families = queue_families(vk, adopted.physical_device);
+    if (adopted.queue_family >= families.size())
+        fail("adopted device: queue family ", adopted.queue_family, " does not exist; the device has ",
+             families.size());
     if (!(families[adopted.queue_family].queueFlags & VK_QUEUE_COMPUTE_BIT))
         fail("adopted device: queue family ", adopted.queue_family, " does not support compute");
 }

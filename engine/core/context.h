@@ -4,15 +4,13 @@
 
 #include <deque>
 #include <mutex>
+#include <set>
 
-#include <twinray/context.h>
-
-#include "engine/core/allocator.h"
-#include "engine/core/submission_log.h"
+#include "engine/core/device_fault.h"
 #include "engine/core/kernel_tuning.h"
-#include "engine/core/pipeline_store.h"
-#include "engine/core/pipeline_table.h"
-#include "engine/core/promised_points.h"
+#include "engine/core/pipelines.h"
+
+typedef struct VmaAllocator_T* VmaAllocator;
 
 namespace twinray {
 
@@ -21,6 +19,72 @@ namespace twinray {
 // device: a needed feature is not enabled, the queue family has no compute, or `enabled` claims what the device does
 // not support or the VkDevice was not created with. The handles must be set and the functions of all levels loaded.
 DeviceProperties check_adoption(const AdoptedDevice& adopted, const VulkanTable& vk);
+
+// Make and destroy twinray's own allocator. `block_bytes`: KernelTuning::memory_block_bytes.
+VmaAllocator create_vma(const VulkanTable& vk, VkInstance instance, VkPhysicalDevice physical_device, VkDevice device,
+                        std::uint32_t api_version, std::uint64_t block_bytes);
+void destroy_vma(VmaAllocator allocator);
+AllocatorHooks vma_hooks(VmaAllocator allocator);
+
+// Makes and frees all buffers and images, by an allocator of twinray's own or by the application's two functions.
+class Allocator {
+  public:
+    // Uses the application's allocator. Throws Error if one hook is missing.
+    explicit Allocator(const AllocatorHooks& hooks);
+    // Uses twinray's own.
+    Allocator(const VulkanTable& vk, VkInstance instance, VkPhysicalDevice physical_device, VkDevice device,
+              std::uint32_t api_version, std::uint64_t block_bytes);
+    ~Allocator();  // every buffer must have been freed
+    Allocator(const Allocator&) = delete;
+    Allocator& operator=(const Allocator&) = delete;
+
+    // Throws Error naming the buffer and its size if there is no memory or the application's hook breaks its promise.
+    AllocatedBuffer allocate(const BufferRequest& request);
+    void free(const AllocatedBuffer& buffer, std::uint64_t bytes) noexcept;
+
+    bool has_images() const { return hooks_.allocate_image && hooks_.free_image; }
+    // The same for images; has_images() must be true.
+    AllocatedImage allocate(const ImageRequest& request);
+    void free(const AllocatedImage& image) noexcept;
+
+    std::uint64_t live_bytes() const { return live_bytes_; }
+
+  private:
+    VmaAllocator own_ = nullptr;  // null: the host's
+    AllocatorHooks hooks_;
+    std::uint64_t live_bytes_ = 0;
+};
+
+// Points of a timeline that commands will reach which are not submitted yet. Pure.
+// A timeline may only grow, so commands are submitted, or given up, in the order in which their points were promised.
+class PromisedPoints {
+  public:
+    std::uint64_t promise() { return ++promised_; }
+    // Returns whether no other commands are to be submitted before.
+    bool is_due(std::uint64_t point) const { return point == passed_ + 1; }
+    bool is_passed(std::uint64_t point) const { return point <= passed_; }
+    std::uint64_t last_passed() const { return passed_; }
+    // Returns the value that due commands signal: it includes those behind them that nobody will submit.
+    std::uint64_t value_of(std::uint64_t point) const {
+        while (given_up_.contains(point + 1)) ++point;
+        return point;
+    }
+    void pass(std::uint64_t point) {
+        passed_ = value_of(point);
+        given_up_.erase(given_up_.begin(), given_up_.upper_bound(passed_));
+    }
+    void give_up(std::uint64_t point) {
+        given_up_.insert(point);
+        lost_.insert(point);
+    }
+    // Returns whether its commands were given up: work that relied on them never happened.
+    bool is_lost(std::uint64_t point) const { return lost_.contains(point); }
+
+  private:
+    std::uint64_t promised_ = 0, passed_ = 0;
+    std::set<std::uint64_t> given_up_;  // not passed yet
+    std::set<std::uint64_t> lost_;
+};
 
 // A primary command buffer, and its passes.
 struct Submission {
@@ -115,7 +179,6 @@ struct Context::State {
     void create_device(const ContextDesc& desc);
     void set_tuning(std::optional<TuningRow> row, std::optional<double> most_submission_seconds);
     void create_own_objects(const AllocatorHooks& allocator, const std::filesystem::path& pipeline_folder);
-    void create_timeline();
     void create_absent();
     void create_pipeline_cache(const PipelineStore& store);
     void keep_pipelines() noexcept;
@@ -123,7 +186,6 @@ struct Context::State {
     void wait_for(SyncPoint point) const;
     VkResult wait_for(const VkSemaphoreWaitInfo& info) const;
     VkResult wait_patiently(const VkSemaphoreWaitInfo& info, std::uint64_t most) const;
-    VkResult note_hang() const;
     VkResult enqueue(std::span<const Submission> submissions, std::uint64_t promised) const;
     VkResult enqueue(std::span<const VkSubmitInfo> infos) const;
     std::string words_of_loss() const;
@@ -175,5 +237,21 @@ struct Context::State {
     mutable std::mutex messages_mutex_;
     std::vector<std::string> messages_;
 };
+
+// A device may be one on which nothing runs, so that its driver need not have the hardware: it only makes pipelines.
+
+// Replaces the functions that record, submit, wait or allocate memory: every semaphore has passed every value, query
+// results stay as they are, and addresses are aligned and distinct without memory. Objects have no names in debuggers.
+void run_nothing(VulkanTable& vk);
+
+// The work recorded on such devices by this thread since its last query.
+struct RecordedWork {
+    std::uint64_t dispatches = 0, barriers = 0;
+    std::uint64_t copies = 0;  // and fills, and updates
+};
+RecordedWork take_recorded_work();
+
+// Returns the allocator for them: null handles, and zeros in buffers that the host maps. No images.
+AllocatorHooks memoryless_allocator();
 
 }  // namespace twinray

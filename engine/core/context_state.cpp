@@ -5,13 +5,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <sstream>
-#include <vector>
 
 #include <vulkan/vulkan_core.h>
 
 #include "engine/core/device_properties.h"
-#include "engine/core/dry_device.h"
 #include "engine/core/error.h"
 #include "engine/core/platform.h"
 #include "engine/core/vulkan.h"
@@ -20,50 +17,20 @@
 namespace twinray {
 namespace {
 
-constexpr const char* extension_name = VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME;
-
-bool is_that(const VkExtensionProperties& extension) {
-    return std::strcmp(extension.extensionName, extension_name) == 0;
-}
-
-// Makes the driver report on pipelines (VK_KHR_pipeline_executable_properties).
-class StatisticsFeature {
-  public:
-    // Does nothing if the device lacks the extension. `info` refers to this object until vkCreateDevice. Call it once.
-    void add_to(VkDeviceCreateInfo& info, const VulkanTable& vk, VkPhysicalDevice device) {
-        if (std::ranges::none_of(device_extensions(vk, device), is_that)) return;
-        feature_.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR;
-        feature_.pipelineExecutableInfo = VK_TRUE;
-        feature_.pNext = const_cast<void*>(info.pNext);
-        info.pNext = &feature_;
-        extensions_.assign(info.ppEnabledExtensionNames, info.ppEnabledExtensionNames + info.enabledExtensionCount);
-        extensions_.push_back(extension_name);
-        info.enabledExtensionCount = static_cast<std::uint32_t>(extensions_.size());
-        info.ppEnabledExtensionNames = extensions_.data();
-    }
-
-  private:
-    VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR feature_{};
-    std::vector<const char*> extensions_;
-};
-
 VkInstance new_instance(const VulkanTable& vk, const std::string& name, bool validation) {
-    VkApplicationInfo application{};
-    application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
+    VkApplicationInfo application = OfType{VK_STRUCTURE_TYPE_APPLICATION_INFO};
     application.pApplicationName = name.c_str();
     application.pEngineName = "twinray";
     application.apiVersion = VK_API_VERSION_1_3;  // device-level 1.2 is enough; the validation layer knows 1.3
 
     const VkValidationFeatureEnableEXT synchronisation = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
-    VkValidationFeaturesEXT validation_features{};
-    validation_features.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT;
+    VkValidationFeaturesEXT validation_features = OfType{VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT};
     validation_features.enabledValidationFeatureCount = 1;
     validation_features.pEnabledValidationFeatures = &synchronisation;
 
     const char* layer = "VK_LAYER_KHRONOS_validation";
     const char* extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
-    VkInstanceCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
+    VkInstanceCreateInfo info = OfType{VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO};
     info.pApplicationInfo = &application;
     if (validation) {
         info.pNext = &validation_features;
@@ -82,14 +49,6 @@ std::vector<DeviceProperties> facts_of(const VulkanTable& vk, const std::vector<
     std::vector<DeviceProperties> properties;
     for (VkPhysicalDevice device : devices) properties.push_back(query_device_properties(vk, device));
     return properties;
-}
-
-bool has_timestamps(const VulkanTable& vk, VkPhysicalDevice device, std::uint32_t family) {
-    std::uint32_t count = 0;
-    vk.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
-    std::vector<VkQueueFamilyProperties> families(count);
-    vk.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
-    return family < count && families[family].timestampValidBits > 0;
 }
 
 std::string no_device_message(const DeviceChoice& choice) {
@@ -183,8 +142,7 @@ void Context::State::create_instance(const ContextDesc& desc) {
     instance_ = new_instance(vk_, desc.name, desc.validation);
     vk_.load_instance(instance_);
     if (!desc.validation) return;
-    VkDebugUtilsMessengerCreateInfoEXT info{};
-    info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
+    VkDebugUtilsMessengerCreateInfoEXT info = OfType{VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT};
     info.messageSeverity =
         VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
     info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
@@ -208,20 +166,30 @@ void Context::State::create_device(const ContextDesc& desc) {
 
     const DeviceRequirements requirements(properties_);
     const float priority = 1;
-    VkDeviceQueueCreateInfo queue{};
-    queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
+    VkDeviceQueueCreateInfo queue = OfType{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
     queue.queueFamilyIndex = queue_family_;
     queue.queueCount = 1;
     queue.pQueuePriorities = &priority;
-    VkDeviceCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
+    VkDeviceCreateInfo info = OfType{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO};
     info.pNext = requirements.features();
     info.queueCreateInfoCount = 1;
     info.pQueueCreateInfos = &queue;
-    info.enabledExtensionCount = static_cast<std::uint32_t>(requirements.extensions().size());
-    info.ppEnabledExtensionNames = requirements.extensions().data();
-    StatisticsFeature statistics;
-    if (watch_) statistics.add_to(info, vk_, physical_device_);
+    std::vector<const char*> extensions = requirements.extensions();
+    // A watched driver also reports on pipelines, if it can.
+    VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR statistics =
+        OfType{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR};
+    constexpr std::string_view of_statistics = VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME;
+    const auto is_that = [&](const VkExtensionProperties& extension) {
+        return extension.extensionName == of_statistics;
+    };
+    if (watch_ && std::ranges::any_of(device_extensions(vk_, physical_device_), is_that)) {
+        statistics.pipelineExecutableInfo = VK_TRUE;
+        statistics.pNext = const_cast<void*>(info.pNext);
+        info.pNext = &statistics;
+        extensions.push_back(of_statistics.data());
+    }
+    info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
+    info.ppEnabledExtensionNames = extensions.data();
     vk_check(vk_.vkCreateDevice(physical_device_, &info, nullptr, &device_), "create a Vulkan device");
     state_features(info, properties_);
     vk_.load_device(device_);
@@ -235,17 +203,17 @@ void Context::State::set_tuning(std::optional<TuningRow> row, std::optional<doub
 }
 
 void Context::State::create_own_objects(const AllocatorHooks& allocator, const std::filesystem::path& pipeline_folder) {
-    VkPhysicalDeviceProperties2 properties{};
-    properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+    VkPhysicalDeviceProperties2 properties = OfType{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
     vk_.vkGetPhysicalDeviceProperties2(physical_device_, &properties);
-    if (has_timestamps(vk_, physical_device_, queue_family_))
+    const std::vector<VkQueueFamilyProperties> families = queue_families(vk_, physical_device_);
+    if (queue_family_ < families.size() && families[queue_family_].timestampValidBits > 0)
         timestamp_period_ns_ = properties.properties.limits.timestampPeriod;
     const bool has_hooks = allocator.allocate || allocator.free;
     allocator_ = has_hooks ? std::make_unique<Allocator>(allocator)
                            : std::make_unique<Allocator>(vk_, instance_, physical_device_, device_, api_version_,
                                                          tuning_.memory_block_bytes);
 
-    create_timeline();
+    timeline_ = new_timeline("twinray timeline");
     create_absent();
     if (!pipeline_cache_) create_pipeline_cache(PipelineStore(pipeline_folder, properties.properties));
 }
@@ -255,8 +223,7 @@ void Context::State::create_absent() {
     absent_memory_ = allocator_->allocate(
         {"absent", absent_bytes, VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
          Memory::upload, 16});
-    VkBufferDeviceAddressInfo address{};
-    address.sType = VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO;
+    VkBufferDeviceAddressInfo address = OfType{VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO};
     address.buffer = absent_memory_.buffer;
     absent_ = absent_near(vk_.vkGetBufferDeviceAddress(device_, &address));
     auto* const bytes = static_cast<std::byte*>(absent_memory_.mapped);
@@ -266,11 +233,10 @@ void Context::State::create_absent() {
 
 void Context::State::create_pipeline_cache(const PipelineStore& store) {
     const Bytes kept = store.load([&](std::string_view sentence) { warn(sentence); });
-    VkPipelineCacheCreateInfo cache{};
-    cache.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO;
+    VkPipelineCacheCreateInfo cache = OfType{VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO};
     cache.initialDataSize = kept.size();
     cache.pInitialData = kept.data();
-    vk_check(vk_.vkCreatePipelineCache(device_, &cache, nullptr, &pipeline_cache_), "create the pipeline cache");
+    pipeline_cache_ = created(vk_.vkCreatePipelineCache, device_, cache, "create the pipeline cache");
     owns_pipeline_cache_ = true;
     pipeline_store_ = store;
     kept_pipeline_bytes_ = kept.size();
@@ -330,8 +296,7 @@ std::vector<std::string> Context::State::validation_messages() const {
 
 void Context::State::set_name(VkObjectType type, std::uint64_t handle, const std::string& name) const {
     if (!vk_.vkSetDebugUtilsObjectNameEXT) return;
-    VkDebugUtilsObjectNameInfoEXT info{};
-    info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT;
+    VkDebugUtilsObjectNameInfoEXT info = OfType{VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT};
     info.objectType = type;
     info.objectHandle = handle;
     info.pObjectName = name.c_str();

@@ -48,18 +48,31 @@ void tell(const std::vector<Info>& infos, std::vector<std::string>& parts) {
     if (infos.size() > most_infos) parts.push_back(text(infos.size() - most_infos, " more"));
 }
 
+constexpr std::size_t most_told = 3;  // submissions, and passes of each
+
+std::string told(const PassWork& pass) {
+    return text('\'', pass.name, '\'', pass.groups ? text(" of ", pass.groups, " groups") : "");
+}
+
+std::string told(const std::string& commands, std::vector<PassWork> passes) {
+    std::ranges::stable_sort(passes, std::ranges::greater{}, &PassWork::groups);
+    std::vector<std::string> largest;
+    for (std::size_t i = 0; i < std::min(passes.size(), most_told); ++i) largest.push_back(told(passes[i]));
+    if (passes.size() > most_told) largest.emplace_back("...");
+    const char* const unit = passes.size() == 1 ? " pass: " : " passes: ";
+    return text('\'', commands, "' (", passes.size(), unit, joined(largest), ')');
+}
+
 }  // namespace
 
 DeviceFault query_device_fault(const VulkanTable& vk, VkDevice device) {
     if (!vk.vkGetDeviceFaultInfoEXT) return {};
-    VkDeviceFaultCountsEXT counts{};
-    counts.sType = VK_STRUCTURE_TYPE_DEVICE_FAULT_COUNTS_EXT;
+    VkDeviceFaultCountsEXT counts = OfType{VK_STRUCTURE_TYPE_DEVICE_FAULT_COUNTS_EXT};
     if (vk.vkGetDeviceFaultInfoEXT(device, &counts, nullptr) != VK_SUCCESS) return {};
     counts.vendorBinarySize = 0;  // a dump for tools of the vendor
     DeviceFault fault{.addresses = std::vector<VkDeviceFaultAddressInfoEXT>(counts.addressInfoCount),
                       .vendor = std::vector<VkDeviceFaultVendorInfoEXT>(counts.vendorInfoCount)};
-    VkDeviceFaultInfoEXT info{};
-    info.sType = VK_STRUCTURE_TYPE_DEVICE_FAULT_INFO_EXT;
+    VkDeviceFaultInfoEXT info = OfType{VK_STRUCTURE_TYPE_DEVICE_FAULT_INFO_EXT};
     info.pAddressInfos = fault.addresses.data();
     info.pVendorInfos = fault.vendor.data();
     // The result is incomplete if there are more by now.
@@ -84,12 +97,6 @@ std::string Context::State::words_of_loss() const {
     return name_of(VK_ERROR_DEVICE_LOST) + submission_log_.sentence() + *fault_;
 }
 
-VkResult Context::State::note_hang() const {
-    is_hung_ = true;
-    fault_ = text("; it has ended none of its submissions for ", most_wait_seconds_, " s");
-    return VK_ERROR_DEVICE_LOST;
-}
-
 void Context::State::check(VkResult result, const char* action) const {
     is_lost_ |= result == VK_ERROR_DEVICE_LOST;
     if (result == VK_ERROR_DEVICE_LOST) throw DeviceLost(text(action, ": ", words_of_loss()));
@@ -108,6 +115,23 @@ void Context::State::check_process() const {
 void Context::State::check_alive() const {
     check_process();
     if (is_lost_) throw DeviceLost(text("device '", properties_.name, "': ", words_of_loss()));
+}
+
+void SubmissionLog::submitted(std::uint64_t value, std::string commands, std::vector<PassWork> passes) {
+    submissions_.push_back({value, std::move(commands), std::move(passes)});
+}
+
+void SubmissionLog::reached(std::uint64_t value) {
+    while (!submissions_.empty() && submissions_.front().value <= value) submissions_.pop_front();
+}
+
+std::string SubmissionLog::sentence() const {
+    if (submissions_.empty()) return "";
+    std::vector<std::string> first;
+    for (std::size_t i = 0; i < std::min(submissions_.size(), most_told); ++i)
+        first.push_back(told(submissions_[i].commands, submissions_[i].passes));
+    if (submissions_.size() > most_told) first.push_back(text("and ", submissions_.size() - most_told, " more"));
+    return "; in flight: " + joined(first);
 }
 
 }  // namespace twinray

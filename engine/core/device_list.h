@@ -2,10 +2,7 @@
 // A list that kernels append to; if it is too short, it is made longer and filled again.
 #pragma once
 
-#include <functional>
-#include <string>
-
-#include "engine/core/pace.h"
+#include "engine/core/commands.h"
 
 namespace twinray {
 #include "twinray/glsl/cpp_begin.h"

@@ -2,9 +2,10 @@
 #include "engine/core/device_properties.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
+#include <thread>
 
-#include "engine/core/cpu_vectors.h"
 #include "engine/core/error.h"
 #include "engine/core/platform.h"
 #include "engine/core/requirement.h"
@@ -68,28 +69,16 @@ constexpr FeatureBit bits[] = {
 
 // One struct for each feature. Unlike those of a whole Vulkan version they may be in any chain that does not hold the
 // feature already.
-struct FeatureStructs {
-    VkPhysicalDeviceFeatures2 core{};
-    VkPhysicalDeviceTimelineSemaphoreFeatures timeline{};
-    VkPhysicalDeviceBufferDeviceAddressFeatures address{};
-    VkPhysicalDeviceScalarBlockLayoutFeatures layout{};
-    VkPhysicalDeviceDescriptorIndexingFeatures indexing{};
-    VkPhysicalDeviceAccelerationStructureFeaturesKHR structure{};
-    VkPhysicalDeviceRayQueryFeaturesKHR query{};
-    VkPhysicalDeviceRayTracingPipelineFeaturesKHR pipeline{};
-    VkPhysicalDeviceFaultFeaturesEXT fault{};
-
-    FeatureStructs() {  // all features off
-        core.sType = type_of_core;
-        timeline.sType = type_of_timeline;
-        address.sType = type_of_address;
-        layout.sType = type_of_layout;
-        indexing.sType = type_of_indexing;
-        structure.sType = type_of_structure;
-        query.sType = type_of_query;
-        pipeline.sType = type_of_tracing;
-        fault.sType = type_of_fault;
-    }
+struct FeatureStructs {  // all features off
+    VkPhysicalDeviceFeatures2 core = OfType{type_of_core};
+    VkPhysicalDeviceTimelineSemaphoreFeatures timeline = OfType{type_of_timeline};
+    VkPhysicalDeviceBufferDeviceAddressFeatures address = OfType{type_of_address};
+    VkPhysicalDeviceScalarBlockLayoutFeatures layout = OfType{type_of_layout};
+    VkPhysicalDeviceDescriptorIndexingFeatures indexing = OfType{type_of_indexing};
+    VkPhysicalDeviceAccelerationStructureFeaturesKHR structure = OfType{type_of_structure};
+    VkPhysicalDeviceRayQueryFeaturesKHR query = OfType{type_of_query};
+    VkPhysicalDeviceRayTracingPipelineFeaturesKHR pipeline = OfType{type_of_tracing};
+    VkPhysicalDeviceFaultFeaturesEXT fault = OfType{type_of_fault};
 
     // Returns the struct of a type; null if it is not one of these.
     VkBaseOutStructure* find(VkStructureType type) {
@@ -105,9 +94,8 @@ VkBool32* bit_at(VkBaseOutStructure* node, std::size_t offset) {
 }
 
 bool has_extension(const VkDeviceCreateInfo& info, const char* name) {
-    for (const char* extension : std::span(info.ppEnabledExtensionNames, info.enabledExtensionCount))
-        if (std::strcmp(extension, name) == 0) return true;
-    return false;
+    return std::ranges::any_of(std::span(info.ppEnabledExtensionNames, info.enabledExtensionCount),
+                               [&](const char* extension) { return std::strcmp(extension, name) == 0; });
 }
 
 // Returns the bit of a feature in a device's info. If its chain does not hold the feature, a struct of `ours` is put
@@ -176,8 +164,7 @@ VkBool32* find_bit(VkBaseOutStructure* chain, const FeatureBit& bit) {
 
 void state_features(const VkDeviceCreateInfo& info, DeviceProperties& properties) {
     auto* chain = static_cast<VkBaseOutStructure*>(const_cast<void*>(info.pNext));
-    VkPhysicalDeviceFeatures2 old_style{};
-    old_style.sType = type_of_core;
+    VkPhysicalDeviceFeatures2 old_style = OfType{type_of_core};
     if (info.pEnabledFeatures) old_style.features = *info.pEnabledFeatures;
     for (const FeatureBit& bit : bits) {
         const VkBool32* found = find_bit(chain, bit);
@@ -202,43 +189,37 @@ const char* feature_beyond(const DeviceProperties& told, const DeviceProperties&
 }
 
 std::vector<VkPhysicalDevice> physical_devices(const VulkanTable& vk, VkInstance instance) {
-    std::uint32_t count = 0;
-    vk_check(vk.vkEnumeratePhysicalDevices(instance, &count, nullptr), "list Vulkan devices");
-    std::vector<VkPhysicalDevice> devices(count);
-    vk_check(vk.vkEnumeratePhysicalDevices(instance, &count, devices.data()), "list Vulkan devices");
-    return devices;
+    return listed<VkPhysicalDevice>([&](std::uint32_t* count, VkPhysicalDevice* devices) {
+        vk_check(vk.vkEnumeratePhysicalDevices(instance, count, devices), "list Vulkan devices");
+    });
 }
 
 std::vector<VkExtensionProperties> device_extensions(const VulkanTable& vk, VkPhysicalDevice device) {
-    std::uint32_t count = 0;
-    vk_check(vk.vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr), "list device extensions");
-    std::vector<VkExtensionProperties> extensions(count);
-    vk_check(vk.vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data()),
-             "list device extensions");
-    return extensions;
+    return listed<VkExtensionProperties>([&](std::uint32_t* count, VkExtensionProperties* extensions) {
+        vk_check(vk.vkEnumerateDeviceExtensionProperties(device, nullptr, count, extensions), "list device extensions");
+    });
+}
+
+std::vector<VkQueueFamilyProperties> queue_families(const VulkanTable& vk, VkPhysicalDevice device) {
+    return listed<VkQueueFamilyProperties>([&](std::uint32_t* count, VkQueueFamilyProperties* families) {
+        vk.vkGetPhysicalDeviceQueueFamilyProperties(device, count, families);
+    });
 }
 
 int compute_queue_family(const VulkanTable& vk, VkPhysicalDevice device) {
-    std::uint32_t count = 0;
-    vk.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
-    std::vector<VkQueueFamilyProperties> families(count);
-    vk.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
-    for (std::uint32_t i = 0; i < count; ++i)
+    const std::vector<VkQueueFamilyProperties> families = queue_families(vk, device);
+    for (std::size_t i = 0; i < families.size(); ++i)
         if (families[i].queueFlags & VK_QUEUE_COMPUTE_BIT) return static_cast<int>(i);
     return -1;
 }
 
 DeviceProperties query_device_properties(const VulkanTable& vk, VkPhysicalDevice device) {
-    VkPhysicalDeviceDriverProperties driver{};
-    driver.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES;
-    VkPhysicalDeviceSubgroupProperties subgroup{};
-    subgroup.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES;
+    VkPhysicalDeviceDriverProperties driver = OfType{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
+    VkPhysicalDeviceSubgroupProperties subgroup = OfType{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES};
     subgroup.pNext = &driver;
-    VkPhysicalDeviceIDProperties id{};
-    id.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ID_PROPERTIES;
+    VkPhysicalDeviceIDProperties id = OfType{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ID_PROPERTIES};
     id.pNext = &subgroup;
-    VkPhysicalDeviceProperties2 reported{};
-    reported.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+    VkPhysicalDeviceProperties2 reported = OfType{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
     reported.pNext = &id;
     vk.vkGetPhysicalDeviceProperties2(device, &reported);
 
@@ -314,11 +295,39 @@ void DeviceRequirements::add_to(VkDeviceCreateInfo& info) {
     const std::span host(info.ppEnabledExtensionNames, info.enabledExtensionCount);
     state_->all_extensions.assign(host.begin(), host.end());
     for (const char* ours : state_->extensions)
-        if (std::ranges::none_of(host, [&](const char* theirs) { return std::strcmp(ours, theirs) == 0; }))
-            state_->all_extensions.push_back(ours);
+        if (!has_extension(info, ours)) state_->all_extensions.push_back(ours);
     info.enabledExtensionCount = static_cast<std::uint32_t>(state_->all_extensions.size());
     info.ppEnabledExtensionNames = state_->all_extensions.data();
     state_->switch_on(info, state_->added_structs);
+}
+
+unsigned count_cpu_threads() {
+    const char* text = std::getenv("LP_NUM_THREADS");
+    const long wanted = text ? std::strtol(text, nullptr, 10) : 0;
+    if (wanted > 0) return static_cast<unsigned>(std::min(wanted, 1024L));
+    return std::max(1u, std::thread::hardware_concurrency());
+}
+
+bool has_512_bit_vectors() {
+#if defined(__x86_64__)
+    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+           __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
+#else
+    return false;
+#endif
+}
+
+int lavapipe_release(const DeviceProperties& device) {
+    constexpr std::string_view mesa = "Mesa ";
+    const std::size_t at = device.driver.find(mesa);
+    if (!device.name.starts_with("llvmpipe") || at == std::string::npos) return 0;
+    return std::atoi(device.driver.c_str() + at + mesa.size());
+}
+
+bool takes_any_vector_width(const DeviceProperties& device) {
+    constexpr int first_of_one_width = 26;
+    const int release = lavapipe_release(device);
+    return release != 0 && release < first_of_one_width;
 }
 
 }  // namespace twinray

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "engine/core/dry_device.h"
+#include "engine/core/context.h"
 
 #include <algorithm>
 #include <cstdlib>
-#include <utility>
 
 #include "engine/core/vulkan.h"
 
@@ -30,9 +29,21 @@ std::uint64_t address_of(Handle handle) {
     return reinterpret_cast<std::uint64_t>(handle) << address_shift;
 }
 
-template <class... Rest>
-void mute(void(VKAPI_PTR*& command)(VkCommandBuffer, Rest...)) {
-    if (command) command = [](VkCommandBuffer, Rest...) {};
+template <class... Arguments>
+void mute(void(VKAPI_PTR*& command)(VkCommandBuffer, Arguments...)) {
+    if (command) command = [](VkCommandBuffer, Arguments...) {};
+}
+
+template <class... Arguments>
+void succeed(VkResult(VKAPI_PTR*& function)(Arguments...)) {
+    function = [](Arguments...) { return VK_SUCCESS; };
+}
+
+template <class Info, class Handle>
+void pretend(VkResult(VKAPI_PTR*& create)(VkDevice, const Info*, const VkAllocationCallbacks*, Handle*),
+             void(VKAPI_PTR*& destroy)(VkDevice, Handle, const VkAllocationCallbacks*)) {
+    create = [](VkDevice, const Info*, const VkAllocationCallbacks*, Handle* handle) { return make(*handle); };
+    destroy = [](VkDevice, Handle handle, const VkAllocationCallbacks*) { release(handle); };
 }
 
 void mute_commands(VulkanTable& vk) {
@@ -56,49 +67,34 @@ void mute_commands(VulkanTable& vk) {
 
 thread_local RecordedWork recorded;
 
-void count_commands(VulkanTable& vk) {
-    vk.vkCmdDispatch = [](VkCommandBuffer, std::uint32_t, std::uint32_t, std::uint32_t) { ++recorded.dispatches; };
-    vk.vkCmdDispatchIndirect = [](VkCommandBuffer, VkBuffer, VkDeviceSize) { ++recorded.dispatches; };
-    vk.vkCmdPipelineBarrier = [](VkCommandBuffer, VkPipelineStageFlags, VkPipelineStageFlags, VkDependencyFlags,
-                                 std::uint32_t, const VkMemoryBarrier*, std::uint32_t, const VkBufferMemoryBarrier*,
-                                 std::uint32_t, const VkImageMemoryBarrier*) { ++recorded.barriers; };
-    vk.vkCmdCopyBuffer = [](VkCommandBuffer, VkBuffer, VkBuffer, std::uint32_t, const VkBufferCopy*) {
-        ++recorded.copies;
-    };
-    vk.vkCmdFillBuffer = [](VkCommandBuffer, VkBuffer, VkDeviceSize, VkDeviceSize, std::uint32_t) {
-        ++recorded.copies;
-    };
-    vk.vkCmdUpdateBuffer = [](VkCommandBuffer, VkBuffer, VkDeviceSize, VkDeviceSize, const void*) {
-        ++recorded.copies;
-    };
+template <std::uint64_t RecordedWork::*number, class... Arguments>
+void tally(void(VKAPI_PTR*& command)(VkCommandBuffer, Arguments...)) {
+    command = [](VkCommandBuffer, Arguments...) { ++(recorded.*number); };
 }
 
 void record_nothing(VulkanTable& vk) {
     mute_commands(vk);
-    count_commands(vk);
-    vk.vkCreateCommandPool = [](VkDevice, const VkCommandPoolCreateInfo*, const VkAllocationCallbacks*,
-                                VkCommandPool* pool) { return make(*pool); };
-    vk.vkDestroyCommandPool = [](VkDevice, VkCommandPool pool, const VkAllocationCallbacks*) { release(pool); };
+    tally<&RecordedWork::dispatches>(vk.vkCmdDispatch);
+    tally<&RecordedWork::dispatches>(vk.vkCmdDispatchIndirect);
+    tally<&RecordedWork::barriers>(vk.vkCmdPipelineBarrier);
+    tally<&RecordedWork::copies>(vk.vkCmdCopyBuffer);
+    tally<&RecordedWork::copies>(vk.vkCmdFillBuffer);
+    tally<&RecordedWork::copies>(vk.vkCmdUpdateBuffer);
+    pretend(vk.vkCreateCommandPool, vk.vkDestroyCommandPool);
     vk.vkAllocateCommandBuffers = [](VkDevice, const VkCommandBufferAllocateInfo* info, VkCommandBuffer* buffers) {
         std::fill_n(buffers, info->commandBufferCount, VkCommandBuffer{});
         return VK_SUCCESS;
     };
-    vk.vkBeginCommandBuffer = [](VkCommandBuffer, const VkCommandBufferBeginInfo*) { return VK_SUCCESS; };
-    vk.vkEndCommandBuffer = [](VkCommandBuffer) { return VK_SUCCESS; };
-    vk.vkCreateQueryPool = [](VkDevice, const VkQueryPoolCreateInfo*, const VkAllocationCallbacks*, VkQueryPool* pool) {
-        return make(*pool);
-    };
-    vk.vkDestroyQueryPool = [](VkDevice, VkQueryPool pool, const VkAllocationCallbacks*) { release(pool); };
-    vk.vkGetQueryPoolResults = [](VkDevice, VkQueryPool, std::uint32_t, std::uint32_t, std::size_t, void*, VkDeviceSize,
-                                  VkQueryResultFlags) { return VK_SUCCESS; };
+    succeed(vk.vkBeginCommandBuffer);
+    succeed(vk.vkEndCommandBuffer);
+    pretend(vk.vkCreateQueryPool, vk.vkDestroyQueryPool);
+    succeed(vk.vkGetQueryPoolResults);
 }
 
 void pass_at_once(VulkanTable& vk) {
-    vk.vkQueueSubmit = [](VkQueue, std::uint32_t, const VkSubmitInfo*, VkFence) { return VK_SUCCESS; };
-    vk.vkCreateSemaphore = [](VkDevice, const VkSemaphoreCreateInfo*, const VkAllocationCallbacks*,
-                              VkSemaphore* semaphore) { return make(*semaphore); };
-    vk.vkDestroySemaphore = [](VkDevice, VkSemaphore semaphore, const VkAllocationCallbacks*) { release(semaphore); };
-    vk.vkWaitSemaphores = [](VkDevice, const VkSemaphoreWaitInfo*, std::uint64_t) { return VK_SUCCESS; };
+    succeed(vk.vkQueueSubmit);
+    pretend(vk.vkCreateSemaphore, vk.vkDestroySemaphore);
+    succeed(vk.vkWaitSemaphores);
     vk.vkGetSemaphoreCounterValue = [](VkDevice, VkSemaphore, std::uint64_t* value) {
         *value = UINT64_MAX;
         return VK_SUCCESS;
@@ -110,11 +106,7 @@ void hold_nothing(VulkanTable& vk) {
         return VkDeviceAddress{address_of(info->buffer)};
     };
     if (!vk.vkCreateAccelerationStructureKHR) return;
-    vk.vkCreateAccelerationStructureKHR = [](VkDevice, const VkAccelerationStructureCreateInfoKHR*,
-                                             const VkAllocationCallbacks*,
-                                             VkAccelerationStructureKHR* structure) { return make(*structure); };
-    vk.vkDestroyAccelerationStructureKHR = [](VkDevice, VkAccelerationStructureKHR structure,
-                                              const VkAllocationCallbacks*) { release(structure); };
+    pretend(vk.vkCreateAccelerationStructureKHR, vk.vkDestroyAccelerationStructureKHR);
     vk.vkGetAccelerationStructureDeviceAddressKHR = [](VkDevice,
                                                        const VkAccelerationStructureDeviceAddressInfoKHR* info) {
         return VkDeviceAddress{address_of(info->accelerationStructure)};

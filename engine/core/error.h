@@ -3,8 +3,6 @@
 #pragma once
 
 #include <sstream>
-#include <string>
-#include <vector>
 
 #include <twinray/geometry.h>
 
@@ -16,6 +14,14 @@ std::string text(const Parts&... parts) {
     std::ostringstream out;
     (out << ... << parts);
     return out.str();
+}
+
+// Returns the text with small letters of ASCII.
+inline std::string lowered(std::string_view text) {
+    std::string lower(text);
+    for (char& c : lower)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return lower;
 }
 
 // Returns "a, b, c".

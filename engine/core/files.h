@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Files as bytes.
+// Files as bytes, also compressed ones, text encodings, and folders for files that nobody keeps.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -25,5 +27,37 @@ void write_whole(const std::filesystem::path& file, const std::function<void(con
 // Writes the pieces, one after the other, by write_whole().
 void write_file(const std::filesystem::path& file, std::span<const std::span<const std::byte>> pieces);
 void write_file(const std::filesystem::path& file, std::string_view text);
+
+// Returns the CRC-32 of zlib, PNG and gzip: it finds all errors within 32 neighbouring bits. `start`: of earlier bytes.
+std::uint32_t crc32_of(std::span<const std::byte> bytes, std::uint32_t start = 0);
+
+// Unpacks gzip data; `object` names its source in errors (damaged, truncated, more than 4 GiB unpacked).
+Bytes unpack_gzip(const Bytes& packed, const std::string& object);
+
+// Reads the whole file, and unpacks it if its suffix is .gz.
+Bytes read_packed_file(const std::filesystem::path& file);
+
+// Decodes base64 of data URIs (padding optional); returns nothing for a foreign character.
+std::optional<Bytes> decode_base64(std::string_view base64);
+
+// Converts %20 to a space and so on; a percent sign without two hexadecimal digits stays.
+std::string decode_percent(std::string_view uri);
+
+// Returns the extension with its dot, in lower case.
+std::string lower_suffix(const std::filesystem::path& file);
+
+// A folder that exists while this object lives. Throws Error if there is no place for one.
+class TemporaryFolder {
+  public:
+    TemporaryFolder();
+    ~TemporaryFolder();
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+    const std::filesystem::path& path() const { return path_; }
+
+  private:
+    std::filesystem::path path_;
+};
 
 }  // namespace twinray

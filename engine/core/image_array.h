@@ -2,11 +2,6 @@
 // Images that kernels sample, and the descriptors through which they reach any number of them by index.
 #pragma once
 
-#include <map>
-#include <span>
-#include <string>
-#include <vector>
-
 #include "engine/core/commands.h"
 
 namespace twinray {
@@ -32,6 +27,12 @@ class Samplers {
     std::map<Kind, VkSampler> samplers_;
 };
 
+struct ImageParts {
+    AllocatedImage image = {};
+    VkImageView view = VK_NULL_HANDLE;
+    void operator()(Context* context) const;  // destroys them after all work submitted so far
+};
+
 struct SampledImageDesc {
     std::string name;
     std::uint32_t width = 0, height = 0, levels = 1;
@@ -45,26 +46,25 @@ class SampledImage {
     SampledImage() = default;
     // Throws Error naming the image if there is not enough memory.
     SampledImage(Context& context, const SampledImageDesc& desc);
-    ~SampledImage();
-    SampledImage(SampledImage&& other) noexcept;
-    SampledImage& operator=(SampledImage&& other) noexcept;
 
     // Replaces the texels of all levels, tightly packed each, within a pass. Later passes see them.
     void upload(Commands& commands, std::span<const std::vector<std::byte>> levels);
 
     VkDescriptorImageInfo descriptor() const {
-        return {desc_.sampler, view_, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+        return {desc_.sampler, parts_.get_deleter().view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
     }
-    explicit operator bool() const { return view_; }
 
   private:
-    void retire() noexcept;
     void change_layout(Commands& commands, VkImageLayout from, VkImageLayout to) const;
 
-    Context* context_ = nullptr;
     SampledImageDesc desc_;
-    AllocatedImage made_;
-    VkImageView view_ = VK_NULL_HANDLE;
+    std::unique_ptr<Context, ImageParts> parts_;
+};
+
+struct ImageArrayParts {
+    VkDescriptorPool pool = VK_NULL_HANDLE;
+    VkDescriptorSet set = VK_NULL_HANDLE;
+    void operator()(Context* context) const;  // destroys them after all work submitted so far
 };
 
 // Set 0, binding 0 of kernels made with KernelDesc::has_images. It is written once, when it is made: if an image is
@@ -76,16 +76,12 @@ class ImageArray {
     ImageArray() = default;
     // Throws Error for no images or too many. The images must outlive all work that uses the array.
     ImageArray(Context& context, std::span<const VkDescriptorImageInfo> images);
-    ~ImageArray();
-    ImageArray(ImageArray&& other) noexcept;
-    ImageArray& operator=(ImageArray&& other) noexcept;
 
-    VkDescriptorSet set() const { return set_; }  // null: none
+    // Returns null if there is none.
+    VkDescriptorSet set() const { return parts_ ? parts_.get_deleter().set : VK_NULL_HANDLE; }
 
   private:
-    Context* context_ = nullptr;
-    VkDescriptorPool pool_ = VK_NULL_HANDLE;
-    VkDescriptorSet set_ = VK_NULL_HANDLE;
+    std::unique_ptr<Context, ImageArrayParts> parts_;
 };
 
 }  // namespace twinray

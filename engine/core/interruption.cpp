@@ -2,7 +2,6 @@
 #include "engine/core/interruption.h"
 
 #include <chrono>
-#include <utility>
 
 namespace twinray {
 namespace {

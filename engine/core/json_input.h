@@ -3,12 +3,8 @@
 #pragma once
 
 #include <algorithm>
-#include <cstdint>
 #include <istream>
 #include <iterator>
-#include <limits>
-#include <string>
-#include <string_view>
 
 #include "engine/core/error.h"
 

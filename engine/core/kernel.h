@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/core/commands.h"
+#include "engine/core/error.h"
 #include "engine/core/requirement.h"
 
 namespace twinray {
@@ -19,6 +20,13 @@ VkPipelineLayout create_push_constant_layout(Context& context, VkShaderStageFlag
 // Describes a kernel that its first dispatch compiles.
 inline KernelDesc lazy_kernel(const char* name, std::span<const std::uint32_t> spirv, std::uint32_t group_size = 64) {
     return {.name = name, .spirv = spirv, .group_size = group_size, .compiles_when_used = true};
+}
+
+// Returns the context. Throws Error, beginning with `what`, which needs it, if the device has no float64.
+inline Context& with_float64(Context& context, std::string_view what) {
+    if (!context.properties().shader_float64)
+        fail(what, " need float64 (shaderFloat64), which device '", context.properties().name, "' has not enabled");
+    return context;
 }
 
 }  // namespace twinray

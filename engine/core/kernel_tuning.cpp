@@ -4,9 +4,7 @@
 #include <vulkan/vulkan_core.h>
 
 #include <algorithm>
-#include <bit>
 
-#include <twinray/context.h>
 #include "engine/core/error.h"
 #include "engine/core/radix_sort.h"
 
@@ -15,19 +13,10 @@ namespace {
 
 // Returns whether the GPU driver has such an instruction and no other for fma(); Vulkan allows two roundings.
 bool has_fused_fma(std::uint32_t driver) {
-    switch (driver) {
-        case VK_DRIVER_ID_MESA_RADV:
-        case VK_DRIVER_ID_AMD_OPEN_SOURCE:
-        case VK_DRIVER_ID_AMD_PROPRIETARY:
-        case VK_DRIVER_ID_NVIDIA_PROPRIETARY:
-        case VK_DRIVER_ID_MESA_NVK:
-        case VK_DRIVER_ID_INTEL_OPEN_SOURCE_MESA: return true;
-        default: return false;
-    }
-}
-
-TuningRow row_of(const DeviceProperties& device) {
-    return device.driver_id == VK_DRIVER_ID_MESA_LLVMPIPE ? TuningRow::cpu_driver : TuningRow::gpu;
+    constexpr std::uint32_t drivers[] = {VK_DRIVER_ID_MESA_RADV,       VK_DRIVER_ID_AMD_OPEN_SOURCE,
+                                         VK_DRIVER_ID_AMD_PROPRIETARY, VK_DRIVER_ID_NVIDIA_PROPRIETARY,
+                                         VK_DRIVER_ID_MESA_NVK,        VK_DRIVER_ID_INTEL_OPEN_SOURCE_MESA};
+    return std::ranges::find(drivers, driver) != std::end(drivers);
 }
 
 // A core goes through its groups one by one, so that a group is one vector, and a run of rays of one lane finds the
@@ -57,10 +46,11 @@ const char* name_of(TuningRow row) { return row == TuningRow::gpu ? "gpu" : "cpu
 
 KernelTuning tuning_for(const DeviceProperties& device, std::optional<TuningRow> row) {
     KernelTuning tuning;
-    tuning.row = row.value_or(row_of(device));
+    const bool is_lavapipe = device.driver_id == VK_DRIVER_ID_MESA_LLVMPIPE;
+    tuning.row = row.value_or(is_lavapipe ? TuningRow::cpu_driver : TuningRow::gpu);
     if (tuning.row == TuningRow::cpu_driver) shape_for_cpu_driver(tuning, device);
     tuning.has_fused_fma = has_fused_fma(device.driver_id);
-    tuning.builds_in_input_order = device.driver_id == VK_DRIVER_ID_MESA_LLVMPIPE;
+    tuning.builds_in_input_order = is_lavapipe;
     return tuning;
 }
 

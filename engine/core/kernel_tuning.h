@@ -3,10 +3,6 @@
 // in, plain data out, no Vulkan calls.
 #pragma once
 
-#include <cstdint>
-#include <optional>
-#include <string_view>
-
 #include <twinray/context.h>
 
 namespace twinray {
@@ -36,7 +32,7 @@ struct KernelTuning {
     // block, while a buffer of more than half a block has its own, which goes back to the driver.
     std::uint64_t memory_block_bytes = 0;
 
-    // Work that keeps the device busy for longer is cut into several submissions (engine/core/pace.h); 0: none is.
+    // Work that keeps the device busy for longer is cut into several submissions (engine/core/commands.h); 0: none is.
     // Drivers of GPUs reset a device that is busy with one submission for too long, some after a second, above all if
     // it has a screen.
     double most_submission_seconds = 0.5;

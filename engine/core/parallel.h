@@ -4,12 +4,10 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cstddef>
 #include <exception>
 #include <mutex>
 #include <thread>
 #include <type_traits>
-#include <vector>
 
 #include "engine/core/interruption.h"
 

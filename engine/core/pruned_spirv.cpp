@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <optional>
-#include <string_view>
 
 namespace twinray {
 namespace {

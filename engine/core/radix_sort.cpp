@@ -2,7 +2,6 @@
 #include "engine/core/radix_sort.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "engine_sort_histogram.spv.h"
 #include "engine_sort_scan.spv.h"
@@ -15,28 +14,17 @@ std::uint64_t divide_up(std::uint64_t count, std::uint64_t by) { return (count +
 
 uint group_size(uint threads) { return threads ? CPU_GROUP : SORT_GPU_GROUP; }
 
-KernelDesc sort_kernel(const char* name, std::span<const std::uint32_t> spirv, uint threads) {
-    const uint size = group_size(threads);
-    return {.name = name,
-            .spirv = spirv,
-            .group_size = size,
-            .constants = {{GROUP_SIZE_CONSTANT, size}, {DIGIT_BITS_CONSTANT, RadixSort::digit_bits(threads)}},
-            .compiles_when_used = true};
-}
-
-KernelDesc scatter_kernel(uint threads, bool values_are_places) {
-    KernelDesc desc = sort_kernel("sort_scatter", engine_sort_scatter_spirv, threads);
-    desc.constants.push_back({IOTA_CONSTANT, values_are_places});
+KernelDesc sort_kernel(const char* name, std::span<const std::uint32_t> spirv, uint size,
+                       std::initializer_list<SpecializationConstant> constants) {
+    KernelDesc desc = lazy_kernel(name, spirv, size);
+    desc.constants = {{GROUP_SIZE_CONSTANT, size}};
+    desc.constants.insert(desc.constants.end(), constants);
     return desc;
 }
 
-KernelDesc scan_kernel(uint threads) {
-    const uint size = threads ? CPU_GROUP : SCAN_GPU_GROUP;
-    return {.name = "sort_scan",
-            .spirv = engine_sort_scan_spirv,
-            .group_size = size,
-            .constants = {{GROUP_SIZE_CONSTANT, size}},
-            .compiles_when_used = true};
+KernelDesc scatter_kernel(uint threads, bool values_are_places) {
+    return sort_kernel("sort_scatter", engine_sort_scatter_spirv, group_size(threads),
+                       {{DIGIT_BITS_CONSTANT, RadixSort::digit_bits(threads)}, {IOTA_CONSTANT, values_are_places}});
 }
 
 }  // namespace
@@ -45,8 +33,9 @@ RadixSort::RadixSort(Context& context) : RadixSort(context, context.state().tuni
 
 RadixSort::RadixSort(Context& context, uint threads)
     : threads_(threads),
-      histogram_(context, sort_kernel("sort_histogram", engine_sort_histogram_spirv, threads_)),
-      scan_(context, scan_kernel(threads)),
+      histogram_(context, sort_kernel("sort_histogram", engine_sort_histogram_spirv, group_size(threads),
+                                      {{DIGIT_BITS_CONSTANT, digit_bits(threads)}})),
+      scan_(context, sort_kernel("sort_scan", engine_sort_scan_spirv, threads ? CPU_GROUP : SCAN_GPU_GROUP, {})),
       scatter_(context, scatter_kernel(threads, false)),
       scatter_places_(context, scatter_kernel(threads, true)) {}
 

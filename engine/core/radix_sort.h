@@ -3,7 +3,6 @@
 #pragma once
 
 #include "engine/core/kernel.h"
-#include "engine/core/kernel_tuning.h"
 
 namespace twinray {
 #include "twinray/glsl/cpp_begin.h"

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "engine/core/requirement.h"
 
-#include <twinray/context.h>
+#include <algorithm>
+#include <tuple>
+
 #include "engine/core/error.h"
 
 namespace twinray {
@@ -55,21 +57,23 @@ constexpr Part parts[] = {
 };
 const Part& part_of(Requirement::Of part) { return parts[static_cast<std::size_t>(part)]; }
 
-std::vector<Requirement> limits_of(const DeviceProperties& device) {
-    using enum Requirement::Of;
-    using Limits = KernelLimits;
-    return {
-        {text("groups of ", Limits::group_invocations,
-              " invocations (maxComputeWorkGroupInvocations, maxComputeWorkGroupSize)"),
-         "its builds distribute work to groups of that size; Vulkan guarantees 128", everything,
-         device.group_invocations >= Limits::group_invocations},
-        {text(Limits::shared_bytes, " bytes of shared memory (maxComputeSharedMemorySize)"),
-         "its sort counts digits there and traversals keep their stacks there; Vulkan guarantees this", everything,
-         device.shared_bytes >= Limits::shared_bytes},
-        {text(Limits::push_constant_bytes, " bytes of push constants (maxPushConstantsSize)"),
-         "kernels get their arguments in them; Vulkan guarantees this", everything,
-         device.push_constant_bytes >= Limits::push_constant_bytes},
-    };
+bool is_requested(const DeviceProperties& device, std::size_t index, const std::string& request) {
+    if (request.empty()) return true;
+    if (request.find_first_not_of("0123456789") == request.npos) return std::to_string(index) == request;
+    return lowered(device.name).find(lowered(request)) != std::string::npos;
+}
+
+// Returns what it lacks of the parts up to one.
+std::vector<std::string> missing(const DeviceProperties& device, Requirement::Of last) {
+    std::vector<std::string> missing;
+    for (const Requirement& requirement : requirements_of(device))
+        if (!requirement.is_met && requirement.of <= last) missing.push_back(requirement.what);
+    return missing;
+}
+
+// Larger is better.
+auto rank(const DeviceProperties& device) {
+    return std::tuple(missing_for_hardware(device).empty(), -static_cast<int>(device.kind));
 }
 
 }  // namespace
@@ -90,8 +94,8 @@ const char* never_required() {
 
 std::vector<Requirement> requirements_of(const DeviceProperties& device) {
     using enum Requirement::Of;
-    const std::vector<Requirement> limits = limits_of(device);
-    std::vector<Requirement> all = {
+    using Limits = KernelLimits;
+    return {
         {"Vulkan 1.2", "its kernels and its timeline semaphore use it", everything, device.api_version >= version_1_2},
         {"a compute queue", "all its work runs in compute shaders", everything, device.has_compute_queue, {Shader}},
         {"timelineSemaphore", "it never waits for the GPU: a timeline shows what may be freed", everything,
@@ -103,9 +107,16 @@ std::vector<Requirement> requirements_of(const DeviceProperties& device) {
          {PhysicalStorageBufferAddresses}},
         {"scalarBlockLayout", "structs have the same bytes on the host and on the GPU", everything,
          device.scalar_block_layout},
-    };
-    all.insert(all.end(), limits.begin(), limits.end());
-    const Requirement of_parts[] = {
+        {text("groups of ", Limits::group_invocations,
+              " invocations (maxComputeWorkGroupInvocations, maxComputeWorkGroupSize)"),
+         "its builds distribute work to groups of that size; Vulkan guarantees 128", everything,
+         device.group_invocations >= Limits::group_invocations},
+        {text(Limits::shared_bytes, " bytes of shared memory (maxComputeSharedMemorySize)"),
+         "its sort counts digits there and traversals keep their stacks there; Vulkan guarantees this", everything,
+         device.shared_bytes >= Limits::shared_bytes},
+        {text(Limits::push_constant_bytes, " bytes of push constants (maxPushConstantsSize)"),
+         "kernels get their arguments in them; Vulkan guarantees this", everything,
+         device.push_constant_bytes >= Limits::push_constant_bytes},
         {"VK_KHR_acceleration_structure", "the driver builds its structures", hardware, device.acceleration_structure},
         {"VK_KHR_ray_query or VK_KHR_ray_tracing_pipeline", "it traces with one of them", hardware,
          device.ray_query || device.ray_tracing_pipeline},
@@ -141,8 +152,39 @@ std::vector<Requirement> requirements_of(const DeviceProperties& device) {
          device.has_image_arrays(),
          {ImageQuery, ShaderNonUniform, RuntimeDescriptorArray, SampledImageArrayNonUniformIndexing}},
     };
-    all.insert(all.end(), std::begin(of_parts), std::end(of_parts));
-    return all;
+}
+
+std::vector<std::string> missing_for_software(const DeviceProperties& device) {
+    return missing(device, Requirement::Of::everything);
+}
+std::vector<std::string> missing_for_hardware(const DeviceProperties& device) {
+    return missing(device, Requirement::Of::hardware);
+}
+
+DeviceChoice choose_device(std::span<const DeviceProperties> devices, const std::string& request) {
+    DeviceChoice choice;
+    std::vector<std::string> reasons(devices.size());
+    for (std::size_t i = 0; i < devices.size(); ++i) {
+        const std::vector<std::string> missing = missing_for_software(devices[i]);
+        if (!is_requested(devices[i], i, request))
+            reasons[i] = text("does not match the request '", request, "'");
+        else if (!missing.empty())
+            reasons[i] = "lacks " + joined(missing);
+        else if (choice.index < 0 || rank(devices[i]) > rank(devices[static_cast<std::size_t>(choice.index)]))
+            choice.index = static_cast<int>(i);
+    }
+    for (std::size_t i = 0; i < devices.size(); ++i) {
+        if (static_cast<int>(i) == choice.index) continue;
+        if (reasons[i].empty())
+            reasons[i] = "ranks behind '" + devices[static_cast<std::size_t>(choice.index)].name + "'";
+        choice.rejections.push_back(text(i, " '", devices[i].name, "': ", reasons[i]));
+    }
+    return choice;
+}
+
+const char* name_of(DeviceKind kind) {
+    constexpr const char* names[] = {"discrete GPU", "integrated GPU", "virtual GPU", "CPU", "other"};
+    return names[static_cast<std::size_t>(kind)];
 }
 
 }  // namespace twinray

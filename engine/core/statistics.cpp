@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
+#include <ranges>
 #include <utility>
 
 namespace twinray {
@@ -40,14 +42,19 @@ double regularised_beta(double a, double b, double x) {
     return 1 - std::exp(log_front) * beta_fraction(b, a, 1 - x) / b;
 }
 
-// Returns the x in [low, 1] at which the beta distribution has the chance `chance` below it.
-double beta_quantile(double a, double b, double chance, double low = 0) {
-    double high = 1;
+// Returns where is_low() ends between `low` and `high`.
+template <class IsLow>
+double bisected(double low, double high, const IsLow& is_low) {
     for (int i = 0; i < 60; ++i) {
-        const double p = low + (high - low) / 2;
-        (regularised_beta(a, b, p) < chance ? low : high) = p;
+        const double middle = low + (high - low) / 2;
+        (is_low(middle) ? low : high) = middle;
     }
     return high;
+}
+
+// Returns the x in [low, 1] at which the beta distribution has the chance `chance` below it.
+double beta_quantile(double a, double b, double chance, double low = 0) {
+    return bisected(low, 1, [&](double p) { return regularised_beta(a, b, p) < chance; });
 }
 
 // Returns the bound below which `count` or fewer events stay with the given chance.
@@ -61,31 +68,41 @@ double upper_bound(std::uint64_t count, std::uint64_t trials, double chance) {
 
 // Returns the smallest k with P(at most k) >= chance for a binomial distribution of n trials.
 std::size_t binomial_quantile(std::size_t n, double p, double chance) {
-    const auto at_most = [&](std::size_t k) {
-        return k >= n ? 1.0 : 1 - regularised_beta(static_cast<double>(k) + 1, static_cast<double>(n - k), p);
+    const auto counts = std::views::iota(std::size_t{0}, n);
+    const auto is_too_low = [&](std::size_t k) {
+        return 1 - regularised_beta(static_cast<double>(k) + 1, static_cast<double>(n - k), p) < chance;
     };
-    std::size_t low = 0, high = n;
-    while (low < high) {
-        const std::size_t middle = low + (high - low) / 2;
-        if (at_most(middle) >= chance) {
-            high = middle;
-        } else {
-            low = middle + 1;
-        }
-    }
-    return low;
+    return static_cast<std::size_t>(std::ranges::partition_point(counts, is_too_low) - counts.begin());
 }
 
 // Returns the value that Student's t exceeds in 2.5 % of all cases.
 double student_97_5(double degrees) {
-    double low = 0, high = 1;
-    const auto two_sided = [&](double t) { return regularised_beta(degrees / 2, 0.5, degrees / (degrees + t * t)); };
-    while (two_sided(high) > 0.05) high *= 2;
-    for (int i = 0; i < 60; ++i) {
-        const double t = low + (high - low) / 2;
-        (two_sided(t) > 0.05 ? low : high) = t;
+    const auto is_low = [&](double t) {
+        return regularised_beta(degrees / 2, 0.5, degrees / (degrees + t * t)) > 0.05;  // on both sides
+    };
+    double high = 1;
+    while (is_low(high)) high *= 2;
+    return bisected(0, high, is_low);
+}
+
+// A weighted mean of rates, the variance of the corresponding sum, and the most that one event adds to it.
+struct Moments {
+    double mean = 0, variance = 0, largest = 0;
+};
+
+Moments moments_of(std::span<const Stratum> strata) {
+    double weights = 0;
+    for (const Stratum& stratum : strata) weights += stratum.trials ? stratum.weight : 0;
+    Moments moments;
+    for (const Stratum& stratum : strata) {
+        if (stratum.trials == 0) continue;
+        const double of_event = stratum.weight / weights / static_cast<double>(stratum.trials);
+        const double events = static_cast<double>(stratum.count);
+        moments.mean += of_event * events;
+        moments.variance += of_event * of_event * events;
+        moments.largest = std::max(moments.largest, of_event);
     }
-    return high;
+    return moments;
 }
 
 }  // namespace
@@ -121,6 +138,21 @@ Interval quantile_interval_95(std::span<const double> sorted, double p) {
     return {sorted[std::max<std::size_t>(low, 1) - 1], sorted[std::min(high, n) - 1]};
 }
 
+Interval bootstrap_interval_95(std::size_t n,
+                               const std::function<double(std::span<const std::size_t> items)>& statistic,
+                               std::uint64_t seed) {
+    constexpr std::size_t draws = 1000;
+    std::mt19937_64 random(seed);
+    std::vector<double> values;
+    std::vector<std::size_t> items(n);
+    for (std::size_t draw = 0; draw < draws; ++draw) {
+        for (std::size_t& item : items) item = random() % n;
+        values.push_back(statistic(items));
+    }
+    std::sort(values.begin(), values.end());
+    return {quantile(values, 0.025), quantile(values, 0.975)};
+}
+
 double upper_bound_95(std::uint64_t count, std::uint64_t trials) { return upper_bound(count, trials, 0.95); }
 
 Interval rate_interval(std::uint64_t count, std::uint64_t trials, double miss) {
@@ -128,30 +160,6 @@ Interval rate_interval(std::uint64_t count, std::uint64_t trials, double miss) {
     const double chance = 1 - miss / 2;
     return {1 - upper_bound(trials - count, trials, chance), upper_bound(count, trials, chance)};
 }
-
-namespace {
-
-// A weighted mean of rates, the variance of the corresponding sum, and the most that one event adds to it.
-struct Moments {
-    double mean = 0, variance = 0, largest = 0;
-};
-
-Moments moments_of(std::span<const Stratum> strata) {
-    double weights = 0;
-    for (const Stratum& stratum : strata) weights += stratum.trials ? stratum.weight : 0;
-    Moments moments;
-    for (const Stratum& stratum : strata) {
-        if (stratum.trials == 0) continue;
-        const double of_event = stratum.weight / weights / static_cast<double>(stratum.trials);
-        const double events = static_cast<double>(stratum.count);
-        moments.mean += of_event * events;
-        moments.variance += of_event * of_event * events;
-        moments.largest = std::max(moments.largest, of_event);
-    }
-    return moments;
-}
-
-}  // namespace
 
 double mean_rate(std::span<const Stratum> strata) {
     const Moments moments = moments_of(strata);

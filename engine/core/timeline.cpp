@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <thread>
-#include <utility>
 
 #include "engine/core/context.h"
 #include "engine/core/error.h"
@@ -13,19 +12,14 @@
 namespace twinray {
 
 VkSemaphore Context::State::new_timeline(const char* name) {
-    VkSemaphoreTypeCreateInfo type{};
-    type.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO;
+    VkSemaphoreTypeCreateInfo type = OfType{VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO};
     type.semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE;
-    VkSemaphoreCreateInfo semaphore{};
-    semaphore.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO;
+    VkSemaphoreCreateInfo semaphore = OfType{VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO};
     semaphore.pNext = &type;
-    VkSemaphore made = VK_NULL_HANDLE;
-    vk_check(vk_.vkCreateSemaphore(device_, &semaphore, nullptr, &made), "create a timeline semaphore");
+    const VkSemaphore made = created(vk_.vkCreateSemaphore, device_, semaphore, "create a timeline semaphore");
     set_name(VK_OBJECT_TYPE_SEMAPHORE, reinterpret_cast<std::uint64_t>(made), name);
     return made;
 }
-
-void Context::State::create_timeline() { timeline_ = new_timeline("twinray timeline"); }
 
 SyncPoint Context::State::promise() {
     if (!promised_timeline_) promised_timeline_ = new_timeline("twinray promises");
@@ -38,12 +32,10 @@ void Context::State::give_up(std::uint64_t promised) noexcept {
     promised_.give_up(promised);
     if (!is_of_this_process() || is_lost_ || !promised_.is_due(promised)) return;
     const std::uint64_t value = promised_.value_of(promised);
-    VkTimelineSemaphoreSubmitInfo timeline{};
-    timeline.sType = VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO;
+    VkTimelineSemaphoreSubmitInfo timeline = OfType{VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO};
     timeline.signalSemaphoreValueCount = 1;
     timeline.pSignalSemaphoreValues = &value;
-    VkSubmitInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+    VkSubmitInfo info = OfType{VK_STRUCTURE_TYPE_SUBMIT_INFO};
     info.pNext = &timeline;
     info.signalSemaphoreCount = 1;
     info.pSignalSemaphores = &promised_timeline_;
@@ -142,8 +134,7 @@ void Context::State::wait(SyncPoint point) const {
 void Context::State::wait_for(SyncPoint point) const {
     check_alive();
     if (!point.semaphore || !point.value) return;
-    VkSemaphoreWaitInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO;
+    VkSemaphoreWaitInfo info = OfType{VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO};
     info.semaphoreCount = 1;
     info.pSemaphores = &point.semaphore;
     info.pValues = &point.value;
@@ -159,7 +150,11 @@ VkResult Context::State::wait_for(const VkSemaphoreWaitInfo& info) const {
         const VkResult result = wait_patiently(info, most);
         if (result != VK_TIMEOUT) return result;
         const std::uint64_t now = reached(timeline_);
-        if (now == ended) return note_hang();
+        if (now == ended) {
+            is_hung_ = true;
+            fault_ = text("; it has ended none of its submissions for ", most_wait_seconds_, " s");
+            return VK_ERROR_DEVICE_LOST;
+        }
         ended = now;
     }
 }

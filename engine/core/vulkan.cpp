@@ -2,10 +2,7 @@
 #include "engine/core/vulkan.h"
 
 #include <algorithm>
-#include <cstdint>
 #include <mutex>
-#include <string_view>
-#include <vector>
 
 #include "engine/core/error.h"
 #include "engine/core/platform.h"
@@ -18,12 +15,7 @@ namespace {
 
 std::vector<VkLayerProperties> installed_layers(const VulkanTable& vk) {
     if (!vk.vkEnumerateInstanceLayerProperties) return {};  // a host's lookup may know its own instance only
-    std::uint32_t count = 0;
-    vk.vkEnumerateInstanceLayerProperties(&count, nullptr);
-    std::vector<VkLayerProperties> layers(count);
-    vk.vkEnumerateInstanceLayerProperties(&count, layers.data());
-    layers.resize(count);
-    return layers;
+    return listed<VkLayerProperties>(vk.vkEnumerateInstanceLayerProperties);
 }
 
 }  // namespace

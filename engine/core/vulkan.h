@@ -5,7 +5,9 @@
 
 #include <volk.h>
 
+#include <cstdint>
 #include <span>
+#include <vector>
 
 // volk has these only among its globals: no device knows them.
 #define TWINRAY_INSTANCE_FUNCTIONS(F)           \
@@ -54,8 +56,39 @@ PFN_vkGetInstanceProcAddr open_system_loader();
 // by then: the heap is corrupted, seldom (KhronosGroup/Vulkan-ValidationLayers, 5172).
 bool labels_are_safe(std::span<const VkLayerProperties> layers);
 
+// Becomes any struct of Vulkan, of this type and with 0 in all other members.
+struct OfType {
+    VkStructureType type;
+    template <class Struct>
+    operator Struct() const {
+        Struct made{};
+        made.sType = type;
+        return made;
+    }
+};
+
 // Throws Error naming the action and the VkResult unless result is VK_SUCCESS.
 void vk_check(VkResult result, const char* action);
 const char* name_of(VkResult result);
+
+// Returns the object that a function of the device creates. Throws as vk_check.
+template <class Handle, class Info>
+Handle created(VkResult(VKAPI_PTR* create)(VkDevice, const Info*, const VkAllocationCallbacks*, Handle*),
+               VkDevice device, const Info& info, const char* action) {
+    Handle handle = VK_NULL_HANDLE;
+    vk_check(create(device, &info, nullptr, &handle), action);
+    return handle;
+}
+
+// Returns what a function of Vulkan lists, which tells how many there are if it has no place to list them.
+template <class Item, class List>
+std::vector<Item> listed(const List& list) {
+    std::uint32_t count = 0;
+    list(&count, nullptr);
+    std::vector<Item> items(count);
+    list(&count, items.data());
+    items.resize(count);
+    return items;
+}
 
 }  // namespace twinray

@@ -8,13 +8,10 @@
 #include <optional>
 #include <set>
 
-#include "engine/accel/placed_meshes.h"
-#include "engine/collide/box_tree.h"
-#include "engine/collide/exact_sign.h"
+#include "engine/collide/exact_class.h"
 #include "engine/collide/triangle_set.h"
-#include "engine/core/device_list.h"
 #include "engine/core/error.h"
-#include "engine/core/float64.h"
+#include "engine/core/kernel.h"
 #include "engine/points/boundary.h"
 #include "points_boundary.spv.h"
 #include "points_boxes.spv.h"

@@ -2,7 +2,6 @@
 #include <twinray/scene.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include <glm/trigonometric.hpp>
 
@@ -103,8 +102,7 @@ Camera look_camera(vec3 from, vec3 at, vec3 up, float fov) {
     const dvec3 back = normalize(way), x = normalize(right), y = cross(back, x);
     Camera camera;
     camera.name = "command line";
-    camera.camera_to_world = {
-        {vec4(x.x, y.x, back.x, from.x), vec4(x.y, y.y, back.y, from.y), vec4(x.z, y.z, back.z, from.z)}};
+    camera.camera_to_world = camera_at(from, vec3(x), vec3(y), vec3(back));
     camera.vertical_fov = glm::radians(fov);
     return camera;
 }

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The scenes that twinray makes itself: a Cornell box and a sunflower.
-#include <cmath>
 #include <numbers>
 
-#include <twinray/geometry.h>
 #include <twinray/scene.h>
 #include "twinray/glsl/cpp.h"
 

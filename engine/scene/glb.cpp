@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <map>
-#include <sstream>
-#include <utility>
 
 #include <tiny_gltf.h>
 

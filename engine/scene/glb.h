@@ -2,10 +2,6 @@
 // Writes scenes as glTF 2.0.
 #pragma once
 
-#include <filesystem>
-#include <span>
-#include <vector>
-
 #include <twinray/scene.h>
 
 namespace twinray {

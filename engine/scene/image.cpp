@@ -1,20 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include <twinray/scene.h>
-
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <cstring>
-#include <memory>
 #include <numeric>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
 
 #include "engine/core/error.h"
-#include "engine/scene/bytes.h"
 #include "engine/scene/images.h"
 #include "engine/scene/importers/words.h"
 #include "twinray/glsl/vector_math.h"
@@ -227,15 +215,15 @@ HdrImage load_radiance_image(const std::filesystem::path& file) {
         fail("'", object, "': a Radiance .hdr image of another kind than is read: FORMAT=32-bit_rle_rgbe, with a ",
              "resolution line '-Y HEIGHT +X WIDTH'");
     check_image_size(width, height, object);
-    if (!can_hold_radiance(bytes.size(), static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height)))
+    HdrImage image{static_cast<uint>(width), static_cast<uint>(height), {}};
+    if (!can_hold_radiance(bytes.size(), image.width, image.height))
         fail("'", object, "': damaged Radiance .hdr image (", width, " x ", height, " pixels are more than its ",
              bytes.size(), " bytes can hold)");
-    if (!has_whole_runs(bytes, static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height)))
+    if (!has_whole_runs(bytes, image.width, image.height))
         fail("'", object, "': damaged Radiance .hdr image (its rows are cut off)");
     const std::unique_ptr<float, FreePixels> pixels(
         stbi_loadf_from_memory(bytes.data(), size, &width, &height, &channels, 3));
     if (!pixels) fail("'", object, "': damaged Radiance .hdr image (", stbi_failure_reason(), ")");
-    HdrImage image{static_cast<uint>(width), static_cast<uint>(height), {}};
     image.rgb.resize(std::size_t(image.width) * image.height);
     const dvec3 factors = radiance_factors(bytes);
     for (std::size_t i = 0; i < image.rgb.size(); ++i)

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Files of images in the formats that twinray reads and writes, and the image that replaces a missing one.
+// Files of images in the formats that twinray reads and writes, the image that replaces a missing one, and texels on
+// the host: sizes, widening, mipmaps.
 #pragma once
 
 #include <cstddef>
-#include <span>
-#include <string>
-#include <vector>
 
 #include <twinray/scene.h>
 
@@ -39,5 +37,21 @@ std::vector<std::byte> encode_png(uint width, uint height, std::span<const Rgb> 
 
 // Returns magenta and black squares, which replace an image that cannot be shown, so that nobody overlooks it.
 Image checkerboard_image(const std::string& name);
+
+struct TexelSize {
+    uint width, height;
+};
+// Returns the size of a level: half as wide and high as the one before, at least 1.
+TexelSize level_size(const Texels& texels, std::size_t level);
+std::size_t texel_bytes(const Texels& texels);  // of one texel
+
+// Throws Error naming `object`, the texels and what does not fit: channels, the number of levels, the bytes of one.
+void check_texels(const Texels& texels, const std::string& object);
+// Returns whether one may use the memory of the other.
+bool is_alike(const Texels& a, const Texels& b);
+// Returns the texels with four channels.
+Texels widened(Texels texels);
+// Converts unorm16 of sRGB to unorm16 of linear light; alpha stays as it is.
+Texels decoded_srgb16(Texels texels);
 
 }  // namespace twinray

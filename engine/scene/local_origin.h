@@ -3,11 +3,6 @@
 // float64 before they are rounded.
 #pragma once
 
-#include <cmath>
-#include <span>
-#include <string>
-#include <vector>
-
 #include "twinray/glsl/cpp.h"
 
 namespace twinray {

@@ -8,6 +8,17 @@
 
 namespace twinray {
 
+// Calls visit() with the same array of each mesh, for each array that has a value a vertex.
+template <class Visit, class... Meshes>
+void for_each_vertex_array(const Visit& visit, Meshes&... meshes) {
+    visit(meshes.positions...);
+    visit(meshes.normals...);
+    visit(meshes.tangents...);
+    visit(meshes.uvs...);
+    visit(meshes.second_uvs...);
+    visit(meshes.colors...);
+}
+
 // Returns a normal from a file, or 0, which means none, if one of its components is NaN or infinite.
 vec3 normal_or_none(const dvec3& normal);
 

@@ -2,19 +2,12 @@
 #include "engine/scene/ray_file.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cstring>
-#include <cmath>
 #include <fstream>
 #include <iomanip>
-#include <span>
-#include <string>
-#include <string_view>
 
 #include "engine/core/error.h"
-#include "engine/scene/bytes.h"
-#include "engine/scene/number_lines.h"
+#include "engine/scene/importers/words.h"
 
 namespace twinray {
 namespace {

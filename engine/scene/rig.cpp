@@ -2,9 +2,13 @@
 #include "engine/scene/rig.h"
 
 #include <algorithm>
+#include <numeric>
+#include <valarray>
 
-#include "engine/scene/flat.h"
+#include "engine/core/error.h"
+#include "engine/scene/mesh.h"
 #include "twinray/glsl/cpp.h"
+#include "twinray/glsl/vector_math.h"
 
 namespace twinray {
 namespace {
@@ -56,6 +60,96 @@ Pose pose_of(const Rig& rig, Locals&& locals) {
         pose.frames.back()[3] = pose.nodes.back()[3];
     }
     return Pose(std::make_shared<const Pose::Nodes>(std::move(pose)));
+}
+
+using Value = std::valarray<double>;
+
+enum Part : std::size_t { in_tangent = 0, value = 1, out_tangent = 2 };  // of a time of cubic_spline
+
+Value stored(const Keyframes& keyframes, std::size_t key, Part part = value) {
+    const bool is_cubic = keyframes.interpolation == Interpolation::cubic_spline;
+    const std::size_t first = (is_cubic ? 3 * key + part : key) * keyframes.width;
+    Value result(keyframes.width);
+    std::copy_n(keyframes.values.begin() + static_cast<std::ptrdiff_t>(first), keyframes.width, std::begin(result));
+    return result;
+}
+
+double dot(const Value& a, const Value& b) { return std::inner_product(begin(a), end(a), begin(b), 0.0); }
+double length_of(const Value& v) { return std::sqrt(dot(v, v)); }
+
+// Returns `fallback` if the value has no direction.
+Value normalized(const Value& v, const Value& fallback) {
+    const double length = length_of(v);
+    return length > 0 ? Value(v / length) : fallback;
+}
+
+// Follows the shorter great circle. The angle comes from the lengths of difference and sum: small ones are exact.
+Value slerp(const Value& a, Value b, double t) {
+    if (dot(a, b) < 0) b = 0.0 - b;
+    const double angle = 2 * std::atan2(length_of(a - b), length_of(a + b));
+    const double sine = std::sin(angle);
+    if (!(sine > 0)) return a;
+    return std::sin((1 - t) * angle) / sine * a + std::sin(t * angle) / sine * b;
+}
+
+// Interpolates as in glTF 2.0, appendix C.5. Tangents are per second.
+Value hermite(const Keyframes& keyframes, std::size_t key, double t, double duration) {
+    const double t2 = t * t, t3 = t2 * t;
+    const Value a = stored(keyframes, key), b = stored(keyframes, key + 1);
+    const Value leaving = stored(keyframes, key, out_tangent), arriving = stored(keyframes, key + 1, in_tangent);
+    const Value points = (2 * t3 - 3 * t2 + 1) * a + (3 * t2 - 2 * t3) * b;
+    const Value tangents = duration * (t3 - 2 * t2 + t) * leaving + duration * (t3 - t2) * arriving;
+    return points + tangents;
+}
+
+Value between(const Keyframes& keyframes, std::size_t key, double seconds) {
+    const double begin = keyframes.times[key], duration = keyframes.times[key + 1] - begin;
+    const double t = (seconds - begin) / duration;
+    const Value a = stored(keyframes, key);
+    switch (keyframes.interpolation) {
+        case Interpolation::step: break;
+        case Interpolation::cubic_spline: return hermite(keyframes, key, t, duration);
+        case Interpolation::linear: {
+            const Value b = stored(keyframes, key + 1);
+            if (keyframes.is_rotation) return slerp(normalized(a, a), normalized(b, b), t);
+            return (1 - t) * a + t * b;
+        }
+    }
+    return a;
+}
+
+using glm::dmat3;
+
+// Returns the longest cross product of two columns: perpendicular to all of them if they lie in a plane.
+glm::dvec3 normal_of_columns(const dmat3& columns) {
+    glm::dvec3 longest(0);
+    for (int i = 0; i < 3; ++i)
+        if (const glm::dvec3 normal = glm::cross(columns[i], columns[(i + 1) % 3]);
+            glm::length(normal) > glm::length(longest))
+            longest = normal;
+    return longest;
+}
+
+// A product of nodes may be singular but for its rounding.
+bool has_inverse(const glm::dmat4& matrix, const dmat3& linear, double rounding) {
+    const double most = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
+    return std::abs(glm::determinant(linear)) > rounding * most && fault_of(transform_of(matrix)).empty();
+}
+
+dvec3 unit_of(const glm::dvec3& v) { return dvec3(v / glm::length(v)); }
+
+// Returns one of v and -v, the same for both.
+dvec3 canonical(const dvec3& v) {
+    for (int i = 0; i < 3; ++i)
+        if (v[i] != 0) return v[i] < 0 ? -v : v;
+    return v;
+}
+
+template <class V>
+void project_along(V& v, const dvec3& lost) {
+    const dvec3 whole(v.x, v.y, v.z);
+    const dvec3 left = whole - dot(whole, lost) * lost;
+    for (int i = 0; i < 3; ++i) v[i] = static_cast<float>(left[i]);
 }
 
 }  // namespace
@@ -142,8 +236,6 @@ void place_light(Light& light, const glm::dmat4& frame) {
     light.direction = -vec3(frame[2]);
 }
 
-void place_camera(Camera& camera, const glm::dmat4& frame) { camera.camera_to_world = transform_of(frame); }
-
 void pose_scene(Scene& scene, const Pose& pose) { pose_scene(scene, *scene.rig, pose); }
 
 std::vector<Transform> instance_transforms(const Rig& rig, const Pose& pose) {
@@ -157,7 +249,8 @@ void pose_scene(Scene& scene, const Rig& rig, const Pose& pose) {
     const std::vector<Transform> transforms = instance_transforms(rig, pose);
     for (std::size_t i = 0; i < scene.instances.size(); ++i) scene.instances[i].transform = transforms[i];
     for (std::size_t i = 0; i < scene.cameras.size(); ++i)
-        if (const auto frame = unscaled(frame_of(pose, rig.cameras[i]))) place_camera(scene.cameras[i], *frame);
+        if (const auto frame = unscaled(frame_of(pose, rig.cameras[i])))
+            scene.cameras[i].camera_to_world = transform_of(*frame);
     for (std::size_t i = 0; i < scene.lights.size(); ++i)
         if (const auto frame = unscaled(frame_of(pose, rig.lights[i]))) place_light(scene.lights[i], *frame);
 }
@@ -172,6 +265,65 @@ void show_hidden(Scene& scene) {
     }
     rig->hidden.clear();
     scene.rig = std::move(rig);
+}
+
+std::vector<double> value_at(const Keyframes& keyframes, double seconds) {
+    const auto& times = keyframes.times;
+    const auto next =
+        std::ranges::upper_bound(times, seconds, {}, [](float time) { return static_cast<double>(time); });
+    const std::size_t key = next == times.begin() ? 0 : static_cast<std::size_t>(next - times.begin()) - 1;
+    const bool is_outside = next == times.begin() || next == times.end();
+    Value result = is_outside ? stored(keyframes, key) : between(keyframes, key, seconds);
+    if (keyframes.is_rotation) result = normalized(result, stored(keyframes, key));
+    return {std::begin(result), std::end(result)};
+}
+
+std::optional<FlatPlacement> flat_placement_of(const glm::dmat4& matrix, double rounding) {
+    const dmat3 linear(matrix);
+    const double extent = std::max({glm::length(linear[0]), glm::length(linear[1]), glm::length(linear[2])});
+    if (!std::isfinite(extent) || extent == 0 || has_inverse(matrix, linear, rounding)) return std::nullopt;
+    const dmat3 in_extents = linear / extent;
+    const glm::dvec3 lost = normal_of_columns(glm::transpose(in_extents)), normal = normal_of_columns(in_extents);
+    if (glm::length(lost) <= rounding || glm::length(normal) <= rounding) return std::nullopt;
+    const dvec3 direction = canonical(unit_of(lost));
+    if (glm::length(in_extents * to_glm(direction)) > rounding_of_floats) return std::nullopt;
+    return FlatPlacement{direction, unit_of(normal), extent};
+}
+
+glm::dmat4 thickened(const glm::dmat4& matrix, double thickness, double rounding) {
+    const std::optional<FlatPlacement> flat = flat_placement_of(matrix, rounding);
+    if (!flat) return matrix;
+    const glm::dvec3 image = to_glm(flat->normal) * (flat->extent * thickness), lost = to_glm(flat->lost);
+    const dmat3 added = glm::outerProduct(image, lost);
+    const dmat3 linear(matrix);
+    const double sign = glm::determinant(linear + added) < 0 ? -1 : 1;  // nothing is turned inside out
+    glm::dmat4 thick = matrix;
+    for (int i = 0; i < 3; ++i) thick[i] = glm::dvec4(linear[i] + sign * added[i], 0);
+    return thick;
+}
+
+void flatten_positions(std::vector<vec3>& positions, const dvec3& lost) {
+    for (vec3& position : positions) project_along(position, lost);
+}
+
+void flatten(Mesh& mesh, const dvec3& lost) {
+    flatten_positions(mesh.positions, lost);
+    for (vec3& normal : mesh.normals) normal = vec3(dot(dvec3(normal), lost) < 0 ? -lost : lost);
+    for (vec4& tangent : mesh.tangents) {
+        project_along(tangent, lost);
+        const vec3 direction = vec3(unit_or_zero(dvec3(tangent.x, tangent.y, tangent.z)));
+        tangent = vec4(direction.x, direction.y, direction.z, tangent.w);
+    }
+}
+
+std::optional<Transform> flatten(Mesh& mesh, const Transform& transform) {
+    glm::dmat4 matrix(1);
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 4; ++column) matrix[column][row] = transform.rows[std::size_t(row)][column];
+    const std::optional<FlatPlacement> flat = flat_placement_of(matrix, rounding_of_floats);
+    if (!flat) return std::nullopt;
+    flatten(mesh, flat->lost);
+    return transform_of(thickened(matrix, 1, rounding_of_floats));
 }
 
 }  // namespace twinray

@@ -3,15 +3,8 @@
 // (3.7.2.2, 3.7.3 and 3.11), and the pose that they give at a time. Pure data, pure functions, in float64.
 #pragma once
 
-#include <cstdint>
-#include <optional>
-#include <span>
-#include <string>
-#include <vector>
-
 #include <glm/mat4x4.hpp>
 
-#include <twinray/geometry.h>
 #include <twinray/scene.h>
 
 namespace twinray {
@@ -135,6 +128,11 @@ std::vector<Transform> joint_transforms(const Skin& skin, const Pose& pose);
 MeshVertices deformed(const MeshVertices& base, const VertexMotion& motion, std::span<const double> weights,
                       std::span<const Transform> joints);
 MeshVertices deformed(const Rig& rig, const DeformedMesh& mesh, const Pose& pose);
+inline void set_vertices(Mesh& mesh, MeshVertices&& vertices) {
+    mesh.positions = std::move(vertices.positions);
+    mesh.normals = std::move(vertices.normals);
+    mesh.tangents = std::move(vertices.tangents);
+}
 
 // Returns the frame without its scale, which glTF excludes from cameras and lights; nothing if an axis has no length.
 std::optional<glm::dmat4> unscaled(const glm::dmat4& world);
@@ -142,9 +140,8 @@ std::optional<glm::dmat4> unscaled(const glm::dmat4& world);
 // Rounds to float, whatever the result.
 Transform transform_of(const glm::dmat4& matrix);
 
-// Sets a light's or a camera's position and direction; `frame` comes from unscaled().
+// Sets a light's position and direction; `frame` comes from unscaled().
 void place_light(Light& light, const glm::dmat4& frame);
-void place_camera(Camera& camera, const glm::dmat4& frame);
 
 // Poses like pose_scene(scene, pose), by a rig that the scene need not have.
 void pose_scene(Scene& scene, const Rig& rig, const Pose& pose);
@@ -154,5 +151,29 @@ void pose_scene(Scene& scene, const Rig& rig, const Pose& pose);
 // large as that, or that a node brings back from far away, are also moved, and their instances the other way: rays are
 // rounded in the space of the mesh. Without need, or if 0 is wanted, nothing changes, bit for bit.
 void move_to_origin(const std::optional<dvec3>& wanted, Scene& scene, Rig& rig);
+
+// Placements may lose one direction, as a scale of 1 1 0 does: they have no inverse, yet triangles keep an area.
+
+// The coordinates that remain of a placement without an inverse.
+struct FlatPlacement {
+    dvec3 lost;     // the direction that it maps to nothing, unit, in the mesh's space; one of the two is chosen
+    dvec3 normal;   // of the plane that it maps to, unit
+    double extent;  // the length of the longest image of a unit axis
+};
+// The distance by which rounding moves the entries of a placement, in its extents: in products of float64, in float32.
+inline constexpr double rounding_of_products = 0x1p-40, rounding_of_floats = 0x1p-22;
+// Returns nothing for a placement that has an inverse in float32, and for one that loses more than one direction. A
+// determinant that differs from 0 by no more than `rounding` explains counts as 0.
+std::optional<FlatPlacement> flat_placement_of(const glm::dmat4& matrix, double rounding = rounding_of_products);
+
+// Returns the placement with an inverse: the lost direction is mapped to the normal times the extent times `thickness`.
+// Parts that are flat along the lost direction stay as they are.
+glm::dmat4 thickened(const glm::dmat4& matrix, double thickness, double rounding = rounding_of_products);
+
+// Projects positions onto the plane through 0 that is perpendicular to `lost`.
+void flatten_positions(std::vector<vec3>& positions, const dvec3& lost);
+// Does so with a mesh. Normals turn along `lost`, on the side on which they were; those of neither side point along
+// `lost`. Tangents are projected into the plane, with length 1; 0 if they have no direction in it.
+void flatten(Mesh& mesh, const dvec3& lost);
 
 }  // namespace twinray

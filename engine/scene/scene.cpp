@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 
-#include <twinray/scene.h>
-
 #include "engine/scene/rig.h"
 #include "engine/core/error.h"
-#include "engine/scene/bytes.h"
+#include "engine/core/files.h"
 #include "engine/scene/importers/importers.h"
 #include "twinray/glsl/vector_math.h"
 #include "engine/scene/mesh.h"

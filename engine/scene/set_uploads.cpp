@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "engine/scene/set_uploads.h"
 
-#include <algorithm>
-#include <utility>
-
-#include "engine/core/context.h"
 #include "engine/core/error.h"
 
 namespace twinray {
@@ -119,6 +115,88 @@ std::uint64_t SetUploads::buffer_bytes() const {
 const std::vector<SetSlot>& SetUploads::slots() const {
     if (!is_clean_) fail(name_, ": view: edits are pending; call sync() first");
     return slots_;
+}
+
+void fail_index(const char* function, std::size_t index, std::size_t count) {
+    fail(function, ": index ", index, " of ", count, " items");
+}
+
+struct SetStorage::State : SetUploads {
+    State(Context& context, const std::string& name, std::vector<Type> types)
+        : SetUploads(context, name, std::move(types)), faults(context, name) {}
+
+    FaultLog faults;
+};
+
+SetStorage::SetStorage(Context& context, const std::string& name, std::vector<Type> types)
+    : state_(std::make_unique<State>(context, name, std::move(types))) {}
+SetStorage::~SetStorage() = default;
+SetStorage::SetStorage(SetStorage&&) noexcept = default;
+
+void SetStorage::note_push(std::size_t size) {
+    if (size == UINT32_MAX) fail(state_->name(), ": push: there are ", size, " already");
+    state_->note_push();
+}
+void SetStorage::note_update(std::size_t type, uint index) { state_->note_update(type, index); }
+
+SyncPoint SetStorage::sync(Elements elements) { return state_->sync(elements); }
+void SetStorage::sync(Commands& commands, Elements elements) { state_->sync(commands, elements); }
+
+const std::vector<SetSlot>& SetStorage::slots() const { return state_->slots(); }
+std::uint64_t SetStorage::revision() const { return state_->revision(); }
+std::uint64_t SetStorage::buffer_bytes() const { return state_->buffer_bytes(); }
+const Buffer& SetStorage::buffer(std::size_t type) const { return state_->buffer(type); }
+Ref<Faults> SetStorage::faults() const { return state_->faults.on_device(); }
+Context& SetStorage::context() const { return state_->context(); }
+
+std::string SetStorage::described(SetKey key, Sizes sizes) const {
+    const std::string which = text("(type ", key.type, ", index ", key.index, "), where ");
+    const std::size_t type = key.type - 1u;
+    if (type >= sizes.size()) return text(which, "types go from 1 to ", sizes.size());
+    return text(which, "type ", key.type, " is ", state_->type_name(type), ", of which there are ", sizes[type]);
+}
+
+void SetStorage::check_key(SetKey key, uint wanted_type, Sizes sizes, const char* action) const {
+    if (key.type != wanted_type || key.index >= sizes[wanted_type - 1])
+        fail(state_->name(), ": ", action, ": the key is ", described(key, sizes), "; wanted is type ", wanted_type);
+}
+
+void SetStorage::check_faults(Sizes sizes) const {
+    context().wait_for_gpu();
+    const Faults faults = state_->faults.read();
+    if (faults.count)
+        fail(state_->name(), ": kernels met ", faults.count, " keys that name nothing, the first is ",
+             described({faults.type, faults.index}, sizes));
+}
+
+struct SoaStorage::State {
+    Context& context;
+    uint count;
+    Buffer buffer;
+    FaultLog faults;
+};
+
+SoaStorage::SoaStorage(Context& context, const std::string& name, uint count, std::uint64_t bytes)
+    : state_(new State{context, count, Buffer(context, {.name = name, .bytes = bytes}), FaultLog(context, name)}) {}
+SoaStorage::~SoaStorage() = default;
+SoaStorage::SoaStorage(SoaStorage&&) noexcept = default;
+
+uint SoaStorage::count() const { return state_->count; }
+const Buffer& SoaStorage::buffer() const { return state_->buffer; }
+Ref<Faults> SoaStorage::faults() const { return state_->faults.on_device(); }
+Context& SoaStorage::context() const { return state_->context; }
+
+void SoaStorage::check_faults() const {
+    context().wait_for_gpu();
+    const Faults faults = state_->faults.read();
+    if (faults.count)
+        fail(buffer().name(), ": kernels met ", faults.count, " indices out of range, the first is ", faults.index,
+             " of ", count(), " items");
+}
+
+void SoaStorage::check_range(uint first, std::size_t values, const char* action) const {
+    if (first > count() || values > count() - first)
+        fail(buffer().name(), ": ", action, ": ", values, " items from ", first, " exceed its ", count());
 }
 
 }  // namespace twinray

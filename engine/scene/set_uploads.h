@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Arrays of elements on the device. Only the elements that the host changed are uploaded.
+// Arrays of elements on the device, of which only the elements that the host changed are uploaded, and the faults that
+// kernels note about them.
 #pragma once
 
-#include <optional>
-#include <span>
-#include <string>
-#include <vector>
-
 #include <twinray/sets.h>
+
+#include "engine/core/commands.h"
 
 namespace twinray {
 #include "twinray/glsl/cpp_begin.h"
 #include "twinray/glsl/multi_type_set.h"
+#include "twinray/glsl/faults.h"
 #include "twinray/glsl/cpp_end.h"
 
 // Neighbours that are uploaded as one region: elements first to last - 1.
@@ -79,6 +78,28 @@ class SetUploads {
     std::uint64_t revision_ = 0;
     bool is_clean_ = true;
     SyncPoint synced_;
+};
+
+// Reports to the host the invalid accesses of kernels compiled with TWINRAY_DEBUG.
+class FaultLog {
+  public:
+    explicit FaultLog(Context& context, const std::string& name)
+        : buffer_(context, {.name = "faults of " + name, .bytes = sizeof(Faults), .memory = Memory::readback}) {
+        clear();
+    }
+
+    Ref<Faults> on_device() const { return buffer_.ref<Faults>(); }
+    // Returns the faults noted by kernels that the GPU is done with.
+    Faults read() const {
+        Faults faults;
+        std::memcpy(&faults, buffer_.mapped(), sizeof faults);
+        return faults;
+    }
+    // No kernel that may write may run meanwhile.
+    void clear() { std::memset(buffer_.mapped(), 0, sizeof(Faults)); }
+
+  private:
+    Buffer buffer_;
 };
 
 }  // namespace twinray

@@ -6,6 +6,7 @@
 #include <twinray/geometry.h>
 
 #include "engine/core/error.h"
+#include "engine/scene/mesh.h"
 #include "twinray/glsl/vector_math.h"
 
 namespace twinray {
@@ -28,9 +29,8 @@ class Uniform {
 void append(Mesh& mesh, const Mesh& part) {
     const uint base = static_cast<uint>(mesh.positions.size());
     for (const uvec3& triangle : part.triangles) mesh.triangles.push_back(triangle + base);
-    mesh.positions.insert(mesh.positions.end(), part.positions.begin(), part.positions.end());
-    mesh.normals.insert(mesh.normals.end(), part.normals.begin(), part.normals.end());
-    mesh.uvs.insert(mesh.uvs.end(), part.uvs.begin(), part.uvs.end());
+    for_each_vertex_array([](auto& all, const auto& some) { all.insert(all.end(), some.begin(), some.end()); }, mesh,
+                          part);
 }
 
 Mesh make_icosahedron() {

@@ -1,12 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/scene/texels.h"
-
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
-#include <cstring>
-#include <utility>
 
 #include <glm/gtc/packing.hpp>
 

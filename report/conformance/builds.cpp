@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Builds: flags, several geometries, empty builds, inactive primitives, offsets of data.
-#include <limits>
+// Builds: flags, several geometries, empty builds, inactive primitives, offsets of data, formats of indices and
+// vertices, and bytes between them.
+#include <algorithm>
 
 #include "report/conformance/case_run.h"
-#include "report/conformance/suite.h"
 
 namespace twinray::conformance {
 namespace {
@@ -16,10 +16,10 @@ void every_preference(CaseRun& run) {
                                                    small = VK_BUILD_ACCELERATION_STRUCTURE_LOW_MEMORY_BIT_KHR,
                                                    update = VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_UPDATE_BIT_KHR,
                                                    compact = VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_COMPACTION_BIT_KHR;
-    SceneInput scene = scene_of(random_triangles(run.draws(), usual_triangle_count));
+    SceneInput scene = usual_scene(run.draws());
     for (const auto flags : {trace, build, trace | small, build | small, trace | update, build | update | compact}) {
         scene.bottoms[0].flags = scene.top.flags = flags;
-        run.check_hits(scene, random_shots(run.draws(), run.rays() / 6 + 1));
+        run.check_hits(scene, run.shots(6));
     }
 }
 
@@ -27,7 +27,7 @@ void several_geometries(CaseRun& run) {
     std::vector<GeometryInput> geometries;
     for (uint i = 0; i < 4; ++i) geometries.push_back(random_triangles(run.draws(), 2 + 4 * i));
     geometries[1].flags = geometries[2].flags = 0;
-    std::vector<Shot> shots = random_shots(run.draws(), run.rays());
+    std::vector<Shot> shots = run.shots();
     for (Shot& shot : shots) shot.refused = run.draws().below(256);
     run.check_hits(scene_of(geometries), shots);
 }
@@ -39,32 +39,32 @@ void one_command(CaseRun& run) {
         scene.top.instances.push_back({.bottom = i});
     }
     const std::vector<Bottom> bottoms = run.driver().build_together(scene.bottoms);
-    run.check_hits(scene, run.driver().build(scene.top, bottoms), random_shots(run.draws(), run.rays()));
+    run.check_hits(scene, run.driver().build(scene.top, bottoms), run.shots());
 }
 
 void nothing(CaseRun& run) {
-    SceneInput scene = scene_of(random_triangles(run.draws(), usual_triangle_count));
+    SceneInput scene = usual_scene(run.draws());
     GeometryInput empty;
     empty.positions = {vec3(0)};
     scene.bottoms.push_back({{empty}});
     scene.bottoms.push_back({});
     scene.top.instances.insert(scene.top.instances.begin(), {.bottom = 1});
     scene.top.instances.push_back({.bottom = 2});
-    run.check_hits(scene, random_shots(run.draws(), run.rays()));
-    run.check_hits(SceneInput{}, random_shots(run.draws(), run.rays()));
+    run.check_hits(scene, run.shots());
+    run.check_hits(SceneInput{}, run.shots());
 }
 
 void inactive_triangles(CaseRun& run) {
-    GeometryInput geometry = random_triangles(run.draws(), usual_triangle_count);
+    GeometryInput geometry = random_triangles(run.draws());
     for (uint i = 0; i < usual_triangle_count; i += 3) geometry.positions[3 * i + run.draws().below(3)].x = nan;
-    run.check_hits(scene_of(geometry), random_shots(run.draws(), run.rays()));
+    run.check_hits(scene_of(geometry), run.shots());
 }
 
 void degenerate_triangles(CaseRun& run) {
-    GeometryInput geometry = random_triangles(run.draws(), usual_triangle_count);
+    GeometryInput geometry = random_triangles(run.draws());
     for (uint i = 0; i < usual_triangle_count; i += 3)
         geometry.positions[3 * i + 2] = geometry.positions[3 * i + run.draws().below(2)];
-    run.check_hits(scene_of(geometry), random_shots(run.draws(), run.rays()));
+    run.check_hits(scene_of(geometry), run.shots());
 }
 
 void inactive_boxes(CaseRun& run) {
@@ -77,34 +77,32 @@ void inactive_boxes(CaseRun& run) {
 }
 
 void inactive_instances(CaseRun& run) {
-    SceneInput scene = scene_of(random_triangles(run.draws(), usual_triangle_count));
+    SceneInput scene = usual_scene(run.draws());
     scene.top.instances.insert(scene.top.instances.begin(), {.bottom = no_bottom});
-    run.check_hits(scene, random_shots(run.draws(), run.rays()));
+    run.check_hits(scene, run.shots());
 }
 
 void pointers(CaseRun& run) {
-    SceneInput scene = scene_of(random_triangles(run.draws(), usual_triangle_count));
+    SceneInput scene = usual_scene(run.draws());
     scene.top.instances.resize(3);
     for (uint i = 0; i < 3; ++i) scene.top.instances[i].custom_index = 7 + i;
     for (uint i = 0; i < 3; ++i) scene.top.instances[i].mask = 1u << i;
     scene.top.has_pointers = true;
-    std::vector<Shot> shots = random_shots(run.draws(), run.rays());
+    std::vector<Shot> shots = run.shots();
     for (Shot& shot : shots) shot.cull_mask = 1 + run.draws().below(7);
     run.check_hits(scene, shots);
 }
 
 // Puts one to four times `step` items that the build must skip in front.
-void check_later(CaseRun& run, std::uint32_t GeometryInput::*earlier, std::uint32_t step) {
+template <std::uint32_t GeometryInput::*earlier, std::uint32_t step>
+void later(CaseRun& run) {
     for (const Indices indices : {Indices::none, Indices::bits16, Indices::bits32}) {
-        GeometryInput geometry = random_triangles(run.draws(), usual_triangle_count);
+        GeometryInput geometry = random_triangles(run.draws());
         geometry.indices = indices;
         geometry.*earlier = step * (1 + run.draws().below(4));
-        run.check_hits(scene_of(geometry), random_shots(run.draws(), run.rays() / 3 + 1));
+        run.check_hits(scene_of(geometry), run.shots(3));
     }
 }
-
-void later_primitives(CaseRun& run) { check_later(run, &GeometryInput::earlier_items, 1); }
-void later_vertices(CaseRun& run) { check_later(run, &GeometryInput::first_vertex, 3); }
 
 void later_boxes(CaseRun& run) {
     GeometryInput geometry = layered_boxes(5);
@@ -132,7 +130,71 @@ void placed_geometries(CaseRun& run) {
         if (i != 1) geometries[i].transform = exact_placement(run.draws());
     }
     geometries[2].earlier_places = 2;
-    run.check_hits(scene_of(geometries), random_shots(run.draws(), run.rays()));
+    run.check_hits(scene_of(geometries), run.shots());
+}
+
+// Makes triangles that share vertices, in no order.
+GeometryInput shared_vertices(Draws& draws, uint count) {
+    GeometryInput geometry = random_triangles(draws, count);
+    const uint vertices = static_cast<uint>(geometry.positions.size());
+    for (uint i = 0; i < count; ++i) {
+        uvec3 corners(draws.below(vertices), draws.below(vertices), draws.below(vertices));
+        const vec3 a = geometry.positions[corners.x], b = geometry.positions[corners.y],
+                   c = geometry.positions[corners.z];
+        if (length(cross(dvec3(b - a), dvec3(c - a))) > 0.1) geometry.triangles.push_back(corners);
+    }
+    return geometry;
+}
+
+void index_formats(CaseRun& run) {
+    for (const Indices indices : {Indices::bits16, Indices::bits32, Indices::none}) {
+        GeometryInput geometry = indices == Indices::none ? random_triangles(run.draws())
+                                                          : shared_vertices(run.draws(), usual_triangle_count);
+        geometry.indices = indices;
+        run.check_hits(scene_of(geometry), run.shots(3));
+    }
+}
+
+bool is_flat(VkFormat format) {
+    return format == VK_FORMAT_R32G32_SFLOAT || format == VK_FORMAT_R16G16_SFLOAT || format == VK_FORMAT_R16G16_SNORM;
+}
+bool is_normalized(VkFormat format) {
+    return format == VK_FORMAT_R16G16_SNORM || format == VK_FORMAT_R16G16B16A16_SNORM;
+}
+
+// Returns the nearest position that the format can hold.
+vec3 held(VkFormat format, vec3 p) {
+    if (is_flat(format)) p.z = 0;
+    if (!is_normalized(format)) return p;
+    const auto snorm = [](float value) { return std::round(std::clamp(value, -1.0f, 1.0f) * 32767) / 32767; };
+    return {snorm(p.x), snorm(p.y), snorm(p.z)};
+}
+
+void vertex_formats(CaseRun& run) {
+    for (const VkFormat format :
+         {VK_FORMAT_R32G32_SFLOAT, VK_FORMAT_R32G32B32_SFLOAT, VK_FORMAT_R16G16_SFLOAT, VK_FORMAT_R16G16B16A16_SFLOAT,
+          VK_FORMAT_R16G16_SNORM, VK_FORMAT_R16G16B16A16_SNORM}) {
+        GeometryInput geometry = random_triangles(run.draws());
+        geometry.format = format;
+        for (vec3& position : geometry.positions) position = held(format, position);
+        run.check_hits(scene_of(geometry), run.shots(6));
+    }
+}
+
+void vertex_strides(CaseRun& run) {
+    for (const std::uint32_t padding : {4u, 8u, 20u}) {
+        GeometryInput geometry = random_triangles(run.draws());
+        geometry.padding = padding;
+        geometry.format = padding == 8 ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32_SFLOAT;
+        geometry.indices = padding == 20 ? Indices::none : Indices::bits32;
+        run.check_hits(scene_of(geometry), run.shots(3));
+    }
+}
+
+void box_strides(CaseRun& run) {
+    GeometryInput geometry = layered_boxes(5);
+    geometry.padding = 8 * (1 + run.draws().below(3));
+    run.check_candidates(scene_of(geometry), layer_shots(run.draws(), run.rays()));
 }
 
 }  // namespace
@@ -160,13 +222,21 @@ std::vector<Case> build_cases() {
         {"K09", topic, "instances by an array of pointers", "VK-GL-CTS array of pointers", same, forgets_instance_ids,
          pointers},
         {"K10", topic, "triangles from primitiveOffset on", "VK-GL-CTS build offsets", same, forgets_later_half,
-         later_primitives},
+         later<&GeometryInput::earlier_items, 1>},
         {"K11", topic, "boxes from primitiveOffset on", "VK-GL-CTS build offsets",
          "the boxes that a ray meets are offered", forgets_later_half, later_boxes},
         {"K12", topic, "vertices from firstVertex on", "VK-GL-CTS build offsets", same, forgets_later_half,
-         later_vertices},
+         later<&GeometryInput::first_vertex, 3>},
         {"K13", topic, "geometries with transforms, one from transformOffset on", "VK-GL-CTS transforms", same,
          forgets_transforms, placed_geometries},
+        {"K14", topic, "indices of 16 and 32 bits, and none", "VK-GL-CTS index formats", same, forgets_later_half,
+         index_formats},
+        {"K15", topic, "the six vertex formats that every driver has", "VK-GL-CTS vertex formats", same,
+         forgets_later_half, vertex_formats},
+        {"K16", topic, "vertices with bytes between them", "VK-GL-CTS vertex strides", same, forgets_later_half,
+         vertex_strides},
+        {"K17", topic, "boxes with bytes between them", "VK-GL-CTS box strides",
+         "the boxes that a ray meets are offered", forgets_later_half, box_strides},
     };
 }
 

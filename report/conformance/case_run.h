@@ -3,12 +3,10 @@
 #pragma once
 
 #include <map>
-#include <string>
 
-#include "report/conformance/draws.h"
 #include "report/conformance/driver.h"
-#include "report/conformance/verdict.h"
-#include "validation/records/record.h"
+#include "report/conformance/expectation.h"
+#include "report/conformance/suite.h"
 
 namespace twinray::conformance {
 
@@ -22,7 +20,6 @@ struct Tally {
     Values results = {};
 
     void add(Finding finding, const Ray& ray);
-    void add_fault(const std::string& sentence);
 };
 
 class CaseRun {
@@ -34,6 +31,9 @@ class CaseRun {
     Driver& driver() { return driver_; }
     Draws& draws() { return draws_; }
     std::size_t rays() const { return rays_; }
+    // Returns random shots: as many as there are rays, or a part of them.
+    std::vector<Shot> shots() { return random_shots(draws_, rays_); }
+    std::vector<Shot> shots(std::size_t parts) { return random_shots(draws_, rays_ / parts + 1); }
     Tally& tally() { return tally_; }
 
     // Builds the scene, traces and judges the hits.

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Copies: clones, compaction, files.
+// Updates: moved vertices and boxes, transforms, instances; builds into memory that held another. Copies: clones,
+// compaction, files.
 #include <algorithm>
-#include <utility>
 
 #include "engine/core/error.h"
 #include "engine/core/vulkan.h"
 #include "report/conformance/case_run.h"
-#include "report/conformance/suite.h"
 
 namespace twinray::conformance {
 namespace {
@@ -14,7 +13,7 @@ namespace {
 constexpr VkBuildAccelerationStructureFlagsKHR can_compact = VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_COMPACTION_BIT_KHR;
 
 SceneInput copyable(CaseRun& run, VkBuildAccelerationStructureFlagsKHR flags = 0) {
-    SceneInput scene = scene_of(random_triangles(run.draws(), usual_triangle_count));
+    SceneInput scene = usual_scene(run.draws());
     scene.bottoms[0].flags |= flags;
     scene.top.flags |= flags;
     scene.top.instances.resize(3);
@@ -22,9 +21,11 @@ SceneInput copyable(CaseRun& run, VkBuildAccelerationStructureFlagsKHR flags = 0
     return scene;
 }
 
+void check_bottom(CaseRun& run, const SceneInput& scene, const Bottom& bottom, std::span<const Shot> shots) {
+    run.check_hits(scene, run.driver().build(scene.top, std::span(&bottom, 1)), shots);
+}
 void check_bottom(CaseRun& run, const SceneInput& scene, const Bottom& bottom) {
-    const Top top = run.driver().build(scene.top, std::span(&bottom, 1));
-    run.check_hits(scene, top, random_shots(run.draws(), run.rays()));
+    check_bottom(run, scene, bottom, run.shots());
 }
 
 // The source is destroyed before the copy is used.
@@ -49,7 +50,7 @@ void compacted_bottom(CaseRun& run) {
 void copied_tops(CaseRun& run) {
     const SceneInput scene = copyable(run, can_compact);
     const DriverScene built = run.driver().build(scene);
-    const std::vector<Shot> shots = random_shots(run.draws(), run.rays() / 2 + 1);
+    const std::vector<Shot> shots = run.shots(2);
     run.check_hits(scene, run.driver().copied(built.top, Driver::Copy::clone), shots);
     run.check_hits(scene, run.driver().copied(built.top, Driver::Copy::compact), shots);
 }
@@ -59,7 +60,7 @@ void updated_clone(CaseRun& run) {
     const Bottom source = run.driver().build(scene.bottoms[0]);
     Bottom copy = run.driver().copied(source, Driver::Copy::clone);
     check_bottom(run, scene, copy);
-    scene.bottoms[0].geometries[0].positions = random_triangles(run.draws(), usual_triangle_count).positions;
+    scene.bottoms[0].geometries[0].positions = random_triangles(run.draws()).positions;
     if (copy.input.geometries[0].triangles.size() < usual_triangle_count) return;  // a control's copy is incomplete
     run.driver().update(copy, scene.bottoms[0]);
     check_bottom(run, scene, copy);
@@ -88,11 +89,11 @@ void files_of_both_levels(CaseRun& run) {
     const Bottom bottom = driver.deserialize(driver.serialize(built.bottoms[0].structure), scene.bottoms[0]);
     Serialized file = driver.serialize(built.top.structure);
     BottomInput moved = scene.bottoms[0];
-    moved.geometries[0].positions = random_triangles(run.draws(), usual_triangle_count).positions;
+    moved.geometries[0].positions = random_triangles(run.draws()).positions;
     driver.rebuild(built.bottoms[0], moved);
     file.set_handles(addresses_of(file.handles(), before, bottom.structure.address()));
     const Top top = driver.deserialize(file, scene.top, {bottom.ref()});
-    run.check_hits(scene, top, random_shots(run.draws(), run.rays()));
+    run.check_hits(scene, top, run.shots());
 }
 
 void headers(CaseRun& run) {
@@ -137,12 +138,110 @@ void files_of_others(CaseRun& run) {
     }
 }
 
+constexpr uint moved_triangles = 16;
+
+SceneInput updatable(GeometryInput geometry) {
+    SceneInput scene = scene_of(std::move(geometry));
+    scene.bottoms[0].flags |= can_update;
+    scene.top.flags |= can_update;
+    return scene;
+}
+
+// Moves the triangles to another place; their number stays the same.
+void move_triangles(CaseRun& run, SceneInput& scene) {
+    for (GeometryInput& geometry : scene.bottoms[0].geometries)
+        geometry.positions = random_triangles(run.draws(), moved_triangles).positions;
+}
+
+template <uint times>
+void vertices_in_place(CaseRun& run) {
+    SceneInput scene = updatable(random_triangles(run.draws(), moved_triangles));
+    Bottom bottom = run.driver().build(scene.bottoms[0]);
+    for (uint i = 0; i < times; ++i) {
+        move_triangles(run, scene);
+        run.driver().update(bottom, scene.bottoms[0]);
+    }
+    check_bottom(run, scene, bottom);
+}
+
+void vertices_elsewhere(CaseRun& run) {
+    const SceneInput before = updatable(random_triangles(run.draws(), moved_triangles));
+    SceneInput after = before;
+    const Bottom source = run.driver().build(before.bottoms[0]);
+    move_triangles(run, after);
+    const Bottom updated = run.driver().updated(source, after.bottoms[0]);
+    check_bottom(run, after, updated, run.shots(2));
+    check_bottom(run, before, source, run.shots(2));
+}
+
+void boxes_in_place(CaseRun& run) {
+    SceneInput scene = updatable(layered_boxes(5));
+    Bottom bottom = run.driver().build(scene.bottoms[0]);
+    const vec3 shift(4, run.draws().coordinate(1), 0);
+    for (Bounds& box : scene.bottoms[0].geometries[0].boxes) box = {box.lo + shift, box.hi + shift};
+    run.driver().update(bottom, scene.bottoms[0]);
+    std::vector<Shot> shots = box_shots(run.draws(), run.rays());
+    for (Shot& shot : shots) {
+        shot.ray.origin = shot.ray.origin + shift;
+        shot.refused = run.draws().below(32);
+    }
+    check_bottom(run, scene, bottom, shots);
+}
+
+void geometry_transforms(CaseRun& run) {
+    GeometryInput geometry = random_triangles(run.draws(), moved_triangles);
+    geometry.transform = Transform::translation(vec3(1, 0, 0));
+    SceneInput scene = updatable(geometry);
+    Bottom bottom = run.driver().build(scene.bottoms[0]);
+    scene.bottoms[0].geometries[0].transform = Transform::translation(vec3(0, run.draws().coordinate(1), 0.5f));
+    run.driver().update(bottom, scene.bottoms[0]);
+    check_bottom(run, scene, bottom);
+}
+
+void instances_in_place(CaseRun& run) {
+    SceneInput scene = updatable(random_triangles(run.draws(), moved_triangles));
+    scene.top.instances.resize(4);
+    DriverScene built = run.driver().build(scene);
+    for (InstanceInput& instance : scene.top.instances) {
+        instance.to_world = random_instance_transform(run.draws());
+        instance.custom_index = run.draws().below(1u << 24);
+        instance.mask = run.draws().below(256);
+        instance.flags = run.draws().below(4);
+    }
+    run.driver().update(built.top, scene.top);
+    std::vector<Shot> shots = run.shots();
+    for (Shot& shot : shots) shot.cull_mask = run.draws().below(256);
+    for (Shot& shot : shots) shot.flags = run.draws().chance(0.5) ? 0x10 : 0x20;  // culls one side
+    run.check_hits(scene, built.top, shots);
+}
+
+void over_another(CaseRun& run) {
+    SceneInput scene = scene_of(random_triangles(run.draws(), moved_triangles));
+    Bottom bottom = run.driver().build(scene.bottoms[0]);
+    scene.bottoms[0].geometries[0] = random_triangles(run.draws(), moved_triangles / 2);
+    run.driver().rebuild(bottom, scene.bottoms[0]);
+    check_bottom(run, scene, bottom);
+}
+
 }  // namespace
 
 std::vector<Case> copy_cases() {
     using enum Misdeed;
-    const std::string same = "hits are those of float64";
+    const std::string same = "hits are those of float64", updated = same + " after the update";
     return {
+        {"K18", Topic::updates, "all vertices moved, in place", "VK-GL-CTS updates, slang-rhi refit", updated,
+         forgets_updates, vertices_in_place<1>},
+        {"K19", Topic::updates, "all vertices moved, into another structure", "VK-GL-CTS updates",
+         updated + ", and the source's are as before", forgets_updates, vertices_elsewhere},
+        {"K20", Topic::updates, "eight updates in a row", "VK-GL-CTS updates", updated, forgets_updates,
+         vertices_in_place<8>},
+        {"K21", Topic::updates, "boxes moved, in place", "VK-GL-CTS updates", updated, forgets_updates, boxes_in_place},
+        {"K22", Topic::updates, "another transform of a geometry", "VK-GL-CTS updates", updated, forgets_updates,
+         geometry_transforms},
+        {"K23", Topic::updates, "transforms, masks, indices and flags of instances, in place", "VK-GL-CTS updates",
+         updated, forgets_updates, instances_in_place},
+        {"K24", Topic::updates, "another build into the same memory", "VK-GL-CTS builds", updated, forgets_updates,
+         over_another},
         {"K25", Topic::copies, "a clone of a bottom level", "VK-GL-CTS copies", same, copies_in_part, cloned_bottom},
         {"K26", Topic::copies, "a compacted bottom level", "VK-GL-CTS compaction, slang-rhi compaction",
          same + ", and it is no larger", copies_in_part, compacted_bottom},

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <utility>
 
 #include "conformance_pipeline_rahit.spv.h"
 #include "conformance_pipeline_rchit.spv.h"
@@ -13,8 +12,8 @@
 #include "conformance_pipeline_rmiss.spv.h"
 #include "conformance_query.spv.h"
 #include "conformance_query_culling.spv.h"
-#include "engine/core/commands.h"
 #include "engine/core/error.h"
+#include "engine/core/commands.h"
 #include "engine/core/vulkan.h"
 
 namespace twinray::conformance {
@@ -233,14 +232,10 @@ Bottom Driver::updated(const Bottom& source, const BottomInput& input) {
 Traced Driver::trace(const Top& top, std::span<const Shot> given, uint slots) {
     std::vector<Shot> shots(given.begin(), given.end());
     spoil(misdeed_, shots);
-    const Buffer from(context_, {.name = "conformance shots", .bytes = shots.size() * sizeof(Shot)});
+    const Buffer from = uploaded(context_, "conformance shots", std::span<const Shot>(shots));
     const Buffer answers(context_, {.name = "conformance answers", .bytes = shots.size() * sizeof(Answer)});
     const Buffer candidates(context_, {.name = "conformance candidates", .bytes = shots.size() * slots * sizeof(uint)});
     Commands commands(context_, "conformance trace");
-    {
-        const auto pass = commands.pass("conformance upload of shots");
-        commands.upload(from, std::span<const Shot>(shots));
-    }
     const QueryArgs args{.structure = top.structure.address(),
                          .shots = from.ref<Shot>(),
                          .answers = answers.ref<Answer>(),

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Copies of structures, and structures as bytes.
-#include "engine/core/commands.h"
 #include "engine/core/vulkan.h"
 #include "report/conformance/driver.h"
 

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "report/conformance/driver_input.h"
+#include "report/conformance/driver.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
 #include <glm/gtc/packing.hpp>
 
-#include "engine/core/commands.h"
 #include "engine/core/error.h"
 
 namespace twinray::conformance {

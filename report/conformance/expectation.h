@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The primitives that a ray meets, by brute force in float64, each with how certain it is in float32.
+// The primitives that a ray meets, by brute force in float64, each with how certain it is in float32; the verdict on a
+// driver's answer to a shot, and changes to scenes and rays that must not change what is hit: relations.cpp.
 #pragma once
 
-#include <vector>
-
-#include "report/conformance/query.h"
-#include "report/conformance/scene_input.h"
+#include "report/conformance/inputs.h"
 #include "validation/reference/error_bounds.h"
 
 namespace twinray::conformance {
@@ -93,5 +91,67 @@ class Expectation {
     std::vector<std::vector<PlacedGeometry>> geometries_;  // of each instance
     std::vector<Placement64> placements_;
 };
+
+enum class Finding : std::uint8_t {
+    agrees,
+    rounding,     // an edge, a tie, a limit: accepted, as float32 may decide either way
+    lost,         // a miss where something is surely hit
+    lost_nearer,  // a hit farther than one that is certain
+    false_hit,    // of something that the ray does not meet, or may not by flags and masks
+    wrong_t,
+    outside_limits,  // a t that the interval excludes
+    wrong_ids,       // custom index, record offset, instance, geometry or primitive
+    wrong_facing,
+    wrong_uv,
+    wrong_transform,  // the object's ray, or the map of the instance
+    not_offered,      // a candidate that is certain
+    offered_again,    // though its geometry allows one
+    offered_falsely,
+    wrong_opacity,  // of a box
+    leak,           // out of a closed mesh, or through a shared edge
+    double_hit,     // of a shared edge
+    differs,        // from another answer that must be the same
+    broken,         // a fault that is not about a ray
+};
+inline constexpr std::size_t finding_count = 19;
+std::string_view name_of(Finding finding);  // "AGREE", "LOST", ...
+constexpr bool is_fault(Finding finding) { return finding > Finding::rounding; }
+
+// Judges the committed hit of a ray with the shot's refusals. Boxes are met at the shot's box_t.
+Finding judge_hit(const Expectation& expectation, const Shot& shot, const Answer& answer);
+
+// Judges the candidates of a ray that refuses all of them.
+Finding judge_candidates(const Expectation& expectation, const Shot& shot, const Answer& answer,
+                         std::span<const uint> offered);
+
+// A changed scene with its rays, and how its answers map back to the original scene: ids and t. Facing, barycentrics
+// and the object's ray are not mapped back.
+struct Changed {
+    SceneInput scene;
+    std::vector<Shot> shots;
+    std::function<void(Answer&)> bring_back = [](Answer&) {};
+};
+
+// Coordinates are multiples of 2^-10 of some units (Draws), so that all of these are exact.
+Changed translated(const SceneInput& scene, std::span<const Shot> shots, vec3 offset);
+Changed turned(const SceneInput& scene, std::span<const Shot> shots, int axis);  // by 90 degrees
+Changed scaled(const SceneInput& scene, std::span<const Shot> shots, float power_of_two);
+Changed faster(const SceneInput& scene, std::span<const Shot> shots, float power_of_two);  // directions
+// Triangle order[i] of the first geometry becomes triangle i.
+Changed permuted(const SceneInput& scene, std::span<const Shot> shots, std::span<const uint> order);
+// Splits the first geometry before triangle `at` into two geometries, or into two bottom levels in two instances.
+Changed split_geometry(const SceneInput& scene, std::span<const Shot> shots, uint at);
+Changed split_instance(const SceneInput& scene, std::span<const Shot> shots, uint at);
+// Moves vertices by the inverse, and instances back again.
+Changed by_instance(const SceneInput& scene, std::span<const Shot> shots, vec3 offset, float power_of_two);
+// Returns the ray from its end at `t` back to its origin.
+Shot reversed(const Shot& shot, float t);
+
+// Compares two answers to a shot. They may name different triangles where rounding decides: at an edge, a tie, an end
+// of the interval.
+Finding compare_hits(const Expectation& expectation, const Shot& shot, const Answer& first, const Answer& second);
+// Compares two lists of candidates in any order. A candidate that only one of them has must be uncertain.
+Finding compare_candidates(const Expectation& expectation, const Shot& shot, std::span<const uint> first,
+                           std::span<const uint> second);
 
 }  // namespace twinray::conformance

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "report/conformance/suite.h"
 
 #include <algorithm>
-#include <array>
 #include <deque>
+#include <iomanip>
 
 #include "engine/core/error.h"
+#include "engine/core/parallel.h"
 #include "engine/core/stopwatch.h"
 #include "report/conformance/case_run.h"
 #include "samples/support/progress.h"
@@ -156,14 +156,75 @@ class Runner {
     std::unique_ptr<Driver> driver_;
 };
 
+std::string fact(const Record& record, const char* name) { return record.results.at(name).text(); }
+struct Sum {
+    std::uint64_t cases = 0, passed = 0, not_run = 0, controls = 0, items = 0;
+    std::uint64_t must_failed = 0, should_failed = 0;
+
+    void add(const Record& record) {
+        if (frame::is_control(record)) {
+            controls += record.pass == true;
+            return;
+        }
+        ++cases;
+        items += record.n;
+        if (!record.was_run)
+            ++not_run;
+        else if (record.pass == true)
+            ++passed;
+        else
+            ++(fact(record, "demand") == "must" ? must_failed : should_failed);
+    }
+};
+
+void print_not_passed(std::ostream& out, const Record& record) {
+    out << "    " << record.case_id << ' ' << record.backend << ' ';
+    if (!record.was_run) {
+        out << "not run: " << record.reason << '\n';
+        return;
+    }
+    if (record.fault_of == "twinray")
+        out << "a fault of twinray, " << (frame::is_control(record) ? record.variant : "") << ": " << record.reason
+            << '\n';
+    else
+        out << fact(record, "demand") << ' ' << fact(record, "what") << ": demanded: " << record.criterion << '\n';
+    if (!record.counts.empty()) out << "       ";
+    for (const auto& [name, count] : record.counts) out << ' ' << name << ' ' << count;
+    if (!record.counts.empty()) out << '\n';
+    if (record.fault_of == "driver" && record.example.empty()) out << "        " << record.reason << '\n';
+    if (!record.example.empty()) out << "        " << record.example << '\n';
+}
+
+void print_topic(std::ostream& out, const std::string& topic, std::span<const Record> records) {
+    Sum sum;
+    for (const Record& record : records)
+        if (fact(record, "topic") == topic) sum.add(record);
+    if (sum.cases == 0) return;
+    out << "  " << std::left << std::setw(14) << topic << std::right << std::setw(3) << sum.passed << " of "
+        << std::setw(2) << sum.cases << " pass, " << std::setw(9) << sum.items << " checks";
+    if (sum.must_failed) out << "; " << sum.must_failed << " break a requirement of Vulkan";
+    if (sum.should_failed) out << "; " << sum.should_failed << " break a recommendation of Vulkan";
+    if (sum.not_run) out << "; " << sum.not_run << " not run";
+    out << '\n';
+    for (const Record& record : records)
+        if (fact(record, "topic") == topic && record.pass != true) print_not_passed(out, record);
+}
+
+template <class Judge>
+void judge_all(Tally& tally, std::span<const Shot> shots, const Judge& judge) {
+    std::vector<Finding> findings(shots.size());
+    parallel_for(shots.size(), [&](std::size_t i) { findings[i] = judge(i); });
+    for (std::size_t i = 0; i < shots.size(); ++i) tally.add(findings[i], shots[i].ray);
+}
+
 }  // namespace
 
 std::string_view name_of(Topic topic) { return topics[static_cast<std::size_t>(topic)]; }
 
 std::vector<Case> catalogue() {
     std::vector<Case> all;
-    for (const auto& part : {build_cases, format_cases, update_cases, copy_cases, instance_cases, ray_flag_cases,
-                             any_hit_cases, box_cases, limit_cases, edge_cases, relation_cases})
+    for (const auto& part : {build_cases, copy_cases, instance_cases, ray_flag_cases, candidate_cases, limit_cases,
+                             edge_cases, relation_cases})
         for (Case& row : part()) all.push_back(std::move(row));
     return all;
 }
@@ -217,6 +278,54 @@ bool fails_demands(std::span<const Record> records) {
 
 bool has_fault_of_ours(std::span<const Record> records) {
     return std::ranges::any_of(records, [](const Record& record) { return record.fault_of == "twinray"; });
+}
+
+void print(std::ostream& out, std::span<const Record> records) {
+    for (std::size_t i = 0; i < topic_count; ++i)
+        print_topic(out, std::string(name_of(static_cast<Topic>(i))), records);
+    Sum sum;
+    for (const Record& record : records) sum.add(record);
+    out << sum.passed << " of " << sum.cases << " cases pass over " << sum.items << " checks, and " << sum.controls
+        << " controls show their faults; " << sum.must_failed << " break a requirement of Vulkan, " << sum.should_failed
+        << " a recommendation, " << sum.not_run << " not run\n";
+}
+
+void Tally::add(Finding finding, const Ray& ray) {
+    ++n;
+    ++counts[std::string(name_of(finding))];
+    if (!is_fault(finding)) return;
+    ++faults;
+    if (example.empty()) example = text(name_of(finding), ' ', frame::hexadecimal(ray));
+}
+
+void CaseRun::check_hits(const SceneInput& scene, std::span<const Shot> shots) {
+    const DriverScene built = driver_.build(scene);
+    check_hits(scene, built.top, shots);
+}
+
+void CaseRun::check_hits(const SceneInput& scene, const Top& top, std::span<const Shot> shots) {
+    const Expectation expectation(scene);
+    const Traced traced = driver_.trace(top, shots);
+    judge_all(tally_, shots, [&](std::size_t i) { return judge_hit(expectation, shots[i], traced.answers[i]); });
+}
+
+void CaseRun::check_candidates(const SceneInput& scene, std::span<const Shot> given) {
+    std::vector<Shot> shots(given.begin(), given.end());
+    for (Shot& shot : shots) shot.refused = refuse_all;
+    const DriverScene built = driver_.build(scene);
+    const Expectation expectation(scene);
+    const Traced traced = driver_.trace(built.top, shots, candidate_slots);
+    judge_all(tally_, shots, [&](std::size_t i) {
+        return judge_candidates(expectation, shots[i], traced.answers[i], traced.candidates_of(i));
+    });
+}
+
+void CaseRun::expect(bool holds, const std::string& sentence_if_not) {
+    ++tally_.n;
+    if (holds) return;
+    ++tally_.faults;
+    ++tally_.counts[std::string(name_of(Finding::broken))];
+    if (tally_.what.empty()) tally_.what = sentence_if_not;
 }
 
 }  // namespace twinray::conformance

@@ -2,13 +2,9 @@
 // Tests of a driver's own acceleration structures against Vulkan: cases by kind, each with a negative control.
 #pragma once
 
-#include <functional>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
+#include <ostream>
 
-#include "report/conformance/misdeed.h"
+#include "report/conformance/inputs.h"
 #include "report/frame/cases.h"
 
 namespace twinray::conformance {
@@ -62,13 +58,10 @@ struct Case : frame::Case {
 
 // The catalogue: a function for each topic, or for a topic and what is tested with it.
 std::vector<Case> build_cases();
-std::vector<Case> format_cases();
-std::vector<Case> update_cases();
 std::vector<Case> copy_cases();
 std::vector<Case> instance_cases();
 std::vector<Case> ray_flag_cases();
-std::vector<Case> any_hit_cases();
-std::vector<Case> box_cases();
+std::vector<Case> candidate_cases();
 std::vector<Case> limit_cases();
 std::vector<Case> edge_cases();
 std::vector<Case> relation_cases();
@@ -101,5 +94,8 @@ std::vector<Record> records_of_ended(const Case& row, std::span<const Record> fi
 // run.
 bool fails_demands(std::span<const Record> records);
 bool has_fault_of_ours(std::span<const Record> records);
+
+// Prints a line for each topic, below it each case that failed or was not run, with its first example; then the sum.
+void print(std::ostream& out, std::span<const Record> records);
 
 }  // namespace twinray::conformance

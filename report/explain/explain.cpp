@@ -10,8 +10,7 @@
 #include "engine/core/error.h"
 #include "engine/scene/local_origin.h"
 #include "report/replay/replay.h"
-#include "report/replay/scene_file.h"
-#include "validation/reference/certainty.h"
+#include "validation/reference/classify.h"
 
 namespace twinray::replay {
 namespace {

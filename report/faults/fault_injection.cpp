@@ -29,47 +29,30 @@ namespace {
     F(vkGetQueryPoolResults, VK_ERROR_OUT_OF_HOST_MEMORY, true)                 \
     F(vkGetRayTracingShaderGroupHandlesKHR, VK_ERROR_OUT_OF_HOST_MEMORY, false)
 
-// The functions that make an object, with its type.
-#define TWINRAY_CREATING(F)                                                                         \
-    F(vkCreateInstance, VK_ERROR_INCOMPATIBLE_DRIVER, false, VkInstance)                            \
-    F(vkCreateDebugUtilsMessengerEXT, VK_ERROR_OUT_OF_HOST_MEMORY, false, VkDebugUtilsMessengerEXT) \
-    F(vkCreateDevice, VK_ERROR_INITIALIZATION_FAILED, true, VkDevice)                               \
-    F(vkAllocateMemory, VK_ERROR_OUT_OF_DEVICE_MEMORY, false, VkDeviceMemory)                       \
-    F(vkCreateBuffer, VK_ERROR_OUT_OF_DEVICE_MEMORY, false, VkBuffer)                               \
-    F(vkCreateImage, VK_ERROR_OUT_OF_DEVICE_MEMORY, false, VkImage)                                 \
-    F(vkCreateImageView, VK_ERROR_OUT_OF_HOST_MEMORY, false, VkImageView)                           \
-    F(vkCreateSampler, VK_ERROR_TOO_MANY_OBJECTS, false, VkSampler)                                 \
-    F(vkCreateDescriptorSetLayout, VK_ERROR_OUT_OF_HOST_MEMORY, false, VkDescriptorSetLayout)       \
-    F(vkCreateDescriptorPool, VK_ERROR_OUT_OF_DEVICE_MEMORY, false, VkDescriptorPool)               \
-    F(vkCreateSemaphore, VK_ERROR_OUT_OF_HOST_MEMORY, false, VkSemaphore)                           \
-    F(vkCreateCommandPool, VK_ERROR_OUT_OF_HOST_MEMORY, false, VkCommandPool)                       \
-    F(vkCreateQueryPool, VK_ERROR_OUT_OF_DEVICE_MEMORY, false, VkQueryPool)                         \
-    F(vkCreateShaderModule, VK_ERROR_OUT_OF_HOST_MEMORY, false, VkShaderModule)                     \
-    F(vkCreatePipelineCache, VK_ERROR_OUT_OF_HOST_MEMORY, false, VkPipelineCache)                   \
-    F(vkCreatePipelineLayout, VK_ERROR_OUT_OF_HOST_MEMORY, false, VkPipelineLayout)                 \
-    F(vkCreateComputePipelines, VK_ERROR_OUT_OF_DEVICE_MEMORY, false, VkPipeline)                   \
-    F(vkCreateRayTracingPipelinesKHR, VK_ERROR_OUT_OF_DEVICE_MEMORY, false, VkPipeline)             \
-    F(vkCreateAccelerationStructureKHR, VK_ERROR_OUT_OF_HOST_MEMORY, false, VkAccelerationStructureKHR)
+// The other functions that make an object, with its type.
+#define TWINRAY_MAKING(F)                                                         \
+    F(vkAllocateMemory, VK_ERROR_OUT_OF_DEVICE_MEMORY, false, VkDeviceMemory)     \
+    F(vkCreateComputePipelines, VK_ERROR_OUT_OF_DEVICE_MEMORY, false, VkPipeline) \
+    F(vkCreateRayTracingPipelinesKHR, VK_ERROR_OUT_OF_DEVICE_MEMORY, false, VkPipeline)
 
-#define TWINRAY_DESTROYING(F)                                    \
-    F(vkDestroyInstance, VkInstance)                             \
-    F(vkDestroyDebugUtilsMessengerEXT, VkDebugUtilsMessengerEXT) \
-    F(vkDestroyDevice, VkDevice)                                 \
-    F(vkFreeMemory, VkDeviceMemory)                              \
-    F(vkDestroyBuffer, VkBuffer)                                 \
-    F(vkDestroyImage, VkImage)                                   \
-    F(vkDestroyImageView, VkImageView)                           \
-    F(vkDestroySampler, VkSampler)                               \
-    F(vkDestroyDescriptorSetLayout, VkDescriptorSetLayout)       \
-    F(vkDestroyDescriptorPool, VkDescriptorPool)                 \
-    F(vkDestroySemaphore, VkSemaphore)                           \
-    F(vkDestroyCommandPool, VkCommandPool)                       \
-    F(vkDestroyQueryPool, VkQueryPool)                           \
-    F(vkDestroyShaderModule, VkShaderModule)                     \
-    F(vkDestroyPipelineCache, VkPipelineCache)                   \
-    F(vkDestroyPipelineLayout, VkPipelineLayout)                 \
-    F(vkDestroyPipeline, VkPipeline)                             \
-    F(vkDestroyAccelerationStructureKHR, VkAccelerationStructureKHR)
+// Objects of the type Vk... with functions vkCreate... and vkDestroy...
+#define TWINRAY_OBJECTS(F)                                        \
+    F(Instance, VK_ERROR_INCOMPATIBLE_DRIVER, false)              \
+    F(DebugUtilsMessengerEXT, VK_ERROR_OUT_OF_HOST_MEMORY, false) \
+    F(Device, VK_ERROR_INITIALIZATION_FAILED, true)               \
+    F(Buffer, VK_ERROR_OUT_OF_DEVICE_MEMORY, false)               \
+    F(Image, VK_ERROR_OUT_OF_DEVICE_MEMORY, false)                \
+    F(ImageView, VK_ERROR_OUT_OF_HOST_MEMORY, false)              \
+    F(Sampler, VK_ERROR_TOO_MANY_OBJECTS, false)                  \
+    F(DescriptorSetLayout, VK_ERROR_OUT_OF_HOST_MEMORY, false)    \
+    F(DescriptorPool, VK_ERROR_OUT_OF_DEVICE_MEMORY, false)       \
+    F(Semaphore, VK_ERROR_OUT_OF_HOST_MEMORY, false)              \
+    F(CommandPool, VK_ERROR_OUT_OF_HOST_MEMORY, false)            \
+    F(QueryPool, VK_ERROR_OUT_OF_DEVICE_MEMORY, false)            \
+    F(ShaderModule, VK_ERROR_OUT_OF_HOST_MEMORY, false)           \
+    F(PipelineCache, VK_ERROR_OUT_OF_HOST_MEMORY, false)          \
+    F(PipelineLayout, VK_ERROR_OUT_OF_HOST_MEMORY, false)         \
+    F(AccelerationStructureKHR, VK_ERROR_OUT_OF_HOST_MEMORY, false)
 
 FaultInjector* active = nullptr;
 PFN_vkGetInstanceProcAddr real_instance_proc_addr = nullptr;
@@ -115,15 +98,18 @@ PFN_vkVoidFunction wrapped(PFN_vkVoidFunction real) {
         static constexpr FaultInjector::Function function = {#name, error, may_lose_device}; \
         static constexpr std::string_view makes = "" #__VA_ARGS__;                           \
     };
-TWINRAY_FALLIBLE(TWINRAY_TAG)
-TWINRAY_CREATING(TWINRAY_TAG)
-#undef TWINRAY_TAG
-#define TWINRAY_TAG(name, type)                        \
+#define TWINRAY_DESTROYING_TAG(name, type)             \
     struct Tag_##name {                                \
         static constexpr const char* destroys = #type; \
     };
-TWINRAY_DESTROYING(TWINRAY_TAG)
-#undef TWINRAY_TAG
+#define TWINRAY_OBJECT_TAGS(name, error, may_lose_device)         \
+    TWINRAY_TAG(vkCreate##name, error, may_lose_device, Vk##name) \
+    TWINRAY_DESTROYING_TAG(vkDestroy##name, Vk##name)
+TWINRAY_FALLIBLE(TWINRAY_TAG)
+TWINRAY_MAKING(TWINRAY_TAG)
+TWINRAY_OBJECTS(TWINRAY_OBJECT_TAGS)
+TWINRAY_DESTROYING_TAG(vkFreeMemory, VkDeviceMemory)
+TWINRAY_DESTROYING_TAG(vkDestroyPipeline, VkPipeline)
 
 PFN_vkGetAccelerationStructureBuildSizesKHR real_build_sizes = nullptr;
 PFN_vkCreateAccelerationStructureKHR wrapped_create_structure = nullptr;
@@ -154,10 +140,12 @@ PFN_vkVoidFunction around(std::string_view name, PFN_vkVoidFunction real) {
     }
 #define TWINRAY_WRAP(function, ...) \
     if (name == #function) return wrapped<Tag_##function, PFN_##function>(real);
+#define TWINRAY_WRAP_OBJECT(object, ...) TWINRAY_WRAP(vkCreate##object) TWINRAY_WRAP(vkDestroy##object)
     TWINRAY_FALLIBLE(TWINRAY_WRAP)
-    TWINRAY_CREATING(TWINRAY_WRAP)
-    TWINRAY_DESTROYING(TWINRAY_WRAP)
-#undef TWINRAY_WRAP
+    TWINRAY_MAKING(TWINRAY_WRAP)
+    TWINRAY_OBJECTS(TWINRAY_WRAP_OBJECT)
+    TWINRAY_WRAP(vkFreeMemory)
+    TWINRAY_WRAP(vkDestroyPipeline)
     if (name == "vkGetAccelerationStructureBuildSizesKHR") {
         real_build_sizes = reinterpret_cast<PFN_vkGetAccelerationStructureBuildSizesKHR>(real);
         return reinterpret_cast<PFN_vkVoidFunction>(&generous_build_sizes);

@@ -50,11 +50,11 @@ Level Devices::level_to_make(const Configuration& configuration) {
     return std::max(configuration.level, Level::watertight);
 }
 
-AccelOptions Devices::options(const Configuration& configuration, Layout layout) const {
-    return {level_to_make(configuration), layout, trees_.build_quality};
+AccelOptions Devices::options(const Configuration& configuration, std::optional<Layout> layout) const {
+    return {level_to_make(configuration), layout.value_or(trees_.layout), trees_.build_quality};
 }
 
-std::unique_ptr<AbstractAccel> Devices::make_accel(const Configuration& configuration, Layout layout) {
+std::unique_ptr<AbstractAccel> Devices::make_accel(const Configuration& configuration, std::optional<Layout> layout) {
     return make_accel(context(configuration.backend), configuration.backend, options(configuration, layout));
 }
 
@@ -62,8 +62,9 @@ std::unique_ptr<AbstractAccel> Devices::make_accel(Context& context, Backend bac
     return twinray::make_accel(context, {is_ours(backend), ""}, options);
 }
 
-AbstractAccel& Devices::empty_accel(const Configuration& configuration, Layout layout) {
-    std::unique_ptr<AbstractAccel>& accel = accels_[{configuration.backend, level_to_make(configuration), layout}];
+AbstractAccel& Devices::empty_accel(const Configuration& configuration, std::optional<Layout> layout) {
+    std::unique_ptr<AbstractAccel>& accel =
+        accels_[{configuration.backend, level_to_make(configuration), layout.value_or(trees_.layout)}];
     if (!accel) accel = make_accel(configuration, layout);
     for (const AccelHandle handle : accel->handles()) accel->erase(handle);
     return *accel;
@@ -76,7 +77,5 @@ const CrossingCounter& Devices::crossing_counter(const Configuration& configurat
                                                     configuration.level);
     return *counter;
 }
-
-void Devices::drop_accels() { accels_.clear(); }
 
 }  // namespace twinray::frame

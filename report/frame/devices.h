@@ -4,14 +4,12 @@
 
 #include <array>
 #include <map>
+#include <optional>
 #include <tuple>
-#include <memory>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "engine/accel/trace_desc.h"
-#include "validation/leaks/crossings.h"
+#include "validation/leaks/leak_test.h"
 #include <twinray/abstract_accel.h>
 
 namespace twinray::frame {
@@ -51,17 +49,13 @@ class Devices {
     // Returns why it cannot answer here, or "" if it can.
     std::string why_not(const Configuration& configuration);
     // Returns an empty accelerator: erases whatever an earlier case left.
-    AbstractAccel& empty_accel(const Configuration& configuration) { return empty_accel(configuration, trees_.layout); }
-    AbstractAccel& empty_accel(const Configuration& configuration, Layout layout);
+    AbstractAccel& empty_accel(const Configuration& configuration, std::optional<Layout> layout = {});
     // Returns the level of the accelerator that a configuration's traces run on. Configurations that share the level
     // share the accelerator.
     static Level level_to_make(const Configuration& configuration);
-    AccelOptions options(const Configuration& configuration, Layout layout) const;
+    AccelOptions options(const Configuration& configuration, std::optional<Layout> layout = {}) const;
     // Makes an accelerator for one case alone.
-    std::unique_ptr<AbstractAccel> make_accel(const Configuration& configuration) {
-        return make_accel(configuration, trees_.layout);
-    }
-    std::unique_ptr<AbstractAccel> make_accel(const Configuration& configuration, Layout layout);
+    std::unique_ptr<AbstractAccel> make_accel(const Configuration& configuration, std::optional<Layout> layout = {});
     // Makes the same on the case's own context.
     static std::unique_ptr<AbstractAccel> make_accel(Context& context, Backend backend, const AccelOptions& options);
     // Compiled on first use; not for the pipeline, in which no kernel traces.
@@ -69,7 +63,7 @@ class Devices {
     // Returns the library's warnings since the last call; cases provoke warnings, so they are not printed.
     std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
     // Drops all accelerators after a failure, so that the next case gets new ones.
-    void drop_accels();
+    void drop_accels() { accels_.clear(); }
 
   private:
     std::vector<std::string> warnings_;

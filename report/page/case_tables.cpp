@@ -2,9 +2,7 @@
 #include "report/page/page.h"
 
 #include <algorithm>
-#include <array>
 #include <map>
-#include <set>
 
 #include "engine/core/error.h"
 #include "report/page/verdict.h"

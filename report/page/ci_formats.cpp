@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "engine/core/error.h"
 #include "report/page/verdict.h"
@@ -45,7 +44,7 @@ std::string xml(std::string text) {
 std::vector<std::string> devices_of(std::span<const Check> checks) {
     std::vector<std::string> devices;
     for (const Check& check : checks)
-        if (std::find(devices.begin(), devices.end(), check.device) == devices.end()) devices.push_back(check.device);
+        if (std::ranges::find(devices, check.device) == devices.end()) devices.push_back(check.device);
     return devices;
 }
 
@@ -79,7 +78,7 @@ std::string junit_xml(std::span<const Check> checks) {
         std::vector<const Check*> here;
         for (const Check& check : checks)
             if (check.device == device) here.push_back(&check);
-        const auto count = [&](const auto& is) { return std::count_if(here.begin(), here.end(), is); };
+        const auto count = [&](const auto& is) { return std::ranges::count_if(here, is); };
         out += text("<testsuite name=\"", xml(device), "\" tests=\"", here.size(), "\" failures=\"",
                     count([](const Check* check) { return check->outcome == Outcome::failed; }), "\" skipped=\"",
                     count([](const Check* check) { return is_skipped(*check); }), "\">\n");
@@ -106,7 +105,7 @@ std::string tap(std::span<const Check> checks) {
         std::string line = text(is_ok ? "ok " : "not ok ", ++number, " - ", name_of(check), " on ", check.device);
         if (check.outcome == Outcome::skipped) line += " # SKIP " + check.message;
         if (check.outcome == Outcome::tolerated) line += " # TODO " + check.message;
-        std::replace(line.begin(), line.end(), '\n', ' ');
+        std::ranges::replace(line, '\n', ' ');
         out += line + '\n';
         if (check.outcome == Outcome::failed)
             out += "  ---\n  message: " +

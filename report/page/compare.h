@@ -68,7 +68,7 @@ std::vector<bool> holm(std::span<const double> p, double level);
 // two-sided.
 double sign_test(std::size_t ups, std::size_t downs);
 
-// Reports beside each other, as text: compare_text.cpp.
+// Reports beside each other, as text.
 
 struct NamedReport {
     std::string name;

@@ -53,21 +53,6 @@ std::string estimated_by(const Record& record) {
     return "";
 }
 
-}  // namespace
-
-std::size_t color_of(std::string_view backend) {
-    return backend == "sw" ? 0 : backend == "hw" ? 1 : backend == "hw-pipeline" ? 2 : 3;
-}
-
-std::vector<FigurePoint> front_of(std::vector<FigurePoint> points) {
-    std::sort(points.begin(), points.end(),
-              [](const FigurePoint& a, const FigurePoint& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
-    std::vector<FigurePoint> front;
-    for (const FigurePoint& point : points)
-        if (front.empty() || point.y < front.back().y) front.push_back(point);
-    return front;
-}
-
 Figure levels_figure(std::span<const Record> records) {
     Figure figure{.id = "levels",
                   .title = "Error of t against run time",
@@ -91,35 +76,6 @@ Figure levels_figure(std::span<const Record> records) {
     return figure;
 }
 
-Figure leaks_figure(std::span<const Record> records) {
-    Figure figure{.id = "leaks",
-                  .title = "Rays lost at shared edges and vertices",
-                  .sentence =
-                      "Each ray is aimed at an edge or a vertex of a closed surface and must hit. An arrow to the left "
-                      "means that no ray was lost; its mark is the largest rate that this leaves possible (95 %). Each "
-                      "case has the same weight.",
-                  .x_label = "lost rays per million",
-                  .is_log_y = false};
-    for (const char* backend : {"sw", "hw", "hw-pipeline"})
-        for (const Level level : all_levels) {
-            const Finding finding = finding_at(records, backend, name_of(level), Mistake::leak);
-            if (finding.n() == 0) continue;
-            const double row = static_cast<double>(figure.rows.size()), rate = 1e6 * finding.rate();
-            const Interval rate_95 = finding.rate_95();
-            figure.rows.push_back(short_name(backend) + ' ' + std::string(name_of(level)));
-            FigurePoint point{
-                rate, row, {1e6 * rate_95.low, 1e6 * rate_95.high}, {row, row}, rate_text(finding.rate(), rate_95)};
-            if (rate == 0) {
-                point.x = 1e6 * rate_95.high;
-                point.x_95 = {point.x, point.x};
-                point.is_bound = true;
-                point.label = text("0 of ", count_text(finding.n()), " (below ", share_text(rate_95.high), ')');
-            }
-            figure.series.push_back({"", color_of(backend), false, {point}});
-        }
-    return figure;
-}
-
 Figure paths_figure(std::span<const Record> records) {
     Figure figure{.id = "paths",
                   .title = "Error of path-traced pictures against seconds",
@@ -136,29 +92,6 @@ Figure paths_figure(std::span<const Record> records) {
         if (seconds > 0 && error > 0)
             series_of(figure.series, short_name(record.backend), color_of(record.backend))
                 .points.push_back({seconds, error, {seconds, seconds}, {error, error}});
-    }
-    add_slopes(figure.series);
-    return figure;
-}
-
-Figure estimates_figure(std::span<const Record> records) {
-    Figure figure{.id = "estimates",
-                  .title = "Error of estimates against run time",
-                  .sentence =
-                      "Estimates by SwTlas whose true value is known in closed form: view factors of two squares, "
-                      "light on a partly shadowed square, sky light and hours of sun there, and the mean height of the "
-                      "visible points. Lower and farther left is better. The slope of each line is in brackets; the "
-                      "steeper it is, the more additional rays gain.",
-                  .x_label = "milliseconds per estimate",
-                  .y_label = "relative error (root mean square over seeds)"};
-    std::map<std::string, std::size_t> colors;
-    for (const Record& record : records) {
-        const std::string label = record.backend == "sw" && record.was_run ? estimated_by(record) : "";
-        const double error = number_at(record.results, "rms");
-        if (label.empty() || error <= 0 || !record.time || record.time->median <= 0) continue;
-        const std::size_t color = colors.emplace(label, colors.size()).first->second;
-        const TimeFigures& time = *record.time;
-        series_of(figure.series, label, color).points.push_back({time.median, error, time.median_95, {error, error}});
     }
     add_slopes(figure.series);
     return figure;
@@ -192,11 +125,78 @@ Figure features_figure(std::span<const Record> records) {
     return figure;
 }
 
+}  // namespace
+
+std::size_t color_of(std::string_view backend) {
+    return backend == "sw" ? 0 : backend == "hw" ? 1 : backend == "hw-pipeline" ? 2 : 3;
+}
+
+std::vector<FigurePoint> front_of(std::vector<FigurePoint> points) {
+    std::ranges::sort(points,
+                      [](const FigurePoint& a, const FigurePoint& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
+    std::vector<FigurePoint> front;
+    for (const FigurePoint& point : points)
+        if (front.empty() || point.y < front.back().y) front.push_back(point);
+    return front;
+}
+
+Figure leaks_figure(std::span<const Record> records) {
+    Figure figure{.id = "leaks",
+                  .title = "Rays lost at shared edges and vertices",
+                  .sentence =
+                      "Each ray is aimed at an edge or a vertex of a closed surface and must hit. An arrow to the left "
+                      "means that no ray was lost; its mark is the largest rate that this leaves possible (95 %). Each "
+                      "case has the same weight.",
+                  .x_label = "lost rays per million",
+                  .is_log_y = false};
+    for (const char* backend : {"sw", "hw", "hw-pipeline"})
+        for (const Level level : all_levels) {
+            const Finding finding = finding_at(records, backend, name_of(level), Mistake::leak);
+            if (finding.n() == 0) continue;
+            const double row = static_cast<double>(figure.rows.size()), rate = 1e6 * finding.rate();
+            const Interval rate_95 = finding.rate_95();
+            figure.rows.push_back(short_name(backend) + ' ' + std::string(name_of(level)));
+            FigurePoint point{
+                rate, row, {1e6 * rate_95.low, 1e6 * rate_95.high}, {row, row}, rate_text(finding.rate(), rate_95)};
+            if (rate == 0) {
+                point.x = 1e6 * rate_95.high;
+                point.x_95 = {point.x, point.x};
+                point.is_bound = true;
+                point.label = text("0 of ", count_text(finding.n()), " (below ", share_text(rate_95.high), ')');
+            }
+            figure.series.push_back({"", color_of(backend), false, {point}});
+        }
+    return figure;
+}
+
+Figure estimates_figure(std::span<const Record> records) {
+    Figure figure{.id = "estimates",
+                  .title = "Error of estimates against run time",
+                  .sentence =
+                      "Estimates by SwTlas whose true value is known in closed form: view factors of two squares, "
+                      "light on a partly shadowed square, sky light and hours of sun there, and the mean height of the "
+                      "visible points. Lower and farther left is better. The slope of each line is in brackets; the "
+                      "steeper it is, the more additional rays gain.",
+                  .x_label = "milliseconds per estimate",
+                  .y_label = "relative error (root mean square over seeds)"};
+    std::map<std::string, std::size_t> colors;
+    for (const Record& record : records) {
+        const std::string label = record.backend == "sw" && record.was_run ? estimated_by(record) : "";
+        const double error = number_at(record.results, "rms");
+        if (label.empty() || error <= 0 || !record.time || record.time->median <= 0) continue;
+        const std::size_t color = colors.emplace(label, colors.size()).first->second;
+        const TimeFigures& time = *record.time;
+        series_of(figure.series, label, color).points.push_back({time.median, error, time.median_95, {error, error}});
+    }
+    add_slopes(figure.series);
+    return figure;
+}
+
 std::vector<Figure> figures_of(std::span<const Record> records) {
     std::vector<Figure> figures;
     for (Figure& figure : std::vector{leaks_figure(records), levels_figure(records), paths_figure(records),
                                       estimates_figure(records), features_figure(records)})
-        if (std::any_of(figure.series.begin(), figure.series.end(), [](const auto& s) { return !s.points.empty(); }))
+        if (std::ranges::any_of(figure.series, [](const auto& s) { return !s.points.empty(); }))
             figures.push_back(std::move(figure));
     return figures;
 }

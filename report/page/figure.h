@@ -2,6 +2,7 @@
 // The plots of a report: records in, points out. Pure functions; plotting is gnuplot's.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
@@ -46,13 +47,31 @@ std::size_t color_of(std::string_view backend);
 //   estimates: error of view factors, light and centroids against milliseconds, with the slope
 //   features: time of a trace with features that its scene does not need, over the time without
 std::vector<Figure> figures_of(std::span<const Record> records);
-Figure levels_figure(std::span<const Record> records);
 Figure leaks_figure(std::span<const Record> records);
-Figure paths_figure(std::span<const Record> records);
 Figure estimates_figure(std::span<const Record> records);
-Figure features_figure(std::span<const Record> records);
 
 // Returns the points that no other beats in both x and y, by ascending x.
 std::vector<FigurePoint> front_of(std::vector<FigurePoint> points);
+
+// The place of a text: fractions of the plot's width and height, from below.
+struct LabelPlace {
+    double x = 0, y = 0;
+};
+// Moves places that are near each other in x apart in y, from below upwards and as little as possible: a pure function.
+std::vector<LabelPlace> apart(std::vector<LabelPlace> places);
+
+// Returns 1, 2 and 5 times powers of ten between low and high, or more numbers if those are few; none if two powers of
+// ten or more are between them, which suffice.
+std::vector<double> log_tics(double low, double high);
+
+// Returns the script that writes `svg`: a pure function. Text and axes are in `text_color`, which a page replaces by
+// its own.
+inline constexpr const char* text_color = "#010203";
+std::string gnuplot_script(const Figure& figure, const std::filesystem::path& svg);
+
+// Writes <folder>/<id>.gp and draws it as <id>.svg. Returns the svg as an element of a page, as wide as there is room
+// and with its text in the page's colour, or "" if gnuplot is not installed. Throws Error naming the script if gnuplot
+// cannot draw it.
+std::string draw(const Figure& figure, const std::filesystem::path& folder);
 
 }  // namespace twinray::report

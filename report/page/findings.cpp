@@ -7,7 +7,7 @@
 
 #include "engine/core/error.h"
 #include "report/page/wording.h"
-#include "report/suite/claims.h"
+#include "report/suite/suite.h"
 
 namespace twinray::report {
 namespace {

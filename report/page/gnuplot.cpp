@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "report/page/gnuplot.h"
+#include "report/page/figure.h"
 
 #include <algorithm>
 #include <array>
@@ -33,8 +33,7 @@ struct Axis {
 
 // Returns the range of the points, with a margin; it is larger if labels follow points, and for the arrow of a bound.
 Axis axis_of(const std::vector<double>& values, bool is_log, double room_after) {
-    Axis axis{*std::min_element(values.begin(), values.end()), *std::max_element(values.begin(), values.end()), is_log,
-              false};
+    Axis axis{*std::ranges::min_element(values), *std::ranges::max_element(values), is_log, false};
     if (is_log) {
         const double span = std::max(axis.high / axis.low, 2.0);
         axis.low /= std::pow(span, 0.08);
@@ -197,7 +196,7 @@ std::vector<LabelPlace> apart(std::vector<LabelPlace> places) {
     constexpr double height = 0.07, width = 0.3;
     std::vector<std::size_t> order(places.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return places[a].y < places[b].y; });
+    std::ranges::sort(order, [&](std::size_t a, std::size_t b) { return places[a].y < places[b].y; });
     for (std::size_t i = 0; i < order.size(); ++i)
         for (std::size_t below = 0; below < i; ++below) {
             LabelPlace& here = places[order[i]];

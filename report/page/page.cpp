@@ -2,11 +2,9 @@
 #include "report/page/page.h"
 
 #include <algorithm>
-#include <array>
 #include <fstream>
 #include <map>
 #include <sstream>
-#include <utility>
 
 #include "engine/core/error.h"
 #include "report/page/verdict.h"

@@ -2,7 +2,6 @@
 // The page of a report: verdict first, then the plots that matter, then everything else, folded.
 #pragma once
 
-#include <filesystem>
 #include <utility>
 
 #include "report/page/compare.h"

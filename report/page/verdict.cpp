@@ -8,7 +8,7 @@
 
 #include "engine/core/error.h"
 #include "report/conformance/suite.h"
-#include "validation/records/bootstrap.h"
+#include "engine/core/statistics.h"
 #include "report/page/wording.h"
 #include "report/suite/suite.h"
 
@@ -70,24 +70,19 @@ void add_results(Verdict& verdict, std::span<const Record> records, std::string_
     if (results.run.empty()) return;
     const std::size_t cases = catalogued(sections);
     const Sentence::Kind kind = kind_of(results, cases);
-    std::string said = text(results.run.size(), " of ", cases, " cases ran; ");
-    said += kind == Sentence::Kind::wrong ? text(ids_text(results.failed_by_us), " fail by twinray, ",
-                                                 ids_text(results.failed_by_driver), " by the driver.")
-                                          : "none of them fails.";
-    if (kind == Sentence::Kind::not_measured) said = "not measured: " + said;
-    verdict.sentences.push_back({kind, std::move(about), said});
-}
-
-void add_own_structures(Verdict& verdict, std::span<const Record> records) {
-    const CaseResults results = results_of(records, "K");
-    if (results.run.empty()) return;
-    const std::size_t cases = catalogued("K");
-    const Sentence::Kind kind = kind_of(results, cases);
+    const auto said = [&](const auto&... words) {
+        return text(kind == Sentence::Kind::not_measured ? "not measured: " : "", results.run.size(), " of ", cases,
+                    " cases ", words...);
+    };
+    const std::string by_driver = ids_text(results.failed_by_driver);
     verdict.sentences.push_back(
-        {kind, "Acceleration structures",
-         text(kind == Sentence::Kind::not_measured ? "not measured: " : "", results.run.size(), " of ", cases,
-              " cases of builds, updates, copies, flags and candidates ran; ", ids_text(results.failed_by_driver),
-              " break a requirement of Vulkan, ", ids_text(results.not_as_advised), " a recommendation.")});
+        {kind, std::move(about),
+         sections == "K"
+             ? said("of builds, updates, copies, flags and candidates ran; ", by_driver,
+                    " break a requirement of Vulkan, ", ids_text(results.not_as_advised), " a recommendation.")
+         : kind == Sentence::Kind::wrong
+             ? said("ran; ", ids_text(results.failed_by_us), " fail by twinray, ", by_driver, " by the driver.")
+             : said("ran; none of them fails.")});
 }
 
 std::string_view mark_of(const Speed& speed) {
@@ -245,7 +240,7 @@ Verdict verdict_of(std::span<const Record> records) {
         else if (ours)
             verdict.sentences.push_back(sentence_of(*ours, nullptr));
     }
-    add_own_structures(verdict, records);
+    add_results(verdict, records, "K", "Acceleration structures");
     add_results(verdict, records, "STNIBF", "Scale, shape, input, instances, builds and arithmetic");
     add_results(verdict, records, "VRGCDP", "View factors, radiosity, light, collisions, distances and pictures");
     add_speed(verdict, speeds_of(records), driver);

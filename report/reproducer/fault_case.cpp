@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "report/reproducer/fault_case.h"
+#include "report/reproducer/simplify.h"
 
 #include <algorithm>
 #include <bit>
@@ -12,53 +12,13 @@
 namespace twinray::reproducer {
 namespace {
 
-using Bits = std::array<std::uint32_t, 3>;
-
-Bits bits_of(const vec3& p) {
-    return {std::bit_cast<std::uint32_t>(p.x), std::bit_cast<std::uint32_t>(p.y), std::bit_cast<std::uint32_t>(p.z)};
-}
-
-// A mesh that grows by triangles.
-class MeshMaker {
-  public:
-    void add(const std::array<vec3, 3>& vertices) {
-        mesh_.triangles.emplace_back(vertex(vertices[0]), vertex(vertices[1]), vertex(vertices[2]));
-    }
-    Mesh mesh() && { return std::move(mesh_); }
-
-  private:
-    uint vertex(const vec3& p) {
-        const auto [at, is_new] = numbers_.try_emplace(bits_of(p), static_cast<uint>(mesh_.positions.size()));
-        if (is_new) mesh_.positions.push_back(p);
-        return at->second;
-    }
-
-    Mesh mesh_;
-    std::map<Bits, uint> numbers_;
-};
-
 // Computes in float64, in world space.
 bool is_near(const CaseTriangle& triangle, const Transform& transform, const Ray& ray) {
-    dvec3 lo(transform_point(transform, triangle.vertices[0])), hi = lo;
-    for (const vec3& vertex : triangle.vertices) {
-        const dvec3 p(transform_point(transform, vertex));
-        lo = min(lo, p);
-        hi = max(hi, p);
-    }
-    const dvec3 size = hi - lo, reach(0.25 * std::max({size.x, size.y, size.z}));
-    const dvec3 origin(ray.origin), direction(ray.direction);
-    double enter = -unlimited, leave = unlimited;
-    for (int axis = 0; axis < 3; ++axis) {
-        const double below = lo[axis] - reach[axis] - origin[axis], above = hi[axis] + reach[axis] - origin[axis];
-        if (direction[axis] == 0) {
-            if (below > 0 || above < 0) return false;
-            continue;
-        }
-        const double a = below / direction[axis], b = above / direction[axis];
-        enter = std::max(enter, std::min(a, b));
-        leave = std::min(leave, std::max(a, b));
-    }
-    return enter <= leave;
+    Box64 box;
+    for (const vec3& vertex : triangle.vertices) box.include(dvec3(transform_point(transform, vertex)));
+    const dvec3 size = box.corners[1] - box.corners[0];
+    const SlabRay slabs(dvec3(ray.origin), dvec3(ray.direction), 0.25 * std::max({size.x, size.y, size.z}));
+    return !slabs.clip(box).is_empty();
 }
 
 }  // namespace
@@ -114,10 +74,19 @@ FaultCase as_built(const FaultCase& fault) {
 Scene scene_of(const FaultCase& fault) {
     Scene scene;
     for (std::size_t instance = 0; instance < fault.transforms.size(); ++instance) {
-        MeshMaker maker;
-        for (const CaseTriangle& triangle : fault.triangles)
-            if (triangle.instance == instance) maker.add(triangle.vertices);
-        Mesh mesh = std::move(maker).mesh();
+        Mesh mesh;
+        std::map<std::array<std::uint32_t, 3>, uint> numbers;  // of vertices, by their bits
+        for (const CaseTriangle& triangle : fault.triangles) {
+            if (triangle.instance != instance) continue;
+            uvec3& corners = mesh.triangles.emplace_back(0u);
+            for (int k = 2; k >= 0; --k) {
+                const vec3& p = triangle.vertices[static_cast<std::size_t>(k)];
+                const auto [at, is_new] = numbers.try_emplace(std::bit_cast<std::array<std::uint32_t, 3>>(p),
+                                                              static_cast<uint>(mesh.positions.size()));
+                if (is_new) mesh.positions.push_back(p);
+                corners[k] = at->second;
+            }
+        }
         if (mesh.triangles.empty()) continue;
         scene.instances.push_back({"", static_cast<uint>(scene.meshes.size()), fault.transforms[instance]});
         scene.meshes.push_back(std::move(mesh));

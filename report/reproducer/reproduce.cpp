@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "report/reproducer/reproduce.h"
 
+#include <fstream>
 #include <iomanip>
 #include <set>
 #include <sstream>
-#include <utility>
 
 #include <twinray/tlas.h>
 #include "engine/core/error.h"
 #include "engine/core/stopwatch.h"
-#include "report/reproducer/fault_case.h"
-#include "report/reproducer/simplify.h"
 #include "report/frame/cases.h"
+#include "report/reproducer/simplify.h"
 
 namespace twinray::reproducer {
 namespace {
@@ -84,31 +83,44 @@ void put_triangles(std::ostream& out, const Scene& scene) {
     }
 }
 
-// The driver's own answers: nothing is refined, and triangles and instances are built in the given order.
-class DriverTest {
-  public:
-    DriverTest(frame::Devices& devices, frame::Backend backend)
-        : accel_(devices.context(backend), BuildOrder::input, {.level = Level::watertight}) {}
-
-    Hit answer(const Scene& scene, const Ray& ray) {
-        for (const AccelHandle handle : accel_.handles()) accel_.erase(handle);
-        push_scene(accel_, scene);
-        return accel_.closest_hits(std::span(&ray, 1), {.level = Level::watertight}).front();
-    }
-
-  private:
-    HwTlas accel_;
-};
-
-// Asks an accelerator as users have it whether the driver reorders this scene's triangles.
-bool reorders(frame::Devices& devices, frame::Backend backend) { return HwTlas(devices.context(backend)).reorders(); }
-
 // Compares by the intervals that a program without twinray uses. The answer is a fault, so a miss is not allowed.
 bool is_allowed(const ReferenceScene& reference, const Ray& ray, const Hit& answer) {
     if (!answer.hit || answer.instance_index >= reference.instance_count()) return false;
     if (!reference.geometry(answer.instance_index).find(answer.primitive_index)) return false;
     const auto right = right_hit(reference, ray, answer.instance_index, answer.primitive_index);
     return right && right->allows(answer);
+}
+
+namespace fs = std::filesystem;
+
+void write_bytes(const fs::path& file, const void* bytes, std::size_t size) {
+    std::ofstream out(file, std::ios::binary);
+    out.write(static_cast<const char*>(bytes), static_cast<std::streamsize>(size));
+    if (!out.flush()) fail("'", file.string(), "' cannot be written");
+}
+
+void write_text(const fs::path& file, const std::string& words) { write_bytes(file, words.data(), words.size()); }
+
+frame::Backend backend_of(const replay::Replay& replay) {
+    for (const frame::Backend backend : frame::all_backends)
+        if (frame::name_of(backend) == replay.backend && !frame::is_ours(backend)) return backend;
+    fail("a fault of '", replay.backend, "' is not a fault of the driver; reproducers only show faults of drivers");
+}
+
+// Returns the replay of the reduced fault on the current device.
+replay::Replay replay_of(const Reproduction& found, const replay::Replay& original, const DeviceProperties& device) {
+    const ReferenceScene reference = ReferenceScene::of(found.scene);
+    replay::Replay replay = original;
+    replay.scene = "scene.glb";
+    replay.scene_hash = replay::hash_of(found.scene);
+    replay.level = name_of(Level::watertight);
+    replay.kind = name_of(found.kind);
+    replay.ray = found.ray;
+    replay.answer = found.answer;
+    replay.reference = reference.closest_hit(found.ray);
+    replay.device = device.name;
+    replay.driver = device.driver;
+    return replay;
 }
 
 }  // namespace
@@ -158,13 +170,20 @@ std::string page_text(const Reproduction& found, const replay::Replay& replay) {
 Reproduction reproduce(frame::Devices& devices, frame::Backend backend, const Scene& scene, const Ray& ray,
                        double seconds) {
     const Stopwatch begin;
-    DriverTest driver(devices, backend);
+    // The driver's own answers: nothing is refined, and triangles and instances are built in the given order.
+    HwTlas accel(devices.context(backend), BuildOrder::input, {.level = Level::watertight});
+    const auto answer_to = [&](const Ray& asked, const Scene& where) {
+        for (const AccelHandle handle : accel.handles()) accel.erase(handle);
+        push_scene(accel, where);
+        return accel.closest_hits(std::span(&asked, 1), {.level = Level::watertight}).front();
+    };
     Reproduction found;
     found.backend = backend;
-    FaultCase fault = case_of(scene, ray, reorders(devices, backend));
+    // An accelerator as users have it tells whether the driver reorders this scene's triangles.
+    FaultCase fault = case_of(scene, ray, HwTlas(devices.context(backend)).reorders());
     found.triangles_before = fault.triangles.size();
     const Scene whole = scene_of(fault);
-    found.answer = driver.answer(whole, ray);
+    found.answer = answer_to(ray, whole);
     found.kind = class_of(ReferenceScene::of(whole), ray, found.answer);
     if (!is_fault_of_hardware(found.kind))
         fail("the driver's own answer is ", name_of(found.kind),
@@ -177,7 +196,7 @@ Reproduction reproduce(frame::Devices& devices, frame::Backend backend, const Sc
             return false;
         }
         const Scene small = scene_of(smaller);
-        const Hit answer = driver.answer(small, smaller.ray);
+        const Hit answer = answer_to(smaller.ray, small);
         const ReferenceScene reference = ReferenceScene::of(small);
         return class_of(reference, smaller.ray, answer) == found.kind && !is_allowed(reference, smaller.ray, answer);
     };
@@ -189,9 +208,60 @@ Reproduction reproduce(frame::Devices& devices, frame::Backend backend, const Sc
 
     found.scene = scene_of(fault);
     found.ray = fault.ray;
-    found.answer = driver.answer(found.scene, found.ray);
+    found.answer = answer_to(found.ray, found.scene);
     found.right = right_answers(ReferenceScene::of(found.scene), found.ray);
     return found;
+}
+
+std::string write_reproducer(const fs::path& folder, const Scene& scene, const replay::Replay& replay,
+                             frame::Devices& devices, double seconds) {
+    const frame::Backend backend = backend_of(replay);
+    if (const std::string reason = devices.why_not({backend, Level::watertight}); !reason.empty()) fail(reason);
+    const Reproduction found = reproduce(devices, backend, scene, replay.ray, seconds);
+    const replay::Replay reduced = replay_of(found, replay, devices.context(backend).properties());
+    fs::create_directories(folder);
+    replay::write_glb(folder / "scene.glb", found.scene);
+    replay::write(folder / "replay.json", reduced);
+    write_text(folder / "report.md", page_text(found, reduced));
+    const std::string found_on =
+        text(reduced.device, ", ", reduced.driver, ", which answered ", words_of(found.answer));
+    write_text(folder / "reproducer.c",
+               program_text({found.scene, found.ray, found.right, backend == frame::Backend::pipeline, found_on}));
+    for (const ProgramShader& shader : program_shaders())
+        write_bytes(folder / text(shader.name, ".spv"), shader.spirv.data(), shader.spirv.size_bytes());
+    const std::size_t triangles = count_triangles(found.scene);
+    return text(name_of(found.kind), " in ", triangles, triangles == 1 ? " triangle" : " triangles", ", of ",
+                found.triangles_before, ": ", (folder / "reproducer.c").string());
+}
+
+std::string write_reproducer(const fs::path& folder, const fs::path& replay_file, frame::Devices& devices,
+                             double seconds) {
+    const replay::Replay replay = replay::read(replay_file);
+    const Scene scene = replay::load_traced_scene(replay_file, replay);
+    try {
+        return write_reproducer(folder, scene, replay, devices, seconds);
+    } catch (const std::exception& error) {
+        fail("replay '", replay_file.string(), "': ", error.what());
+    }
+}
+
+std::size_t write_reproducers(const fs::path& folder, std::span<const fs::path> replay_files, frame::Devices& devices,
+                              std::ostream& out, double seconds) {
+    const Stopwatch begin;
+    std::set<std::string> done;
+    for (const fs::path& file : replay_files) {
+        const double left = seconds - begin.seconds();
+        if (left <= 0) break;
+        try {
+            const replay::Replay replay = replay::read(file);
+            if (replay.backend == frame::name_of(frame::Backend::software) || done.contains(replay.kind)) continue;
+            out << "  " << write_reproducer(folder / replay.kind, file, devices, left) << '\n';
+            done.insert(replay.kind);
+        } catch (const Error& error) {
+            out << "  no reproducer: " << error.what() << '\n';
+        }
+    }
+    return done.size();
 }
 
 }  // namespace twinray::reproducer

@@ -2,16 +2,13 @@
 #include "report/reproducer/simplify.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
-#include <limits>
 #include <map>
 #include <numeric>
 #include <set>
-#include <span>
-#include <utility>
 
 #include "engine/accel/geometry.h"
+#include "validation/reference/geometry64.h"
 
 namespace twinray::reproducer {
 namespace {
@@ -66,6 +63,13 @@ FaultCase with_instances(const FaultCase& fault, const Indices& kept) {
     return fewer;
 }
 
+bool leave_out(FaultCase& fault, std::size_t count, FaultCase with(const FaultCase&, const Indices&),
+               const CaseTest& shows_fault) {
+    const std::size_t before = fault.triangles.size();
+    fault = with(fault, ddmin(count, [&](const Indices& kept) { return shows_fault(with(fault, kept)); }));
+    return fault.triangles.size() < before;
+}
+
 bool is_point_or_line(const CaseTriangle& t) {
     return t.vertices[0] == t.vertices[1] || t.vertices[1] == t.vertices[2] || t.vertices[2] == t.vertices[0];
 }
@@ -86,17 +90,16 @@ std::vector<Edge> edges_of(const FaultCase& fault) {
 }
 
 // A vertex of an instance, as a key.
-using Vertex = std::pair<std::size_t, std::array<float, 3>>;
-Vertex key_of(std::size_t instance, const vec3& p) { return {instance, {p.x, p.y, p.z}}; }
+using Vertex = std::pair<std::size_t, VertexKey>;
 
 // Moves each edge's first end to its second; triangles that become lines are removed.
 FaultCase with_joined(const FaultCase& fault, std::span<const Edge> edges) {
     std::map<Vertex, vec3> moves;
-    for (const Edge& edge : edges) moves.try_emplace(key_of(edge.instance, edge.from), edge.to);
+    for (const Edge& edge : edges) moves.try_emplace({edge.instance, key_of(edge.from)}, edge.to);
     FaultCase joined = fault;
     for (CaseTriangle& triangle : joined.triangles)
         for (vec3& vertex : triangle.vertices)
-            if (const auto move = moves.find(key_of(triangle.instance, vertex)); move != moves.end())
+            if (const auto move = moves.find({triangle.instance, key_of(vertex)}); move != moves.end())
                 vertex = move->second;
     std::erase_if(joined.triangles, is_point_or_line);
     return joined;
@@ -107,7 +110,7 @@ std::vector<Edge> separate_edges(const FaultCase& fault) {
     std::vector<Edge> separate;
     std::set<Vertex> used;
     for (const Edge& edge : edges_of(fault)) {
-        const Vertex from = key_of(edge.instance, edge.from), to = key_of(edge.instance, edge.to);
+        const Vertex from{edge.instance, key_of(edge.from)}, to{edge.instance, key_of(edge.to)};
         if (used.contains(from) || used.contains(to)) continue;
         used.insert({from, to});
         separate.push_back(edge);
@@ -244,6 +247,32 @@ bool move_to_origin(FaultCase& fault, const CaseTest& shows_fault) {
     return false;
 }
 
+bool bake_transforms(FaultCase& fault, const CaseTest& shows_fault) {
+    const auto bake = [&](const auto& is_wanted) {
+        FaultCase baked = fault;
+        bool is_other = false;
+        for (CaseTriangle& triangle : baked.triangles)
+            if (const Transform& transform = fault.transforms[triangle.instance];
+                transform != Transform{} && is_wanted(triangle.instance)) {
+                for (vec3& vertex : triangle.vertices) vertex = transform_point(transform, vertex);
+                is_other = true;
+            }
+        for (std::size_t i = 0; i < baked.transforms.size(); ++i)
+            if (is_wanted(i)) baked.transforms[i] = Transform{};
+        return is_other && accept(fault, std::move(baked), shows_fault);
+    };
+    bool has_changed = bake([](std::size_t) { return true; });
+    for (std::size_t i = 0; !has_changed && i < fault.transforms.size(); ++i)
+        has_changed = bake([&](std::size_t instance) { return instance == i; });
+    return join_instances(fault, shows_fault) || has_changed;
+}
+
+bool shorten_numbers(FaultCase& fault, const CaseTest& shows_fault) {
+    bool has_changed = move_to_origin(fault, shows_fault);
+    has_changed |= shorten_ray(fault, shows_fault);
+    return shorten_coordinates(fault, shows_fault) || has_changed;
+}
+
 }  // namespace
 
 Indices ddmin(std::size_t count, const ShowsFault& shows_fault) {
@@ -291,38 +320,8 @@ std::vector<float> shorter_numbers(float value) {
     return candidates;
 }
 
-bool leave_out_instances(FaultCase& fault, const CaseTest& shows_fault) {
-    const std::size_t before = fault.triangles.size();
-    fault = with_instances(fault, ddmin(fault.transforms.size(),
-                                        [&](const Indices& kept) { return shows_fault(with_instances(fault, kept)); }));
-    return fault.triangles.size() < before;
-}
-
 bool leave_out_triangles(FaultCase& fault, const CaseTest& shows_fault) {
-    const std::size_t before = fault.triangles.size();
-    fault = with_triangles(
-        fault, ddmin(before, [&](const Indices& kept) { return shows_fault(with_triangles(fault, kept)); }));
-    return fault.triangles.size() < before;
-}
-
-bool bake_transforms(FaultCase& fault, const CaseTest& shows_fault) {
-    const auto bake = [&](const auto& is_wanted) {
-        FaultCase baked = fault;
-        bool is_other = false;
-        for (CaseTriangle& triangle : baked.triangles)
-            if (const Transform& transform = fault.transforms[triangle.instance];
-                transform != Transform{} && is_wanted(triangle.instance)) {
-                for (vec3& vertex : triangle.vertices) vertex = transform_point(transform, vertex);
-                is_other = true;
-            }
-        for (std::size_t i = 0; i < baked.transforms.size(); ++i)
-            if (is_wanted(i)) baked.transforms[i] = Transform{};
-        return is_other && accept(fault, std::move(baked), shows_fault);
-    };
-    bool has_changed = bake([](std::size_t) { return true; });
-    for (std::size_t i = 0; !has_changed && i < fault.transforms.size(); ++i)
-        has_changed = bake([&](std::size_t instance) { return instance == i; });
-    return join_instances(fault, shows_fault) || has_changed;
+    return leave_out(fault, fault.triangles.size(), with_triangles, shows_fault);
 }
 
 bool join_vertices(FaultCase& fault, const CaseTest& shows_fault) {
@@ -339,14 +338,8 @@ bool join_vertices(FaultCase& fault, const CaseTest& shows_fault) {
     return has_changed;
 }
 
-bool shorten_numbers(FaultCase& fault, const CaseTest& shows_fault) {
-    bool has_changed = move_to_origin(fault, shows_fault);
-    has_changed |= shorten_ray(fault, shows_fault);
-    return shorten_coordinates(fault, shows_fault) || has_changed;
-}
-
 FaultCase simplified(FaultCase fault, const CaseTest& shows_fault) {
-    leave_out_instances(fault, shows_fault);
+    leave_out(fault, fault.transforms.size(), with_instances, shows_fault);
     while (fault.triangles.size() > many && join_many(fault, shows_fault)) {}
     leave_out_triangles(fault, shows_fault);
     // Each step may open the way for the others.

@@ -1,19 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Self-intersection and arithmetic.
-#include <algorithm>
-#include <cmath>
-#include <random>
-
-#include <twinray/geometry.h>
-#include <twinray/scene.h>
-#include "engine/core/error.h"
-#include "report/suite/case_run.h"
-#include "report/suite/cpu_reference.h"
-#include "report/suite/demands.h"
-#include "validation/cpu_reference/flush_denormals.h"
-#include "report/suite/scenes.h"
 #include "report/suite/sections.h"
-#include "validation/reference/aimed_rays.h"
+
+#include "validation/cpu_reference/flush_denormals.h"
 #include "validation/reference/float_probe.h"
 
 namespace twinray::suite {
@@ -77,12 +66,7 @@ std::vector<Transform> uneven_transforms() {
             Transform::translation({-3, 0.2f, 1}) * Transform::scaling({2, 0.01f, -1})};
 }
 
-struct NamedScene {
-    const char* name;
-    Scene scene;
-};
-
-std::vector<NamedScene> scenes_for_both() {
+std::vector<std::pair<const char*, Scene>> scenes_for_both() {
     return {{"soup", instances_of(make_soup(2000, 5, 0.2f))},
             {"sphere", instances_of(make_icosphere(5))},
             {"height field", instances_of(make_grid(64, 64, 0.2f, 3))},

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/replay/replay.h"
-#include "report/replay/scene_file.h"
 #include "engine/core/error.h"
+#include "report/replay/replay.h"
+#include "validation/reference/float_probe.h"
 
 namespace twinray::suite {
 namespace {
@@ -49,6 +49,14 @@ std::string variant_of(const AccelOptions& trees) {
     return joined(parts);
 }
 
+std::string not_defined(const Hit& hit) {
+    if (!hit.hit) return "";
+    const bool is_finite = std::isfinite(hit.t) && std::isfinite(hit.u) && std::isfinite(hit.v);
+    return is_finite && hit.t > 0 ? "" : text("t = ", hit.t, ", u = ", hit.u, ", v = ", hit.v);
+}
+
+constexpr Backend query_backend = Backend::software;  // its context answers
+
 }  // namespace
 
 std::size_t CaseRun::amount(std::size_t least, std::size_t full) {
@@ -76,7 +84,8 @@ void CaseRun::add(Record record) {
 }
 
 void CaseRun::check_claim(Subject subject) const {
-    if (!is_about(row_.id, subject)) fail("case ", row_.id, " asks what report/suite/claims.cpp does not say of it");
+    if (!is_about(row_.id, subject))
+        fail("case ", row_.id, " asks what the claims of report/suite/suite.cpp do not say of it");
 }
 
 std::vector<Configuration> CaseRun::configurations() {
@@ -101,11 +110,6 @@ std::vector<Configuration> CaseRun::one_configuration_each() {
         if (configuration.level != Level::fast && (chosen.empty() || chosen.back().backend != configuration.backend))
             chosen.push_back(configuration);
     return chosen;
-}
-
-std::vector<Configuration> CaseRun::control_configuration() {
-    if (std::ranges::count(settings_.backends, Backend::software) == 0) return {};
-    return {Configuration{Backend::software, Level::watertight}};
 }
 
 std::string CaseRun::write_replay(const World& world, std::span<const Ray> rays, const Traced& traced,
@@ -140,14 +144,18 @@ Record CaseRun::checked_record(const Configuration& configuration, const CheckRe
 
 Measured CaseRun::measure(const World& world, std::span<const Ray> rays, const Measurement& measurement) {
     if (!measurement.control) check_claim(Subject::hits);
-    const std::vector<Configuration> able = measurement.control ? control_configuration() : configurations();
+    std::vector<Configuration> able;
+    if (!measurement.control)
+        able = configurations();
+    else if (std::ranges::count(settings_.backends, Backend::software) > 0)
+        able = {{Backend::software, Level::watertight}};
     if (able.empty() || rays.empty()) return {};
     const std::size_t reps = !settings_.takes_times ? 0
                              : measurement.reps     ? measurement.reps
                                                     : amount(least_reps, full_reps);
     std::vector<Traced> traces =
-        trace(devices_, able, world,
-              {.rays = rays, .reps = reps, .control = measurement.control ? &*measurement.control : nullptr});
+        suite::trace(devices_, able, world,
+                     {.rays = rays, .reps = reps, .control = measurement.control ? &*measurement.control : nullptr});
     std::vector<ReferenceHit> references = references_of(world.reference, rays);
     for (const Traced& traced : traces) {
         const CheckResult checked = check(world.reference, rays, traced.hits, traced.configuration.backend);
@@ -171,10 +179,7 @@ void CaseRun::count_crossings(const World& world, std::span<const Ray> rays, con
                               const Measurement& measurement) {
     check_claim(Subject::crossings);
     for (const Configuration& configuration : crossing_configurations()) {
-        AbstractAccel& accel = devices_.empty_accel(configuration);
-        world.fill(accel);
-        accel.sync();
-        const std::vector<uint> counts = devices_.crossing_counter(configuration).count(accel, rays);
+        const std::vector<uint> counts = crossings_of(devices_, configuration, world, rays);
         Record result = record(configuration);
         result.params = measurement.params;
         result.params.emplace("counted", "crossings");
@@ -205,11 +210,15 @@ void CaseRun::expect(const Configuration& configuration, const Outcome& outcome)
     result.results = outcome.results;
     result.reference = outcome.reference;
     set_faults(result, outcome.faults, outcome.n);
+    result.error = outcome.error;
     result.time = outcome.time;
+    const std::string& excuse = is_ours(configuration.backend) || outcome.excuse_of_driver.empty()
+                                    ? outcome.only_measured
+                                    : outcome.excuse_of_driver;
     if (!outcome.control.empty()) {
         set_control(result, outcome.control);
-    } else if (!outcome.only_measured.empty()) {
-        result.criterion = "none: " + outcome.only_measured;
+    } else if (!excuse.empty()) {
+        result.criterion = "none: " + excuse;
     } else {
         const std::string of_backend = is_ours(configuration.backend) ? "twinray" : "driver";
         frame::decide(result, outcome.fault_of.empty() ? of_backend : outcome.fault_of);
@@ -224,7 +233,9 @@ void CaseRun::add_not_run(const std::string& reason, const Configuration* config
     add(result);
 }
 
-void CaseRun::add_computed(Record record) {
+void CaseRun::add_computed(Record record, const std::string& what) {
+    if (!record.pass) record.pass = record.faults == 0;
+    if (!*record.pass && !what.empty()) record.reason = what;
     const bool is_of_hardware =
         record.backend == name_of(Backend::ray_query) || record.backend == name_of(Backend::pipeline);
     const auto is_right_by_software = [&](const Record& other) {
@@ -240,6 +251,129 @@ void CaseRun::add_failure(const std::string& what) {
     Record result = blank();
     set_failure(result, what);
     add(result);
+}
+
+std::string why_bits_may_differ(CaseRun& run, const Configuration& configuration) {
+    const double error = probe_floats(run.devices().context(configuration.backend)).quotient_ulp;
+    return error <= 0.5 ? "" : "this device's division is not correctly rounded";
+}
+
+CaseRun::Outcome ask_each(const Traced& traced, std::span<const Ray> rays, CaseRun::Outcome outcome,
+                          const std::function<std::string(std::size_t, const Hit&)>& complaint) {
+    outcome.n = rays.size();
+    if (!is_robust(traced.configuration) && outcome.only_measured.empty())
+        outcome.only_measured = "fast promises nothing at edges";
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const std::string wrong = complaint(i, traced.hits[i]);
+        if (!wrong.empty() && outcome.faults++ == 0) outcome.what = text(wrong, ": ", hexadecimal(rays[i]));
+    }
+    return outcome;
+}
+
+void expect_each(CaseRun& run, std::span<const Traced> traces, std::span<const Ray> rays,
+                 const CaseRun::Outcome& outcome,
+                 const std::function<std::string(std::size_t, std::size_t, const Hit&)>& complaint) {
+    for (std::size_t k = 0; k < traces.size(); ++k)
+        run.expect(traces[k].configuration, ask_each(traces[k], rays, outcome, [&](std::size_t i, const Hit& hit) {
+                       return complaint(k, i, hit);
+                   }));
+}
+
+void expect_same_bits(CaseRun& run, const Configuration& configuration, std::span<const Ray> rays,
+                      std::span<const Hit> hits, std::span<const Hit> expected, CaseRun::Outcome outcome) {
+    outcome.n = rays.size();
+    outcome.reference = "invariance";
+    std::string what;
+    for (std::size_t i = 0; i < rays.size(); ++i)
+        if (!same_bits(hits[i], expected[i]) && outcome.faults++ == 0) what = outcome.what + hexadecimal(rays[i]);
+    outcome.what = what;
+    run.expect(configuration, outcome);
+}
+
+void expect_refined_t(CaseRun& run, const Measured& measured, std::span<const Ray> rays, double ulps, Values params) {
+    params.insert_or_assign("measured", "refined t");
+    for (const Traced& traced : measured.traces) {
+        if (traced.configuration.level < Level::refined) continue;
+        double largest = 0;
+        std::size_t compared = 0;
+        CaseRun::Outcome outcome{.params = params, .reference = "f64", .fault_of = "twinray"};
+        outcome = ask_each(traced, rays, outcome, [&](std::size_t i, const Hit& hit) -> std::string {
+            const std::optional<double> error = t_ulps(measured.references[i], hit);
+            if (!error) return "";  // another triangle, or none: checked elsewhere
+            ++compared;
+            largest = std::max(largest, *error);
+            return *error <= ulps ? "" : text("t is off by ", *error, " units in the last place");
+        });
+        outcome.n = compared;
+        if (compared == 0) {  // measure has reported this for each ray
+            outcome.n = outcome.faults = rays.size();
+            outcome.what = "no ray hits the triangle that the reference names";
+            if (!is_ours(traced.configuration.backend)) outcome.only_measured = outcome.what;
+        }
+        if (compared > 0) outcome.results = {{"t_ulp_max", largest}};
+        run.expect(traced.configuration, outcome);
+    }
+}
+
+void expect_defined(CaseRun& run, const World& world, std::span<const Ray> rays, const Values& params) {
+    const std::vector<ReferenceHit> references = references_of(world.reference, rays);
+    for (const Configuration& configuration : run.configurations()) {
+        if (!is_robust(configuration)) continue;
+        CaseRun::Outcome outcome{.params = params, .n = rays.size()};
+        try {
+            const std::vector<Traced> traces = trace(run.devices(), std::span(&configuration, 1), world, {rays, 0});
+            std::size_t agree = 0;
+            outcome = ask_each(traces.front(), rays, outcome, [&](std::size_t i, const Hit& hit) {
+                if ((hit.hit != 0) == references[i].hit) ++agree;
+                return not_defined(hit);
+            });
+            outcome.results = {{"as_the_reference", static_cast<double>(agree) / static_cast<double>(rays.size())}};
+        } catch (const Error& error) {
+            outcome.results = {{"error", error.what()}};
+        }
+        run.expect(configuration, outcome);
+    }
+}
+
+Context& query_context(CaseRun& run) {
+    Context& context = run.devices().context(query_backend);
+    if (!context.properties().shader_float64) throw NotRun{"needs float64 in shaders (shaderFloat64)"};
+    return context;
+}
+
+Record query_record(CaseRun& run, const std::string& reference, const std::string& variant) {
+    Record record = run.record({query_backend, Level::watertight});
+    record.backend = record.level = "";
+    record.variant = variant;
+    record.reference = reference;
+    return record;
+}
+
+Record cpu_record(CaseRun& run, const std::string& reference, const std::string& variant) {
+    Record record = query_record(run, reference, variant);
+    record.backend = "cpu";
+    return record;
+}
+
+void add_checked(CaseRun& run, Record record, std::uint64_t faults, const std::string& what) {
+    set_faults(record, faults, record.n);
+    add_judged(run, std::move(record), what);
+}
+
+void add_judged(CaseRun& run, Record record, const std::string& what) {
+    frame::decide(record, "twinray");
+    if (record.faults > 0) record.reason = what;
+    run.add(std::move(record));
+}
+
+std::vector<double> ns_each(int reps, std::size_t count, const std::function<void()>& work) {
+    std::vector<double> times;
+    for (int rep = 0; rep < reps; ++rep) {
+        const Stopwatch start;
+        work();
+        times.push_back(start.seconds() * 1e9 / static_cast<double>(count));
+    }
+    return times;
 }
 
 }  // namespace twinray::suite

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// A case of the suite while it runs.
+// A case of the suite while it runs, and what cases demand and record.
 #pragma once
 
 #include "report/suite/checks.h"
-#include "report/suite/claims.h"
 #include "report/suite/tracing.h"
 
 namespace twinray::suite {
@@ -47,6 +46,10 @@ class CaseRun {
     // Returns the first level of each backend, watertight or above, for results that do not depend on the level.
     std::vector<Configuration> one_configuration_each();
 
+    // Traces on all configurations, once and untimed.
+    std::vector<Traced> trace(const World& world, std::span<const Ray> rays, Query query = Query::closest) {
+        return suite::trace(devices_, configurations(), world, {.rays = rays, .reps = 0, .query = query});
+    }
     // Traces the closest hits on all configurations, checks them by the reference and records the results. Ours pass
     // with 0 SW_LEAK, SW_FALSE, T_ERR and 0 hits of invalid rays; a fault of hardware is the driver's.
     Measured measure(const World& world, std::span<const Ray> rays, const Measurement& measurement = {});
@@ -66,7 +69,8 @@ class CaseRun {
                      const Measurement& measurement = {});
 
     // A result without a reference: `faults` of `n` things were not as specified. `what` says which, and is recorded if
-    // there are any. fault_of: see Record; "" = by the backend. only_measured: why nothing is demanded; "" = it is.
+    // there are any. fault_of: see Record; "" = by the backend. only_measured, excuse_of_driver: why nothing is
+    // demanded of any accelerator, or of hardware; "" = it is.
     struct Outcome {
         Values params = {};
         Values results = {};
@@ -75,8 +79,10 @@ class CaseRun {
         std::string what = {};
         std::string reference = "specification";
         std::string fault_of = {};
+        std::optional<ErrorFigures> error = {};
         std::optional<TimeFigures> time = {};
         std::string only_measured = {};
+        std::string excuse_of_driver = {};
         std::string control = {};
     };
     void expect(const Configuration& configuration, const Outcome& outcome);
@@ -85,8 +91,9 @@ class CaseRun {
     Record record(const Configuration& configuration) const;
     void add(Record record);
     // Adds the same for results computed from an accelerator's answers: a failure is a fault of twinray, or the
-    // driver's if SwTlas passed with the same settings.
-    void add_computed(Record record);
+    // driver's if SwTlas passed with the same settings. Without a result yet, it is that of its faults, which `what`
+    // describes.
+    void add_computed(Record record, const std::string& what = {});
     // Returns all records so far, including those of the cases before this one.
     std::span<const Record> earlier() const { return recorder_.records(); }
     void add_not_run(const std::string& reason, const Configuration* configuration = nullptr);
@@ -100,8 +107,6 @@ class CaseRun {
     // Writes the ray of checked.first_fault, if there is one, and returns the file as Record::replay expects it.
     std::string write_replay(const World& world, std::span<const Ray> rays, const Traced& traced,
                              const CheckResult& checked) const;
-    std::vector<Configuration> control_configuration();  // SwTlas at watertight if it was asked for
-
     // Throws Error if the table of claims does not say that the case asks this.
     void check_claim(Subject subject) const;
 
@@ -113,5 +118,47 @@ class CaseRun {
     bool depends_on_effort_ = false;
     MachineLoad load_;
 };
+
+// ---- Demands on answers, beyond their classes.
+
+// Counts the rays with something wrong, as `complaint` says of ray i and its hit ("" = nothing); reports the first one
+// with its ray. Demands nothing of Level::fast. The rest is that of `outcome`.
+CaseRun::Outcome ask_each(const Traced& traced, std::span<const Ray> rays, CaseRun::Outcome outcome,
+                          const std::function<std::string(std::size_t i, const Hit& hit)>& complaint);
+// Expects it of all traces; `complaint` also gets the number of the trace.
+void expect_each(CaseRun& run, std::span<const Traced> traces, std::span<const Ray> rays,
+                 const CaseRun::Outcome& outcome,
+                 const std::function<std::string(std::size_t trace, std::size_t i, const Hit& hit)>& complaint);
+// Expects hits to be the same to the bit; `what` begins the sentence about the first ray of other ones.
+void expect_same_bits(CaseRun& run, const Configuration& configuration, std::span<const Ray> rays,
+                      std::span<const Hit> hits, std::span<const Hit> expected, CaseRun::Outcome outcome);
+
+// Returns why SwTlas's hits may differ in their last bits from those of other devices, or "" if they may not.
+std::string why_bits_may_differ(CaseRun& run, const Configuration& configuration);
+
+// Demands from Level::refined on that t of every hit that names the reference's primitive is within this many units in
+// its last place. A wrong result is a fault of twinray, also on hardware, because the library computes it.
+void expect_refined_t(CaseRun& run, const Measured& measured, std::span<const Ray> rays, double ulps, Values params);
+
+// Demands an Error or finite answers if coordinates, directions or distances are not normal floats, which devices may
+// flush to zero. Measures how many answers hit and miss as the reference says.
+void expect_defined(CaseRun& run, const World& world, std::span<const Ray> rays, const Values& params);
+
+// ---- Cases in which no accelerator takes part: the GPU answers, and the host where the GPU is in doubt.
+
+// Returns the device that answers. Throws NotRun if it has no float64.
+Context& query_context(CaseRun& run);
+
+// Returns a record without a backend and a level.
+Record query_record(CaseRun& run, const std::string& reference, const std::string& variant = {});
+// Returns the same for results of the host.
+Record cpu_record(CaseRun& run, const std::string& reference, const std::string& variant = {});
+// Adds the record with its result: any fault is twinray's, and `what` describes it.
+void add_checked(CaseRun& run, Record record, std::uint64_t faults, const std::string& what);
+// Does the same for a record whose faults are set; the bound of their rate stays as it is.
+void add_judged(CaseRun& run, Record record, const std::string& what);
+
+// Returns the wall time of each repetition, in nanoseconds per thing of `count`.
+std::vector<double> ns_each(int reps, std::size_t count, const std::function<void()>& work);
 
 }  // namespace twinray::suite

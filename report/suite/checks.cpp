@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <utility>
 
 #include "engine/core/parallel.h"
+#include "validation/cpu_reference/flush_denormals.h"
 
 namespace twinray::suite {
 namespace {
@@ -38,6 +40,15 @@ std::optional<double> t_of_plane(const ReferenceScene& reference, const Ray& ray
     const Vector& nearest = *std::ranges::min_element(vertices, {}, [](const Vector& v) { return dot(v, v); });
     const long double t = dot(normal, nearest) / dot(normal, Vector(ray.direction));
     return std::isfinite(t) ? std::optional(static_cast<double>(t)) : std::nullopt;
+}
+
+bool is_same_decision(const Hit& a, const Hit& b) {
+    return a.hit == b.hit && a.instance_index == b.instance_index && a.primitive_index == b.primitive_index;
+}
+
+// Returns the steps from one float to the other; both are positive or 0.
+double ulps_between(float a, float b) {
+    return std::abs(double(std::bit_cast<std::int32_t>(a)) - double(std::bit_cast<std::int32_t>(b)));
 }
 
 }  // namespace
@@ -73,6 +84,8 @@ std::optional<ErrorFigures> t_error(std::span<const ReferenceHit> references, st
     return error_figures("t_ulp", std::move(errors), 0.5);
 }
 
+bool same_bits(const Hit& a, const Hit& b) { return std::memcmp(&a, &b, sizeof(Hit)) == 0; }
+
 CheckResult& CheckResult::operator+=(const CheckResult& other) {
     classes += other.classes;
     faults += other.faults;
@@ -102,6 +115,41 @@ void set_check_result(Record& record, const CheckResult& checked) {
     for (std::size_t kind = 0; kind < hit_class_count; ++kind)
         if (const std::uint64_t count = checked.classes.counts[kind])
             record.counts[std::string(name_of(static_cast<HitClass>(kind)))] = count;
+}
+
+std::vector<Hit> trace_cpu_reference(const reference::Scene& on_cpu, std::span<const Ray> rays, Level level,
+                                     Denormals denormals) {
+    std::vector<Hit> hits(rays.size());
+    parallel_for(rays.size(), [&](std::size_t begin, std::size_t end) {
+        std::optional<FlushDenormals> flush;
+        if (denormals == Denormals::flushed) flush.emplace();
+        for (std::size_t i = begin; i < end; ++i)
+            hits[i] = on_cpu.trace(rays[i], QUERY_CLOSEST, 0xff, static_cast<uint>(level));
+    });
+    return hits;
+}
+
+Difference& Difference::operator+=(const Difference& other) {
+    decisions += other.decisions;
+    bits += other.bits;
+    worst_ulp = std::max(worst_ulp, other.worst_ulp);
+    if (example.empty()) example = other.example;
+    return *this;
+}
+
+Difference difference(std::span<const Ray> rays, std::span<const Hit> hits, std::span<const Hit> on_cpu) {
+    Difference result;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        if (same_bits(hits[i], on_cpu[i])) continue;
+        if (result.total() == 0) result.example = hexadecimal(rays[i]);
+        if (!is_same_decision(hits[i], on_cpu[i])) {
+            ++result.decisions;
+            continue;
+        }
+        ++result.bits;
+        result.worst_ulp = std::max(result.worst_ulp, ulps_between(hits[i].t, on_cpu[i].t));
+    }
+    return result;
 }
 
 }  // namespace twinray::suite

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "report/suite/suite.h"
+#include "validation/cpu_reference/reference_scene.h"
 #include "validation/reference/classify.h"
 
 namespace twinray::suite {
@@ -21,6 +22,8 @@ ErrorFigures error_figures(const std::string& metric, std::vector<double> errors
 // Returns the figures of t_ulps, or nothing without any. The floor is the half unit of rounding t itself.
 std::optional<ErrorFigures> t_error(std::span<const ReferenceHit> references, std::span<const Hit> hits);
 
+bool same_bits(const Hit& a, const Hit& b);
+
 // The quality of one accelerator's answers.
 struct CheckResult {
     HitClassCounts classes;
@@ -35,5 +38,27 @@ CheckResult check(const ReferenceScene& reference, std::span<const Ray> rays, st
 
 // Writes counts, faults, bound and example to `record`.
 void set_check_result(Record& record, const CheckResult& checked);
+
+// ---- SwTlas's own code run on the CPU, to compare a device with it bit for bit.
+
+using reference::cpu_reference_of;
+
+enum class Denormals : std::uint8_t { kept, flushed };  // flushed needs FlushDenormals::is_able()
+
+// Returns the closest hits of all rays, on all cores.
+std::vector<Hit> trace_cpu_reference(const reference::Scene& on_cpu, std::span<const Ray> rays, Level level,
+                                     Denormals denormals = Denormals::kept);
+
+// How a device's hits differ from the CPU reference's.
+struct Difference {
+    std::uint64_t decisions = 0;  // hit or miss, instance, primitive
+    std::uint64_t bits = 0;       // the same decision, but t, u, v or another field is not the same to the last bit
+    double worst_ulp = 0;         // of t, if the decision is the same
+    std::string example;          // the first ray that differs, see hexadecimal()
+
+    Difference& operator+=(const Difference& other);
+    std::uint64_t total() const { return decisions + bits; }
+};
+Difference difference(std::span<const Ray> rays, std::span<const Hit> hits, std::span<const Hit> on_cpu);
 
 }  // namespace twinray::suite

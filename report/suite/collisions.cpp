@@ -1,20 +1,132 @@
 // SPDX-License-Identifier: MIT
-// Triangles and instances that touch: their classes are known, or computed by exact arithmetic.
+// Triangles and instances that touch: their classes are known, or computed by exact arithmetic. The GPU answers, and
+// the host where the GPU is in doubt. The accelerators only provide the boxes of instances. Meshes are in contacts.cpp.
+#include "report/suite/sections.h"
+
 #include <twinray/queries.h>
-
-#include <algorithm>
-#include <cmath>
-
-#include "report/suite/contacts.h"
-#include "report/suite/scenes.h"
 #include "engine/collide/exact_class.h"
-#include "engine/core/error.h"
-#include <twinray/geometry.h>
 
 namespace twinray::suite {
 namespace {
 
 using enum PairClass;
+
+// Returns the sign of det(a - d, b - d, c - d).
+template <class Real>
+int plain_volume_sign(const dvec3& a, const dvec3& b, const dvec3& c, const dvec3& d) {
+    using Vector = Vec<3, Real>;
+    const Vector from(d);
+    const Real volume = dot(Vector(a) - from, cross(Vector(b) - from, Vector(c) - from));
+    return (volume > 0) - (volume < 0);
+}
+
+// Returns the sign of det(a - c, b - c) as seen along an axis.
+template <class Real>
+int plain_area_sign(const dvec3& a, const dvec3& b, const dvec3& c, uint axis) {
+    using Vector = Vec<3, Real>;
+    const Vector from(c);
+    const Real area = cross(Vector(a) - from, Vector(b) - from)[static_cast<int>(axis)];
+    return (area > 0) - (area < 0);
+}
+
+// Classes of triangles by signs of plain arithmetic, with which exact arithmetic is compared. Each includes a shared
+// header with its own kind of number.
+#include "twinray/glsl/cpp_begin.h"
+#include "shaders/collide/orient.h"
+namespace by_float32 {
+constexpr auto* volume_sign = plain_volume_sign<float>;
+constexpr auto* area_sign = plain_area_sign<float>;
+#include "shaders/collide/triangle_pair.h"
+}  // namespace by_float32
+#undef TWINRAY_COLLIDE_TRIANGLE_PAIR_H
+namespace by_float64 {
+constexpr auto* volume_sign = plain_volume_sign<double>;
+constexpr auto* area_sign = plain_area_sign<double>;
+#include "shaders/collide/triangle_pair.h"
+}  // namespace by_float64
+#include "twinray/glsl/cpp_end.h"
+
+template <class ClassOf>
+void measure_host(CaseRun& run, const std::string& lattice, std::span<const TrianglePair> pairs,
+                  const std::vector<PairClass>& known, const std::string& variant, const ClassOf& class_of) {
+    std::uint64_t wrong = 0;
+    const std::vector<double> times = ns_each(5, pairs.size(), [&] {
+        wrong = 0;
+        for (std::size_t i = 0; i < pairs.size(); ++i)
+            wrong += class_of(pairs[i].a, pairs[i].b) != class_number(known[i]);
+    });
+    Record record = cpu_record(run, "exact", variant);
+    record.params = {{"lattice", lattice}, {"pairs", pairs.size()}};
+    set_faults(record, wrong, pairs.size());
+    record.time = time_figures("ns_per_pair", times);
+    record.criterion = "none: for comparison";
+    run.add(record);
+}
+
+struct KnownPair {
+    WorldTriangle a, b;
+    PairClass known;
+};
+
+// Returns pairs with vertices among {-2..2}^3; every fourth pair lies in one plane.
+std::vector<TrianglePair> lattice_pairs(std::size_t count, std::uint64_t seed) {
+    std::mt19937 random(static_cast<std::uint32_t>(seed));
+    const auto coordinate = [&] { return static_cast<double>(random() % 5) - 2; };
+    const auto triangle = [&](bool is_flat) {
+        std::array<double, 9> c;
+        for (double& each : c) each = coordinate();
+        if (is_flat) c[2] = c[5] = c[8] = 0;
+        return WorldTriangle{dvec3(c[0], c[1], c[2]), dvec3(c[3], c[4], c[5]), dvec3(c[6], c[7], c[8])};
+    };
+    std::vector<TrianglePair> pairs;
+    for (std::size_t i = 0; i < count; ++i) {
+        const WorldTriangle a = triangle(i % 4 == 0);
+        pairs.push_back({a, triangle(i % 4 == 0)});
+    }
+    return pairs;
+}
+
+// Returns the six orders of its vertices.
+std::vector<WorldTriangle> permutations(const WorldTriangle& t) {
+    return {{t.a, t.b, t.c}, {t.a, t.c, t.b}, {t.b, t.a, t.c}, {t.b, t.c, t.a}, {t.c, t.a, t.b}, {t.c, t.b, t.a}};
+}
+
+void ask_classes(CaseRun& run, const std::vector<KnownPair>& pairs, const std::string& reference = "analytic") {
+    std::vector<TrianglePair> asked;
+    for (const KnownPair& pair : pairs) asked.push_back({pair.a, pair.b});
+    NarrowPhase narrow_phase(query_context(run));
+    const std::vector<PairClass> found = narrow_phase.classify(asked);
+    std::uint64_t wrong = 0;
+    std::string first;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        if (found[i] == pairs[i].known) continue;
+        if (wrong++ == 0) first = text("pair ", i, " is ", name_of(found[i]), ", not ", name_of(pairs[i].known));
+    }
+    Record record = query_record(run, reference);
+    record.n = pairs.size();
+    add_checked(run, record, wrong, first);
+}
+
+// Measures time and wrong classes of the GPU, of exact arithmetic on the host and, as controls, of the same decisions
+// by signs that float32 and float64 give without a bound.
+void measure_lattice(CaseRun& run, const std::string& lattice, std::span<const TrianglePair> pairs) {
+    std::vector<PairClass> known;
+    for (const TrianglePair& pair : pairs) known.push_back(exact_class(pair.a, pair.b));
+    NarrowPhase narrow_phase(query_context(run));
+    std::vector<PairClass> found;
+    const std::vector<double> times = ns_each(5, pairs.size(), [&] { found = narrow_phase.classify(pairs); });
+    std::uint64_t wrong = 0;
+    for (std::size_t i = 0; i < pairs.size(); ++i) wrong += found[i] != known[i];
+    Record record = query_record(run, "exact");
+    record.params = {{"lattice", lattice}, {"pairs", pairs.size()}};
+    record.n = pairs.size();
+    record.time = time_figures("ns_per_pair", times);
+    add_checked(run, record, wrong, "classes differ from those of exact arithmetic");
+    measure_host(run, lattice, pairs, known, "exact, on the host alone",
+                 [](const WorldTriangle& a, const WorldTriangle& b) { return class_number(exact_class(a, b)); });
+    measure_host(run, lattice, pairs, known, "control: float64 without a bound", by_float64::class_of);
+    measure_host(run, lattice, pairs, known, "control: float32 without a bound", by_float32::class_of);
+}
 
 const WorldTriangle base = {dvec3(0, 0, 0), dvec3(4, 0, 0), dvec3(0, 4, 0)};
 
@@ -115,144 +227,6 @@ void degenerate(CaseRun& run) {
         pairs.push_back({pair.a, pair.b, exact_class(pair.a, pair.b)});
     }
     ask_classes(run, pairs, "exact");
-}
-
-// ------------------------------------------------------------------------------------------------------------------------
-
-Mesh torus(float tube) {
-    Mesh mesh;
-    constexpr uint n = 48, m = 24;
-    for (uint i = 0; i < n; ++i)
-        for (uint j = 0; j < m; ++j) {
-            const float u = 6.2831853f * static_cast<float>(i) / n, v = 6.2831853f * static_cast<float>(j) / m;
-            const float r = 1 + tube * std::cos(v);
-            mesh.positions.push_back({r * std::cos(u), r * std::sin(u), tube * std::sin(v)});
-            const auto at = [](uint a, uint b) { return a % n * m + b % m; };
-            mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
-            mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
-        }
-    return mesh;
-}
-
-std::size_t triangles_at(const Mesh& mesh, vec3 vertex) {
-    std::size_t count = 0;
-    for (const uvec3& t : mesh.triangles)
-        for (int k = 0; k < 3; ++k) count += mesh.positions[t[k]] == vertex;
-    return count;
-}
-
-void solids(CaseRun& run) {
-    const Mesh ball = make_icosphere(3), outer = make_box(vec3(-1), vec3(1)), inner = make_box(vec3(-0.5f), vec3(0.5f));
-    const vec3 top = ball.positions.front();
-    const std::size_t around = triangles_at(ball, top);  // each is in one plane with its mirror image in that vertex
-    ask_contacts(run, "tangent spheres", {ball}, {{0, {}}, {0, Transform::translation(top * 2.0f)}},
-                 {{coplanar_touch, around}, {vertex_touch, around * (around - 1)}});
-    ask_contacts(run, "nested boxes", {outer, inner}, {{0, {}}, {1, {}}}, {});
-    const Mesh ring = torus(0.25f);
-    const Transform across = {{vec4(1, 0, 0, 1), vec4(0, 0, 1, 0), vec4(0, -1, 0, 0)}};
-    ask_contacts(run, "interlocked tori", {ring}, {{0, {}}, {0, across}}, {});
-}
-
-void walls(CaseRun& run) {
-    const Mesh box = make_box(vec3(-1), vec3(1));
-    for (const float at : {0.0f, 1024.0f})
-        ask_contacts(run, text("boxes wall to wall at ", at), {box},
-                     {{0, Transform::translation(vec3(at, 0, 0))}, {0, Transform::translation(vec3(at + 2, 0, 0))}},
-                     wall_to_wall(), "exact");
-}
-
-void within_a_mesh(CaseRun& run) {
-    const Mesh ball = make_icosphere(4);
-    ask_contacts(run, "sphere with itself", {ball}, {{0, {}}}, {}, "analytic", true);
-    Mesh strip;  // two triangles at one edge, folded flat onto each other
-    strip.positions = {vec3(0), vec3(1, 0, 0), vec3(0, 1, 0), vec3(0.5f, 0.75f, 0)};
-    strip.triangles = {{0, 1, 2}, {1, 0, 3}};
-    ask_contacts(run, "folded strip", {strip}, {{0, {}}}, {{coplanar_overlap, 1}}, "analytic", true);
-}
-
-void baked(CaseRun& run) {
-    const Mesh ball = make_icosphere(4);
-    const vec3 by(0.5f, 0.25f, -0.125f);
-    Mesh rounded = ball;
-    for (vec3& p : rounded.positions) p = (p + 16.0f) - 16.0f;  // so that moved ones are exact
-    const Mesh away = moved(rounded, by);
-    ask_same_contacts(run, {rounded, away}, {{0, {}}, {0, Transform::translation(by)}}, {{0, {}}, {1, {}}});
-}
-
-void colliding_identical_boxes(CaseRun& run) {
-    const std::uint64_t n = run.amount(1'000, 10'000);
-    const Mesh box = make_box(vec3(-1), vec3(1));
-    for (const Configuration& configuration : run.one_configuration_each()) {
-        AbstractAccel& accel = run.devices().empty_accel(configuration);
-        accel.push(box, std::vector<Transform>(n));
-        BroadPhase broad_phase(accel.context());
-        const std::uint64_t expected = n * (n - 1) / 2;
-        std::uint64_t wrong = 0;
-        const std::vector<double> times =
-            ns_each(5, expected, [&] { wrong += broad_phase.instance_pairs(accel).size() != expected; });
-        wrong += broad_phase.count(accel) != expected;
-        run.expect(configuration, {.params = {{"boxes", n}},
-                                   .results = {{"pairs", expected}},
-                                   .n = expected,
-                                   .faults = wrong,
-                                   .what = "another number of pairs than n (n - 1) / 2",
-                                   .reference = "analytic",
-                                   .time = time_figures("ns_per_pair", times)});
-    }
-}
-
-// Makes cubes of 10^-30 to 10^37 around points as far from 0 as they are large.
-std::vector<Transform> cubes_of_all_sizes(std::size_t count, std::uint64_t seed) {
-    Random random(seed);
-    std::vector<Transform> cubes;
-    for (std::size_t i = 0; i < count; ++i) {
-        const float size = std::pow(10.0f, random.between(-30, 37));
-        cubes.push_back(Transform::translation(random.in_box(3) * size) * Transform::scaling(vec3(size)));
-    }
-    return cubes;
-}
-
-// Returns whether the cubes' boxes overlap after they grow by a share of their size and place.
-bool overlap(const Transform& a, const Transform& b, double margin) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const auto reach = [&](const Transform& cube) {
-            return double{cube.rows[axis][axis]} * (1 + margin) + std::abs(double{cube.rows[axis].w}) * margin;
-        };
-        if (std::abs(double{a.rows[axis].w} - double{b.rows[axis].w}) > reach(a) + reach(b)) return false;
-    }
-    return true;
-}
-
-// Counts overlapping pairs that were not found, and found pairs that are apart by more than rounding.
-std::uint64_t wrong_pairs(const std::vector<Transform>& cubes, std::span<const InstancePair> found) {
-    std::uint64_t wrong = 0;
-    for (uint a = 0; a < cubes.size(); ++a)
-        for (uint b = a + 1; b < cubes.size(); ++b) {
-            const bool is_found = std::ranges::binary_search(found, InstancePair{a, b});
-            wrong += is_found ? !overlap(cubes[a], cubes[b], 0x1p-20) : overlap(cubes[a], cubes[b], -0x1p-24);
-        }
-    return wrong;
-}
-
-void colliding_sizes(CaseRun& run) {
-    const std::vector<Transform> cubes = cubes_of_all_sizes(run.amount(500, 5'000), run.seed());
-    const Mesh cube = make_box(vec3(-1), vec3(1));
-    for (const Configuration& configuration : run.one_configuration_each()) {
-        AbstractAccel& accel = run.devices().empty_accel(configuration);
-        accel.push(cube, cubes);
-        const std::vector<InstancePair> found = BroadPhase(accel.context()).instance_pairs(accel);
-        const CaseRun::Outcome outcome{.results = {{"pairs", found.size()}},
-                                       .n = cubes.size() * (cubes.size() - 1) / 2,
-                                       .faults = wrong_pairs(cubes, found),
-                                       .what = "pairs that are missing, or apart",
-                                       .reference = "f64",
-                                       .fault_of = "twinray"};
-        run.expect(configuration, outcome);
-        CaseRun::Outcome control = outcome;
-        control.faults = wrong_pairs(cubes, std::span(found).subspan(1));
-        control.control = "one pair left out";
-        run.expect(configuration, control);
-    }
 }
 
 }  // namespace

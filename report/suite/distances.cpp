@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Triangles near points, checked against every triangle in float64. The GPU answers; no accelerator takes part.
-#include <twinray/queries.h>
+#include "report/suite/sections.h"
 
-#include <algorithm>
-#include <cmath>
 #include <numbers>
-#include <random>
 
-#include "report/suite/queries.h"
-#include "engine/core/error.h"
+#include <twinray/queries.h>
 #include "engine/core/parallel.h"
-#include <twinray/geometry.h>
-#include "validation/reference/point_distance.h"
+#include "validation/reference/geometry64.h"
 
 namespace twinray::suite {
 namespace {
@@ -28,8 +23,7 @@ std::vector<dvec3> random_points(std::size_t count, double size, std::uint64_t s
 }
 
 double distance_to(const Mesh& mesh, const uvec3& t, const dvec3& point) {
-    return distance_to_triangle({dvec3(mesh.positions[t.x]), dvec3(mesh.positions[t.y]), dvec3(mesh.positions[t.z])},
-                                point);
+    return distance_to_triangle(corners_of(mesh, t), point);
 }
 double nearest_of_all(const Mesh& mesh, const dvec3& point) {
     double nearest = INFINITY;

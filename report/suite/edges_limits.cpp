@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Edges: where gaps are allowed, where nothing is inside, and negative controls.
-#include <algorithm>
-#include <map>
+#include "report/suite/sections.h"
+
 #include <utility>
 
-#include "report/suite/edge_meshes.h"
-#include "report/suite/sections.h"
-#include <twinray/geometry.h>
+#include "validation/leaks/closed_mesh.h"
 #include "validation/reference/aimed_rays.h"
-#include "validation/reference/draws.h"
-#include "validation/leaks/inside_rays.h"
 
 namespace twinray::suite {
 namespace {
@@ -181,10 +177,7 @@ void with_two_matrices(CaseRun& run) {
         offsets.push_back(made.x);
     }
     for (const Configuration& configuration : run.crossing_configurations()) {
-        AbstractAccel& accel = run.devices().empty_accel(configuration);
-        world.fill(accel);
-        accel.sync();
-        const std::vector<uint> counts = run.devices().crossing_counter(configuration).count(accel, rays);
+        const std::vector<uint> counts = crossings_of(run.devices(), configuration, world, rays);
         std::uint64_t lost = 0, twice = 0;
         double farthest = 0;
         for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -233,8 +226,8 @@ void silhouettes(CaseRun& run) {
                                                    {"icosphere", make_icosphere(3)},
                                                    {"cut box", make_cut_box({planes, planes, planes})}};
     for (const auto& [name, mesh] : meshes)
-        measure_both(run, mesh, silhouette_rays(mesh, run.amount(2'048, 500'000), run.seed()), is_even,
-                     {.params = {{"mesh", name}}});
+        measure_both(run, mesh, silhouette_rays(mesh, run.amount(2'048, 500'000), run.seed()),
+                     [](const Ray&, uint count) { return count % 2 == 0; }, {.params = {{"mesh", name}}});
 }
 
 // The rounding of sheared vertices grows with their distance, that of boxes with the hit's: triangles far longer than

@@ -134,27 +134,6 @@ void set_series(Record& record, const Series& series) {
     record.pass = record.reason.empty();
 }
 
-Record record_of(const CaseRun& run, const Configuration& configuration, const FactorQuestion& question,
-                 const EstimatorMethod& method) {
-    Record record = run.record(configuration);
-    record.params = question.params;
-    record.results = question.results;
-    record.variant = name(method);
-    return record;
-}
-
-void measure_sampled(CaseRun& run, Estimators& estimators, const Configuration& configuration,
-                     const FactorQuestion& question, const EstimatorMethod& method) {
-    std::vector<std::uint64_t> counts = {1 << 10, 1 << 12, 1 << 14};
-    if (run.amount(0, 1)) counts = {1 << 10, 1 << 11, 1 << 12, 1 << 13, 1 << 14, 1 << 15, 1 << 16};
-    measure_estimates(run, record_of(run, configuration, question, method), question.value, "rays", counts,
-                      [&](std::uint64_t rays, std::uint64_t seed) {
-                          return method.estimator == PairEstimator::hits
-                                     ? estimators.hits(method.sequence, rays, static_cast<uint>(seed))
-                                     : estimators.area(method.sequence, rays, static_cast<uint>(seed));
-                      });
-}
-
 // Adds the time that an error takes by the law of error over time, if the error falls, and up to a hundred times the
 // measured time.
 void add_costs(Record& record, std::span<const double> ms, std::span<const double> errors) {
@@ -167,21 +146,6 @@ void add_costs(Record& record, std::span<const double> ms, std::span<const doubl
 }
 
 }  // namespace
-
-std::string name(const EstimatorMethod& method) {
-    const std::string estimator(name_of(method.estimator));
-    return method.estimator == PairEstimator::contour ? estimator
-                                                      : estimator + ", " + std::string(name_of(method.sequence));
-}
-
-std::vector<EstimatorMethod> methods_of(std::span<const PairEstimator> estimators) {
-    std::vector<EstimatorMethod> methods;
-    for (const PairEstimator estimator : estimators) {
-        methods.push_back({estimator, Sequence::sobol});
-        if (estimator != PairEstimator::contour) methods.push_back({estimator, Sequence::random});
-    }
-    return methods;
-}
 
 void measure_estimates(CaseRun& run, const Record& base, double truth, const char* amount_name,
                        std::span<const std::uint64_t> amounts,
@@ -226,24 +190,36 @@ FactorRows rows_of(CaseRun& run, const Configuration& configuration, const Scene
     return {factors.rows(0, factors.row_count()), factors.areas()};
 }
 
-void measure_factor(CaseRun& run, const FactorQuestion& question, std::span<const EstimatorMethod> methods) {
+void measure_factor(CaseRun& run, const FactorQuestion& question, std::span<const PairEstimator> estimators) {
     const std::vector<Configuration> configurations = analysis_configurations(run);
+    std::vector<std::uint64_t> counts = {1 << 10, 1 << 12, 1 << 14};
+    if (run.amount(0, 1)) counts = {1 << 10, 1 << 11, 1 << 12, 1 << 13, 1 << 14, 1 << 15, 1 << 16};
+    const auto prepared = [&](Record record, const std::string& variant) {
+        record.params = question.params;
+        record.results = question.results;
+        record.variant = variant;
+        return record;
+    };
     for (const Configuration& configuration : configurations) {
-        Estimators estimators(run.devices().empty_accel(configuration), question);
-        for (const EstimatorMethod& method : methods)
-            if (method.estimator != PairEstimator::contour)
-                measure_sampled(run, estimators, configuration, question, method);
+        Estimators stage(run.devices().empty_accel(configuration), question);
+        for (const PairEstimator estimator : estimators)
+            for (const Sequence sequence : {Sequence::sobol, Sequence::random}) {
+                if (estimator == PairEstimator::contour || (question.is_sobol_alone && sequence == Sequence::random))
+                    continue;
+                const auto sample = estimator == PairEstimator::hits ? &Estimators::hits : &Estimators::area;
+                measure_estimates(
+                    run, prepared(run.record(configuration), text(name_of(estimator), ", ", name_of(sequence))),
+                    question.value, "rays", counts, [&](std::uint64_t rays, std::uint64_t seed) {
+                        return (stage.*sample)(sequence, rays, static_cast<uint>(seed));
+                    });
+            }
     }
-    for (const EstimatorMethod& method : methods) {
-        if (method.estimator != PairEstimator::contour || configurations.empty()) continue;
-        Series series;
-        for (int i = 0; i < 3; ++i) series.add(Estimators::contour(question), question.value);
-        Record record = record_of(run, configurations.front(), question, method);
-        record.backend = "cpu";
-        record.level = "";
-        set_series(record, series);
-        run.add_computed(record);
-    }
+    if (configurations.empty() || std::ranges::count(estimators, PairEstimator::contour) == 0) return;
+    Series series;
+    for (int i = 0; i < 3; ++i) series.add(Estimators::contour(question), question.value);
+    Record record = prepared(cpu_record(run, "analytic"), std::string(name_of(PairEstimator::contour)));
+    set_series(record, series);
+    run.add_computed(record);
 }
 
 double contour_value(const Scene& scene, uint from, uint to) {

@@ -14,25 +14,18 @@ struct FactorQuestion {
     double value;   // the truth
     uint from = 0;  // mesh
     uint to = 1;
-    bool of_open = false;  // instead: the share of `from` that meets nothing, 1 - F if there is nothing else
-    Values params = {};    // which distinguish the question from others of the case
-    Values results = {};   // to be recorded beside
+    bool of_open = false;         // instead: the share of `from` that meets nothing, 1 - F if there is nothing else
+    bool is_sobol_alone = false;  // instead of by random numbers as well
+    Values params = {};           // which distinguish the question from others of the case
+    Values results = {};          // to be recorded beside
 };
 
-struct EstimatorMethod {
-    PairEstimator estimator;
-    Sequence sequence = Sequence::sobol;
-};
-// Returns "hits, sobol", "contour".
-std::string name(const EstimatorMethod& method);
-std::vector<EstimatorMethod> methods_of(std::span<const PairEstimator> estimators);
-
-// Measures each method on software and on hardware, by ray query if it can, else by pipeline, over ray counts and
+// Measures each estimator on software and on hardware, by ray query if it can, else by pipeline, over ray counts and
 // seeds: the error against the truth, how many intervals hold it and the time; with the most rays also the slope of the
 // error over rays. Contours are measured once. A fault is an estimate that misses the truth by more than three times
 // half of its interval, which one in 10^5 does. A measurement also fails if fewer intervals hold the truth than 95 % of
 // all could explain.
-void measure_factor(CaseRun& run, const FactorQuestion& question, std::span<const EstimatorMethod> methods);
+void measure_factor(CaseRun& run, const FactorQuestion& question, std::span<const PairEstimator> estimators);
 
 // One estimate, with its 95 % interval.
 struct Estimate {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "report/suite/flip.h"
-
+// Perceived differences of pictures.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
-#include "twinray/glsl/cpp.h"
+
+#include "report/suite/pictures.h"
 
 namespace twinray::suite {
 namespace {

@@ -1,19 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include <algorithm>
-#include <cmath>
+#include "report/suite/sections.h"
+
 #include <cstdlib>
-#include <cstring>
 #include <memory>
 #include <set>
 
-#include <twinray/scene.h>
-
-#include "engine/core/error.h"
 #include "report/faults/fault_injection.h"
-#include "report/suite/sections.h"
-#include "report/suite/scenes.h"
-#include <twinray/geometry.h>
-#include "validation/reference/aimed_rays.h"
 
 namespace twinray::suite {
 namespace {
@@ -125,8 +117,7 @@ void expect_refused(CaseRun& run, const std::vector<WrongUse>& uses) {
         }
         // Refused use leaves nothing behind: the next scene is answered as before.
         const Hit after = hit_of_a_box(run.devices().empty_accel(configuration));
-        if (std::memcmp(&before, &after, sizeof(Hit)) != 0)
-            outcome.faults++, outcome.what += " afterwards a box is hit elsewhere";
+        if (!same_bits(before, after)) outcome.faults++, outcome.what += " afterwards a box is hit elsewhere";
         run.expect(configuration, outcome);
     }
 }

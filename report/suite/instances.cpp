@@ -1,20 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Instances: transforms that are hard on the ray, on the box and on the inverse.
-#include <algorithm>
-#include <cmath>
-#include <cstring>
+#include "report/suite/sections.h"
+
 #include <set>
 
-#include <twinray/scene.h>
-
-#include "report/suite/case_run.h"
 #include "report/faults/fault_injection.h"
-#include "report/suite/demands.h"
-#include "report/suite/scenes.h"
-#include "report/suite/sections.h"
-#include "engine/core/error.h"
-#include <twinray/geometry.h>
-#include "validation/reference/aimed_rays.h"
 
 namespace twinray::suite {
 namespace {
@@ -197,14 +187,11 @@ void shared_seam(CaseRun& run) {
             const vec3 target = (1 - share) * halves.upper.positions[a] + share * halves.upper.positions[b];
             rays.push_back({transform_point(place, vec3(0)), 0, transform_vector(place, target), inf});
         }
-        for (const Traced& traced : trace(run.devices(), run.configurations(), world_of(scene), {rays, 0})) {
-            CaseRun::Outcome outcome = ask_each(
-                traced, rays, [](std::size_t, const Hit& hit) { return std::string(hit.hit ? "" : "missed"); });
-            outcome.params = {{"transforms", is_same ? "equal" : "different"}};
-            outcome.reference = "analytic";
-            if (!is_same) outcome.only_measured = "transforms that differ round a ray apart";
-            run.expect(traced.configuration, outcome);
-        }
+        expect_each(run, run.trace(world_of(scene), rays), rays,
+                    {.params = {{"transforms", is_same ? "equal" : "different"}},
+                     .reference = "analytic",
+                     .only_measured = is_same ? "" : "transforms that differ round a ray apart"},
+                    [](std::size_t, std::size_t, const Hit& hit) { return hit.hit ? "" : "missed"; });
     }
 }
 
@@ -260,23 +247,14 @@ void instances_by_powers_of_two(CaseRun& run) {
     const std::vector<Ray> rays = mixed_rays(world, bounds_of(unit), run.amount(1'024, 100'000), run.seed());
     for (const Configuration& configuration : run.configurations()) {
         const auto hits_at = [&](int exponent) {
-            const float scale = std::ldexp(1.0f, exponent);
-            AbstractAccel& accel = run.devices().empty_accel(configuration);
-            accel.push(sphere, Transform::scaling(vec3(scale)));
-            std::vector<Hit> hits = accel.closest_hits(scaled(rays, scale), {.level = configuration.level});
-            for (Hit& hit : hits)
-                if (hit.hit) hit.t /= scale;
-            return hits;
+            return hits_at_scale(run, configuration, rays, exponent, [&](AbstractAccel& accel, float scale) {
+                accel.push(sphere, Transform::scaling(vec3(scale)));
+            });
         };
         const std::vector<Hit> expected = hits_at(0);
-        for (const int exponent : {-60, -20, -3, 3, 20, 60}) {
-            const std::vector<Hit> hits = hits_at(exponent);
-            CaseRun::Outcome outcome{.params = {{"exponent", exponent}}, .n = rays.size(), .reference = "invariance"};
-            for (std::size_t i = 0; i < rays.size(); ++i)
-                if (std::memcmp(&hits[i], &expected[i], sizeof(Hit)) != 0 && outcome.faults++ == 0)
-                    outcome.what = "differs from the unit scale: " + hexadecimal(rays[i]);
-            run.expect(configuration, outcome);
-        }
+        for (const int exponent : {-60, -20, -3, 3, 20, 60})
+            expect_same_bits(run, configuration, rays, hits_at(exponent), expected,
+                             {.params = {{"exponent", exponent}}, .what = "differs from the unit scale: "});
     }
 }
 
@@ -293,8 +271,7 @@ void with_and_without_top_level(CaseRun& run) {
         const std::vector<Hit> below_top = accel.closest_hits(rays, {.level = configuration.level});
         CaseRun::Outcome outcome{
             .n = rays.size(), .what = "a hit differs where there is a top level", .reference = "invariance"};
-        for (std::size_t i = 0; i < rays.size(); ++i)
-            if (std::memcmp(&alone[i], &below_top[i], sizeof(Hit)) != 0) ++outcome.faults;
+        for (std::size_t i = 0; i < rays.size(); ++i) outcome.faults += !same_bits(alone[i], below_top[i]);
         run.expect(configuration, outcome);
     }
 }

@@ -5,8 +5,7 @@
 
 #include <twinray/scene.h>
 
-#include "report/suite/estimators.h"
-#include "validation/records/bootstrap.h"
+#include "engine/core/statistics.h"
 #include "renderer/camera.h"
 #include "engine/core/error.h"
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Pictures with known light: furnaces, lights over a floor, light that is scaled.
-#include <cmath>
+// Pictures with known light: furnaces, lights over a floor, light that is scaled; and where light of smooth normals
+// ends.
+#include "report/suite/sections.h"
+
 #include <numbers>
 
-#include <twinray/scene.h>
-
+#include "renderer/reference.h"
 #include "report/suite/estimators.h"
 #include "report/suite/pictures.h"
-#include <twinray/geometry.h>
 
 namespace twinray::suite {
 namespace {
@@ -119,9 +119,9 @@ void lights_over_a_floor(CaseRun& run) {
 double seen_over_pi(const Mesh& mesh, double height) {
     double sum = 0;
     for (const uvec3& triangle : mesh.triangles) {
-        const dvec3 up(0, height, 0), a = up + dvec3(mesh.positions[triangle.x]),
-                                      b = up + dvec3(mesh.positions[triangle.y]),
-                                      c = up + dvec3(mesh.positions[triangle.z]);
+        std::array<dvec3, 3> corners = corners_of(mesh, triangle);
+        for (dvec3& corner : corners) corner = dvec3(0, height, 0) + corner;
+        const auto& [a, b, c] = corners;
         const dvec3 middle = (a + b + c) / 3.0, area = cross(b - a, c - a) / 2.0;
         sum += std::max(-dot(area, middle), 0.0) * middle.y / std::pow(length(middle), 4);
     }
@@ -178,14 +178,84 @@ void scaled_light(CaseRun& run) {
             record.bound95 = upper_bound_95(record.faults, record.n);
             record.time = time_figures("ms_per_picture", {scaled.ms});
             fixture.census().add_to(record);
-            record.pass = record.faults == 0;
-            if (!*record.pass) record.reason = "pixels are not scaled exactly";
-            run.add_computed(record);
+            run.add_computed(record, "pixels are not scaled exactly");
         }
     }
 }
 
+// ---- The shadow terminator: where light of smooth normals ends on coarse meshes. Shadow rays leave by the geometric
+// normal, so that facets that face away from a light are black whatever their vertices' normals are. Facets that face
+// it are lit no further than these normals allow.
+
+constexpr uint finest = 6;  // subdivisions of an icosahedron: 81,920 triangles
+constexpr uint triangles_of(uint subdivisions) { return 20u << 2 * subdivisions; }
+
+// Makes unit spheres in a row along y, turned so that no edges lie where light ends: one of the finest, then from 1 to
+// `coarse` subdivisions. Light comes along -x, from a square half a degree wide.
+Scene spheres_lit_from_the_side(uint coarse, std::uint64_t seed) {
+    Scene scene;
+    Random random(seed);
+    const Transform turn = random.rotation();
+    for (uint i = 0; i <= coarse; ++i) {
+        add(scene, make_icosphere(i == 0 ? finest : i), lambert(0.5f));
+        scene.instances.back().transform = Transform::translation({0, 3 * static_cast<float>(i), 0}) * turn;
+    }
+    add(scene, make_quad({1000, -5, -5}, {0, 0, 10}, {0, 10, 0}), lamp(10'000));
+    return scene;
+}
+
+// Looks at the middle of a sphere's side, half of which is lit.
+path_tracer::CameraRays look_at_sphere(uint i) {
+    const float y = 3 * static_cast<float>(i);
+    return look({0, y, 4}, {0, y, 0}, 0.15f);
+}
+
+std::vector<double> luminances(const HdrImage& picture) {
+    std::vector<double> all;
+    for (const vec3& pixel : picture.rgb) all.push_back(static_cast<double>(path_tracer::luminance(pixel)));
+    return all;
+}
+
 }  // namespace
+
+void shadow_terminator(CaseRun& run) {
+    const auto spp = static_cast<uint>(run.amount(8, 256)), coarse = static_cast<uint>(run.amount(2, 4));
+    RenderDesc desc{.scene = spheres_lit_from_the_side(coarse, run.seed())};
+    desc.settings.width = desc.settings.height = static_cast<uint>(run.amount(24, 256));
+    desc.settings.max_depth = 1;  // light that nothing else has reflected
+    std::vector<Configuration> configurations = analysis_configurations(run);
+    // All configurations show the same, and each compiles the path tracer.
+    if (!run.is_whole() && configurations.size() > 1) configurations.resize(1);
+    for (const Configuration& configuration : configurations) {
+        RenderFixture fixture(run, configuration, desc);
+        const auto shown = [&](uint i) {
+            fixture.set_camera(look_at_sphere(i));
+            return luminances(fixture.expose(run.seed(), spp).picture);
+        };
+        const std::vector<double> fine = shown(0);
+        const double least = *std::ranges::max_element(fine) / 100;  // of what counts as lit
+        for (uint i = 1; i <= coarse; ++i) {
+            const std::vector<double> seen = shown(i);
+            std::uint64_t lit = 0, black = 0;
+            double light = 0, fine_light = 0;
+            for (std::size_t pixel = 0; pixel < fine.size(); ++pixel) {
+                light += seen[pixel], fine_light += fine[pixel];
+                if (fine[pixel] < least) continue;
+                ++lit;
+                black += seen[pixel] == 0;
+            }
+            Record record = run.record(configuration);
+            record.params = {{"triangles", triangles_of(i)}};
+            record.reference = text("a sphere of ", triangles_of(finest), " triangles");
+            record.n = lit;
+            record.counts = {{"BLACK", black}};
+            record.results = {{"black_share", static_cast<double>(black) / static_cast<double>(lit)},
+                              {"energy_ratio", light / fine_light}};
+            if (i == coarse) fixture.census().add_to(record);
+            run.add(record);
+        }
+    }
+}
 
 std::vector<SuiteCase> picture_energy_cases() {
     const char* within = "a mean of all pixels within 6 standard errors";

@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Pixels: sums, outliers, random numbers; and scenes that lack something.
-#include <algorithm>
-#include <cmath>
-
-#include <twinray/scene.h>
+#include "report/suite/sections.h"
 
 #include "report/suite/estimators.h"
 #include "report/suite/pictures.h"
-#include "report/suite/queries.h"
-#include <twinray/geometry.h>
-#include "engine/core/error.h"
 
 namespace twinray::suite {
 namespace {
@@ -85,9 +79,7 @@ void tilted_normals(CaseRun& run) {
             record.results = {{"mean_under_white_sky", mean}};
             record.faults += !(mean <= 1.01);
             record.bound95 = upper_bound_95(record.faults, record.n);
-            record.pass = record.faults == 0;
-            if (!*record.pass) record.reason = "light leaks through the floor, or more comes back than fell on it";
-            run.add_computed(record);
+            run.add_computed(record, "light leaks through the floor, or more comes back than fell on it");
         }
 }
 
@@ -181,9 +173,7 @@ void expect_within(CaseRun& run, const Configuration& configuration, const char*
     record.results = {{"mean", mean}, {"at_least", low}, {"at_most", high}};
     record.faults = !(low <= mean && mean <= high);
     fixture.census().add_to(record);
-    record.pass = record.faults == 0;
-    if (!*record.pass) record.reason = "the mean of all pixels is another";
-    run.add_computed(record);
+    run.add_computed(record, "the mean of all pixels is another");
 }
 
 void what_is_lacking(CaseRun& run) {

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Scattering at surfaces, by the functions that kernels share with the CPU.
-#include <algorithm>
-#include <cmath>
+#include "report/suite/sections.h"
+
 #include <numbers>
 
 #include "report/suite/estimators.h"
 #include "report/suite/pictures.h"
-#include "report/suite/queries.h"
-#include "engine/core/error.h"
-#include <twinray/geometry.h>
 
 namespace twinray::suite {
 namespace {
@@ -16,25 +13,18 @@ namespace {
 using path_tracer::Bsdf;
 using path_tracer::BsdfSample;
 
-Bsdf mirror(float alpha) {
+Bsdf opaque(vec3 diffuse, vec3 f0, float f90, float alpha) {
     Bsdf bsdf = path_tracer::plain_bsdf();
-    bsdf.f0 = vec3(1);
-    bsdf.f90 = 1;
+    bsdf.diffuse = diffuse;
+    bsdf.f0 = f0;
+    bsdf.f90 = f90;
     bsdf.alpha = alpha;
     return bsdf;
 }
-Bsdf plastic(float alpha) {
-    Bsdf bsdf = path_tracer::plain_bsdf();
-    bsdf.diffuse = vec3(0.7f, 0.5f, 0.2f);
-    bsdf.f0 = vec3(0.04f);
-    bsdf.f90 = 1;
-    bsdf.alpha = alpha;
-    return bsdf;
-}
+Bsdf mirror(float alpha) { return opaque(vec3(0), vec3(1), 1, alpha); }
+Bsdf plastic(float alpha) { return opaque(vec3(0.7f, 0.5f, 0.2f), vec3(0.04f), 1, alpha); }
 Bsdf glass(float alpha, float eta) {
-    Bsdf bsdf = path_tracer::plain_bsdf();
-    bsdf.diffuse = vec3(1);
-    bsdf.alpha = alpha;
+    Bsdf bsdf = opaque(vec3(1), vec3(0), 0, alpha);
     bsdf.is_glass = true;
     bsdf.eta = eta;
     bsdf.layers = path_tracer::LAYER_VOLUME;
@@ -95,10 +85,9 @@ double mean_fresnel(float eta) {
 }
 
 void glass_energy(CaseRun& run) {
-    add_value(run, record_of_cpu(run, {{"mean of Fresnel", "from outside"}}), mean_fresnel(1.5f), 0.09177795934235121,
-              1e-6);
-    add_value(run, record_of_cpu(run, {{"mean of Fresnel", "from inside"}}), mean_fresnel(1 / 1.5f),
-              0.59634575970771165, 1e-6);
+    for (const auto& [from, eta, mean] :
+         {std::tuple{"from outside", 1.5f, 0.09177795934235121}, {"from inside", 1 / 1.5f, 0.59634575970771165}})
+        add_value(run, record_of_cpu(run, {{"mean of Fresnel", from}}), mean_fresnel(eta), mean, 1e-6);
     for (const Configuration& configuration : analysis_configurations(run)) {
         FlatQuestion question{.value = 1, .params = {{"sphere", "glass under a white sky"}}, .is_swept = false};
         add(question.desc.scene, make_icosphere(4),

@@ -1,20 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The cost and worth of each level on scenes of an ordinary size, and the cost of kernel features in a scene that does
 // not need them.
-#include "report/suite/case_run.h"
+#include "report/suite/sections.h"
 
-#include <algorithm>
-#include <cstring>
-
-#include <twinray/geometry.h>
-#include <twinray/scene.h>
 #include <twinray/tlas.h>
-#include "engine/accel/feature_additions.h"
-#include "engine/core/error.h"
-#include "engine/core/uploaded.h"
+#include "engine/accel/trace_desc.h"
+#include "engine/core/commands.h"
 #include "feature_costs_program.trace_program.h"
-#include "report/suite/scenes.h"
-#include "validation/reference/aimed_rays.h"
 
 namespace twinray::suite {
 namespace {
@@ -76,8 +68,7 @@ void add_records(CaseRun& run, const char* rays, const std::vector<Step>& steps)
         std::sort(ratios.begin(), ratios.end());
         const Interval ratio_95 = quantile_interval_95(ratios, 0.5);
         std::uint64_t faults = 0;
-        for (std::size_t i = 0; i < step.hits.size(); ++i)
-            faults += std::memcmp(&step.hits[i], &needed.hits[i], sizeof(Hit)) != 0;
+        for (std::size_t i = 0; i < step.hits.size(); ++i) faults += !same_bits(step.hits[i], needed.hits[i]);
         run.expect({Backend::software, Level::watertight}, {.params = {{"features", step.name}, {"rays", rays}},
                                                             .results = {{"of_needed", quantile(ratios, 0.5)},
                                                                         {"of_needed_low", ratio_95.low},

@@ -1,18 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Scale and position: sizes of meshes. Positions are in position.cpp, rays in scale_rays.cpp.
+// Scale and position: sizes of meshes, and surfaces of instances with unequally scaled axes. Positions and rays are in
+// scale_rays.cpp.
 #include "report/suite/sections.h"
 
-#include <cmath>
-#include <cstring>
 #include <numbers>
-
-#include <twinray/scene.h>
-
-#include "report/suite/demands.h"
-#include "report/suite/scenes.h"
-#include "engine/core/error.h"
-#include <twinray/geometry.h>
-#include "validation/reference/aimed_rays.h"
 
 namespace twinray::suite {
 namespace {
@@ -26,13 +17,8 @@ void powers_of_two(CaseRun& run) {
     for (const Configuration& configuration : run.configurations()) {
         if (!is_robust(configuration)) continue;
         const auto hits_at = [&](int exponent) {
-            const float scale = std::ldexp(1.0f, exponent);
-            AbstractAccel& accel = run.devices().empty_accel(configuration);
-            accel.push(scaled(sphere, scale));
-            std::vector<Hit> hits = accel.closest_hits(scaled(rays, scale), {.level = configuration.level});
-            for (Hit& hit : hits)
-                if (hit.hit) hit.t /= scale;
-            return hits;
+            return hits_at_scale(run, configuration, rays, exponent,
+                                 [&](AbstractAccel& accel, float scale) { accel.push(scaled(sphere, scale)); });
         };
         const std::vector<Hit> expected = hits_at(0);
         CaseRun::Outcome outcome{
@@ -41,7 +27,7 @@ void powers_of_two(CaseRun& run) {
             const std::vector<Hit> hits = hits_at(exponent);
             outcome.n += hits.size();
             for (std::size_t i = 0; i < rays.size(); ++i)
-                if (std::memcmp(&hits[i], &expected[i], sizeof(Hit)) != 0 && outcome.faults++ == 0)
+                if (!same_bits(hits[i], expected[i]) && outcome.faults++ == 0)
                     outcome.what = text("differs at 2^", exponent, " from the unit scale: ", hexadecimal(rays[i]));
         }
         run.expect(configuration, outcome);
@@ -127,14 +113,11 @@ void gear_on_a_floor(CaseRun& run) {
         run.measure(world, rays, {.params = {{"from", text("a height of ", height)}}});
     }
     const std::vector<Ray> inside = rays_inside(gear, count, run.seed());
-    for (const Traced& traced : run.measure(world, inside, {.params = {{"from", "inside"}}}).traces) {
-        CaseRun::Outcome outcome = ask_each(traced, inside, [&](std::size_t, const Hit& hit) -> std::string {
-            return hit.hit && hit.primitive_index < gear.triangles.size() ? "" : "left the closed gear";
-        });
-        outcome.params = {{"from", "inside"}, {"measured", "leaks"}};
-        outcome.reference = "analytic";
-        run.expect(traced.configuration, outcome);
-    }
+    expect_each(run, run.measure(world, inside, {.params = {{"from", "inside"}}}).traces, inside,
+                {.params = {{"from", "inside"}, {"measured", "leaks"}}, .reference = "analytic"},
+                [&](std::size_t, std::size_t, const Hit& hit) {
+                    return hit.hit && hit.primitive_index < gear.triangles.size() ? "" : "left the closed gear";
+                });
 }
 
 // Each coordinate of each vertex has a size of its own.
@@ -156,9 +139,7 @@ void mixed_sizes(CaseRun& run) {
     std::vector<Ray> rays;
     for (std::size_t i = 0; i < run.amount(4'096, 200'000); ++i) {
         const uint first = static_cast<uint>(3 * (i % mesh.triangles.size()));
-        const dvec3 weights = random.weights(0);
-        dvec3 target(0);
-        for (uint k = 0; k < 3; ++k) target += weights[static_cast<int>(k)] * dvec3(mesh.positions[first + k]);
+        const dvec3 target = point_in(mesh, first, random.weights(0));
         rays.push_back(ray_to(target, dvec3(point())));
     }
     const Measured measured = run.measure(world_of(mesh), rays);
@@ -185,18 +166,114 @@ void smallest_beside_largest(CaseRun& run) {
     two.instances = {{"", 0, {}}, {"", 1, {}}};
     run.measure(world_of(two), rays, {.params = {{"meshes", 2}}});
     append(small, large);
-    for (const Traced& traced : trace(run.devices(), run.configurations(), world_of(small), {rays, 0})) {
-        CaseRun::Outcome outcome = ask_each(traced, rays, [&](std::size_t i, const Hit& hit) -> std::string {
-            return hit.hit && hit.primitive_index == i % 2 ? "" : "missed its triangle";
-        });
-        outcome.params = {{"meshes", 1}};
-        outcome.reference = "analytic";
-        outcome.only_measured = "sizes that differ by 1e36 in one mesh leave the range of float32 in its unit";
-        run.expect(traced.configuration, outcome);
+    expect_each(run, run.trace(world_of(small), rays), rays,
+                {.params = {{"meshes", 1}},
+                 .reference = "analytic",
+                 .only_measured = "sizes that differ by 1e36 in one mesh leave the range of float32 in its unit"},
+                [](std::size_t, std::size_t i, const Hit& hit) {
+                    return hit.hit && hit.primitive_index == i % 2 ? "" : "missed its triangle";
+                });
+}
+
+// ---- Points and normals of hits on instances with unequally scaled axes.
+
+constexpr double most_angle = 1e-5, most_length_error = 1e-6;
+
+// A function that returns the matrix by which normals go through a transform.
+using NormalRule = glm::dmat3 (*)(const Transform&);
+
+double angle_between(const dvec3& a, const dvec3& b) {
+    const dvec3 u = normalize(a), v = normalize(b);
+    return std::atan2(length(cross(u, v)), dot(u, v));
+}
+
+// A sphere with normals, under another transform for each ray.
+struct Scaled {
+    Mesh mesh;
+    std::vector<Transform> transforms;
+    std::vector<Ray> rays;
+};
+
+Scaled scaled_spheres(float most, std::size_t count, std::uint64_t seed) {
+    Random random(seed);
+    Scaled made{make_icosphere(2), {}, {}};
+    made.mesh.normals = made.mesh.positions;
+    for (std::size_t i = 0; i < count; ++i) {
+        const ScaledPlace placed = scaled_place(random, most);
+        made.transforms.push_back(placed.transform);
+        made.rays.push_back(placed.ray);
     }
+    return made;
+}
+
+struct Errors {
+    std::vector<double> angles;
+    std::uint64_t faults = 0;
+    std::string first;
+};
+
+void compare(const Scaled& scaled, std::size_t i, const Surface& surface, NormalRule rule, Errors& errors) {
+    const auto fault = [&](const std::string& what) {
+        if (errors.faults++ == 0) errors.first = text(what, ": ", hexadecimal(scaled.rays[i]));
+    };
+    if (!surface.is_hit) return fault("a miss");
+    const glm::dmat3 to_world = rule(scaled.transforms[i]);
+    const auto corner = [&](std::size_t k) { return dvec3(scaled.mesh.positions[surface.vertices[k]]); };
+    const dvec3 geometric = dvec3(to_world * cross(corner(1) - corner(0), corner(2) - corner(0)));
+    const double u = surface.uv.x, v = surface.uv.y;  // normals of the sphere are its vertices
+    const dvec3 shading = dvec3(to_world * ((1 - u - v) * corner(0) + u * corner(1) + v * corner(2)));
+    const double angle =
+        std::max(angle_between(dvec3(surface.point.normal), geometric), angle_between(dvec3(surface.normal), shading));
+    const double length_error =
+        std::max(std::abs(length(dvec3(surface.point.normal)) - 1), std::abs(length(dvec3(surface.normal)) - 1));
+    errors.angles.push_back(angle);
+    if (!(angle <= most_angle)) return fault(text("a normal is off by ", angle));
+    if (!(length_error <= most_length_error)) return fault(text("a normal's length is off by ", length_error));
+    if (!surface.is_front) fault("the back of a triangle that shows its front");
+}
+
+std::vector<Surface> surfaces_of(AbstractAccel& accel, const Scaled& scaled) {
+    const AccelHandle handle = accel.push(scaled.mesh);
+    std::vector<Surface> surfaces;
+    for (std::size_t i = 0; i < scaled.rays.size(); ++i) {
+        accel.update_transform(handle, scaled.transforms[i]);
+        const std::span<const Ray> ray(&scaled.rays[i], 1);
+        surfaces.push_back(accel.surfaces(ray, accel.closest_hits(ray)).front());
+    }
+    return surfaces;
+}
+
+CaseRun::Outcome outcome_of(const Scaled& scaled, std::span<const Surface> surfaces, float most, NormalRule rule) {
+    Errors errors;
+    for (std::size_t i = 0; i < surfaces.size(); ++i) compare(scaled, i, surfaces[i], rule, errors);
+    const double largest = errors.angles.empty() ? 0 : std::ranges::max(errors.angles);
+    return {.params = {{"exponent", most}},
+            .results = {{"largest_angle", largest}},
+            .n = surfaces.size(),
+            .faults = errors.faults,
+            .what = errors.first,
+            .reference = "f64",
+            .fault_of = "twinray"};
 }
 
 }  // namespace
+
+void surfaces_of_scaled_instances(CaseRun& run) {
+    for (const float most : {1.0f, 5.0f, 9.0f}) {
+        const Scaled scaled = scaled_spheres(most, run.amount(24, 2'000), run.seed());
+        for (const Configuration& configuration : run.one_configuration_each()) {
+            AccelOptions options = run.devices().options(configuration);
+            options.keeps_surfaces = true;
+            Context& context = run.devices().context(configuration.backend);
+            const auto accel = Devices::make_accel(context, configuration.backend, options);
+            const std::vector<Surface> surfaces = surfaces_of(*accel, scaled);
+            run.expect(configuration, outcome_of(scaled, surfaces, most, normals_of));
+            CaseRun::Outcome control = outcome_of(scaled, surfaces, most, linear_of);
+            control.control = "normals by the matrix itself";
+            run.expect(configuration, control);
+        }
+    }
+}
 
 std::vector<SuiteCase> scale_cases() {
     return {

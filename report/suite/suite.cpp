@@ -2,15 +2,59 @@
 #include "report/suite/suite.h"
 
 #include <algorithm>
-#include <utility>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <numeric>
 
-#include "report/suite/case_run.h"
-#include "report/suite/schedule.h"
+#include "engine/core/files.h"
+#include "engine/core/json_input.h"
+#include "report/suite/sections.h"
 #include "samples/support/progress.h"
-#include "engine/core/stopwatch.h"
 
 namespace twinray::suite {
 namespace {
+
+struct Section {
+    char letter;
+    std::string_view name;
+    Catalogue* cases;
+};
+constexpr std::array sections = {Section{'W', "edges, vertices, watertightness", edge_cases},
+                                 Section{'S', "scale and position", scale_cases},
+                                 Section{'T', "triangle shape", shape_cases},
+                                 Section{'N', "invalid and special input", input_cases},
+                                 Section{'I', "instances", instance_cases},
+                                 Section{'B', "structure, build and refit", build_cases},
+                                 Section{'F', "self-intersection and arithmetic", arithmetic_cases},
+                                 Section{'L', "what each level costs", price_cases},
+                                 Section{'V', "view factors", view_factor_cases},
+                                 Section{'R', "radiosity", radiosity_cases},
+                                 Section{'G', "light and centroids", light_cases},
+                                 Section{'C', "collisions", collision_cases},
+                                 Section{'D', "distances", distance_cases},
+                                 Section{'P', "pictures", picture_energy_cases},
+                                 Section{'P', "pictures", picture_scattering_cases},
+                                 Section{'P', "pictures", picture_error_cases},
+                                 Section{'P', "pictures", picture_pixel_cases},
+                                 Section{'K', "the driver's own structures", nullptr}};  // report/conformance
+
+constexpr std::size_t aimed = 13;  // the first ones of the cases about any rays
+constexpr std::array<std::string_view, 64> any = {
+    "W01", "W02", "W03", "W04", "W05", "W06", "W07", "W08", "W09", "W10", "W11", "W16", "W17", "S02", "S03", "S04",
+    "S05", "S06", "S07", "S08", "S09", "S10", "S11", "S12", "T01", "T02", "T03", "T06", "T07", "T08", "T09", "T10",
+    "T11", "T12", "T13", "N01", "N02", "N03", "N04", "N05", "N06", "N09", "N13", "N15", "I02", "I03", "I05", "I07",
+    "I08", "I09", "I11", "I12", "B01", "B02", "B03", "B04", "B05", "B08", "B12", "B15", "B16", "L01", "L02", "L03"};
+
+constexpr std::array<std::string_view, 14> crossed = {"W02", "W03", "W04", "W05", "W06", "W07", "W08",
+                                                      "W09", "W11", "W12", "W13", "W16", "W17", "T05"};
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* schema = "twinray-progress/1";
+
+CaseProgress progress_of(const Json& json) {
+    return {json.at("effort"), json.at("seconds"), json.at("growth"), json.at("uncertainty"), json.at("can_improve")};
+}
 
 class SuiteRun {
   public:
@@ -111,35 +155,101 @@ class SuiteRun {
 
 std::vector<SuiteCase> catalogue() {
     std::vector<SuiteCase> all;
-    for (const auto& section :
-         {edge_cases, scale_cases, shape_cases, input_cases, instance_cases, build_cases, arithmetic_cases, price_cases,
-          view_factor_cases, hidden_factor_cases, radiosity_cases, light_cases, collision_cases, distance_cases,
-          picture_energy_cases, picture_scattering_cases, picture_error_cases, picture_pixel_cases}) {
-        const std::vector<SuiteCase> cases = section();
-        all.insert(all.end(), cases.begin(), cases.end());
-    }
+    for (const Section& section : sections)
+        if (section.cases) std::ranges::move(section.cases(), std::back_inserter(all));
     return all;
 }
 
 std::string_view section_of(std::string_view id) {
-    switch (id.empty() ? ' ' : id.front()) {
-        case 'W': return "edges, vertices, watertightness";
-        case 'S': return "scale and position";
-        case 'T': return "triangle shape";
-        case 'N': return "invalid and special input";
-        case 'I': return "instances";
-        case 'B': return "structure, build and refit";
-        case 'F': return "self-intersection and arithmetic";
-        case 'L': return "what each level costs";
-        case 'V': return "view factors";
-        case 'R': return "radiosity";
-        case 'G': return "light and centroids";
-        case 'C': return "collisions";
-        case 'D': return "distances";
-        case 'P': return "pictures";
-        case 'K': return "the driver's own structures";
-        default: return "";
+    for (const auto& [letter, name, cases] : sections)
+        if (id.starts_with(letter)) return name;
+    return "";
+}
+
+std::span<const std::string_view> cases_about(Subject subject) {
+    switch (subject) {
+        case Subject::aimed_rays: return std::span(any).first(aimed);
+        case Subject::hits: return any;
+        case Subject::crossings: return crossed;
     }
+    return {};
+}
+
+bool is_about(std::string_view case_id, Subject subject) {
+    const bool is_of_users_scene = case_id.starts_with('L') && case_id > "L10";
+    const bool asks_software_alone = case_id == "F08" || case_id == "F09";  // so that no claim about a driver needs it
+    if (is_of_users_scene || asks_software_alone) return subject == Subject::hits;
+    const std::span<const std::string_view> ids = cases_about(subject);
+    return std::ranges::find(ids, case_id) != ids.end();
+}
+
+double uncertainty_of(std::span<const Record> records) {
+    double widest = 0;
+    for (const Record& record : records) {
+        if (!record.was_run || !record.pass || record.n == 0 || frame::is_control(record)) continue;
+        const Interval rate = rate_interval_95(record.faults, record.n);
+        widest = std::max(widest, (rate.high - rate.low) / 2);
+    }
+    return widest;
+}
+
+CaseProgress after_step(const CaseProgress& before, double seconds, double uncertainty) {
+    const double least_gain = 0.9;  // of the uncertainty before
+    return {.effort = before.effort + effort_step,
+            .seconds = seconds,
+            .growth = before.seconds > 0 ? std::max(1.0, seconds / before.seconds) : before.growth,
+            .uncertainty = uncertainty,
+            .can_improve = uncertainty < least_gain * before.uncertainty};
+}
+
+std::optional<std::size_t> next_to_improve(std::span<const CaseProgress> cases, double seconds_left) {
+    std::optional<std::size_t> best;
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        const CaseProgress& here = cases[i];
+        if (!here.can_improve || here.uncertainty <= 0 || here.effort >= 1) continue;
+        if (here.seconds * here.growth > seconds_left) continue;
+        if (!best || here.uncertainty > cases[*best].uncertainty) best = i;
+    }
+    return best;
+}
+
+std::vector<std::size_t> by_turns(std::span<const char> sections) {
+    std::map<char, std::size_t> counts;
+    std::vector<std::size_t> turns;
+    for (const char section : sections) turns.push_back(counts[section]++);
+    std::vector<std::size_t> order(sections.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return turns[a] < turns[b]; });
+    return order;
+}
+
+SuiteState read_state(const std::filesystem::path& file, const std::string& key) {
+    std::ifstream in(file);
+    if (!in) fail("progress '", file.string(), "' cannot be opened: there is no run to continue");
+    SuiteState state{file, key, {}, 0};
+    try {
+        const Json json = parse_json<Json>(in);
+        if (json.at("schema") != schema) fail("schema ", json.at("schema").dump(), " is not ", schema);
+        if (json.at("key") != key) fail("it was started as ", json.at("key").dump(), ", and this is \"", key, '"');
+        for (const auto& [id, progress] : json.at("cases").items()) state.cases[id] = progress_of(progress);
+        state.seconds = json.at("seconds");
+    } catch (const std::exception& error) {
+        fail("progress '", file.string(), "': ", error.what());
+    }
+    return state;
+}
+
+void write_state(const SuiteState& state) {
+    if (state.file.empty()) return;
+    Json cases = Json::object();
+    for (const auto& [id, progress] : state.cases)
+        cases[id] = {{"effort", progress.effort},
+                     {"seconds", progress.seconds},
+                     {"growth", progress.growth},
+                     {"uncertainty", progress.uncertainty},
+                     {"can_improve", progress.can_improve}};
+    const Json json{{"schema", schema}, {"key", state.key}, {"seconds", state.seconds}, {"cases", cases}};
+    write_file(state.file, json.dump(1) + '\n');
 }
 
 std::string run(std::span<const SuiteCase> cases, const Settings& settings, Devices& devices, Recorder& recorder,

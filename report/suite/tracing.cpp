@@ -22,8 +22,7 @@ struct Stage {
 
 Stage make_stage(Devices& devices, const Configuration& configuration, const World& world, const Tracing& tracing) {
     const std::span<const Ray> rays = tracing.rays;
-    const std::optional<Layout> wanted = tracing.control ? tracing.control->layout : std::nullopt;
-    AbstractAccel& accel = devices.empty_accel(configuration, wanted.value_or(devices.trees().layout));
+    AbstractAccel& accel = devices.empty_accel(configuration, tracing.control ? tracing.control->layout : std::nullopt);
     world.fill(accel);
     accel.sync();
     Context& context = accel.context();
@@ -124,6 +123,14 @@ std::vector<Traced> trace(Devices& devices, std::span<const Configuration> confi
                                         static_cast<double>(tracing.rays.size()));
         }
     return all;
+}
+
+std::vector<uint> crossings_of(Devices& devices, const Configuration& configuration, const World& world,
+                               std::span<const Ray> rays) {
+    AbstractAccel& accel = devices.empty_accel(configuration);
+    world.fill(accel);
+    accel.sync();
+    return devices.crossing_counter(configuration).count(accel, rays);
 }
 
 double total_ms(const std::vector<PassTiming>& timings) {

@@ -64,6 +64,10 @@ struct Traced {
 std::vector<Traced> trace(Devices& devices, std::span<const Configuration> configurations, const World& world,
                           const Tracing& tracing);
 
+// Returns how often each ray crosses the world, see CaseRun::count_crossings().
+std::vector<uint> crossings_of(Devices& devices, const Configuration& configuration, const World& world,
+                               std::span<const Ray> rays);
+
 TimeFigures time_figures(const Traced& traced);
 // Takes any repetitions, at least one.
 TimeFigures time_figures(const std::string& metric, std::vector<double> samples);

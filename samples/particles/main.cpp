@@ -10,10 +10,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include <twinray/context.h>
 #include <twinray/tlas.h>
-#include "samples/particles/renderer.h"
-#include "samples/particles/simulation.h"
+#include "samples/particles/particles.h"
 #include "samples/support/program.h"
 #include "samples/support/text.h"
 

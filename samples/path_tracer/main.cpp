@@ -5,15 +5,10 @@
 #include <cstdio>
 #include <sstream>
 
-#include <twinray/context.h>
-#include <twinray/scene.h>
 #include "engine/core/platform.h"
 #include "renderer/configuration.h"
 #include "renderer/film_file.h"
-#include "renderer/moving_scene.h"
-#include "samples/path_tracer/rendering.h"
-#include "samples/path_tracer/report.h"
-#include "samples/path_tracer/session.h"
+#include "samples/path_tracer/path_tracer.h"
 #include "samples/support/text.h"
 
 namespace twinray::path_tracer {
@@ -26,7 +21,11 @@ int render(const Options& options, Ranks& ranks) {
     const Session session = make_session(options, ranks);
     const auto accel = make_accel(*session.context, session.scene, session.accel);
     const Rendering rendering = render_film(options, session, *accel, ranks);
-    if (rendering.signal) say_interrupted(rendering, checkpoint_file(options.output, ranks));
+    if (rendering.signal)
+        std::fprintf(
+            stderr,
+            "path_tracer: interrupted after %g paths per pixel, which '%s' holds; --resume continues from there\n",
+            rendering.film.mean_samples(), checkpoint_file(options.output, ranks).string().c_str());
     if (ranks.index() == 0) report_render(options, session, *accel, rendering);
     return rendering.signal ? 128 + rendering.signal : 0;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "samples/path_tracer/session.h"
+#include "samples/path_tracer/path_tracer.h"
 
 #include <CLI/CLI.hpp>
 
@@ -219,12 +219,6 @@ ParsedOptions parse_options(int argc, char** argv) {
     add_sequence(app, result.options.sequence);
     result.exit_status = samples::parse(app, argc, argv, "path_tracer");
     return result;
-}
-
-ContextDesc context_desc(const Options& options) {
-    ContextDesc desc = samples::context_desc(options, "path_tracer");
-    desc.pipeline_folder = user_pipeline_folder();
-    return desc;
 }
 
 }  // namespace twinray::path_tracer

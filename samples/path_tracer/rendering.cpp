@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "samples/path_tracer/rendering.h"
+#include "samples/path_tracer/path_tracer.h"
 
 #include <array>
 #include <chrono>
@@ -10,9 +10,7 @@
 
 #include "engine/core/platform.h"
 #include "renderer/configuration.h"
-#include "renderer/denoiser.h"
 #include "renderer/film_file.h"
-#include "renderer/rounds.h"
 #include "samples/support/progress.h"
 #include "samples/support/text.h"
 

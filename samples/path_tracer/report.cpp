@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "samples/path_tracer/report.h"
+#include "samples/path_tracer/path_tracer.h"
 
 #include <cmath>
 #include <cstdio>
@@ -212,12 +212,6 @@ void report_render(const Options& options, const Session& session, const Abstrac
     std::printf("%s: %s%s by %s (%s; %s) in %.1f s, %.2f Mrays/s\n%s", options.output.string().c_str(),
                 film_text(film).c_str(), resumed.c_str(), accel.name().c_str(), trace_path(accel).c_str(),
                 session.accel.why.c_str(), stats.seconds, mega_rays_per_second(stats), against.c_str());
-}
-
-void say_interrupted(const Rendering& rendering, const std::filesystem::path& checkpoint) {
-    std::fprintf(stderr,
-                 "path_tracer: interrupted after %g paths per pixel, which '%s' holds; --resume continues from there\n",
-                 rendering.film.mean_samples(), checkpoint.string().c_str());
 }
 
 void report_merge(const MergeOptions& options, const Film& film) {

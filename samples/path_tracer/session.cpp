@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "samples/path_tracer/session.h"
+#include "samples/path_tracer/path_tracer.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
-#include <twinray/scene.h>
-#include <twinray/geometry.h>
-#include <twinray/tlas.h>
 #include "renderer/camera.h"
 #include "renderer/configuration.h"
 #include "renderer/film_file.h"
@@ -147,7 +144,8 @@ Shard make_shard(const Options& options, const Ranks& ranks) {
 }
 
 ContextDesc desc_for(const Options& options, const Ranks& ranks) {
-    ContextDesc desc = context_desc(options);
+    ContextDesc desc = samples::context_desc(options, "path_tracer");
+    desc.pipeline_folder = user_pipeline_folder();
     if (ranks.count() > 1 && options.device.empty())
         desc.device = std::to_string(samples::device_of_rank(list_devices(), ranks.local_index()));
     return desc;

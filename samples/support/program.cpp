@@ -8,7 +8,6 @@
 #include <cstdlib>
 #include <fstream>
 
-#include <twinray/tlas.h>
 #include "engine/core/platform.h"
 #include "samples/support/text.h"
 

@@ -9,7 +9,6 @@
 #include <string>
 
 #include <twinray/tlas.h>
-#include <twinray/abstract_accel.h>
 
 namespace CLI {
 class App;

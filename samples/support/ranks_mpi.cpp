@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "samples/support/mpi_calls.h"
+#include "samples/support/ranks.h"
 
 namespace twinray::samples {
 namespace {

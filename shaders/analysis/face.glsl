@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Names a face: faces are numbered by instance, then by triangle.
+// The common beginning of kernels of analyses. A face: they are numbered by instance, then by triangle.
+#include "twinray/glsl/common.glsl"
+
 struct Face
 {
     uint instance;

@@ -2,7 +2,6 @@
 // Rays between points of two faces, and their parts of the exchange.
 #ifndef TWINRAY_ANALYSIS_PAIR_RAYS_H
 #define TWINRAY_ANALYSIS_PAIR_RAYS_H
-#include "shaders/analysis/face_part.h"
 #include "shaders/analysis/view_factors.h"
 
 // Rays between two faces: samples `first` to `first + SAMPLES_OF_CHUNK - 1` of each replicate, in the order of

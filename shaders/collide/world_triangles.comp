@@ -2,8 +2,6 @@
 // Computes triangles as instances place them: vertices in float64, and boxes around them, rounded outward.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_shader_explicit_arithmetic_types_float64 : require
-#include "twinray/glsl/common.glsl"
 #include "shaders/collide/world_triangle.glsl"
 #include "shaders/collide/world_vertex.h"
 layout(local_size_x = 64) in;

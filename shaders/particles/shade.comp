@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Computes the light that the lamp sends to the camera from each hit, by the material that the instance's key names.
+// Computes the light that the lamp sends to the camera from each hit, by the material that the instance's key names;
+// then the mean of a pixel's rays.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/multi_type_set.glsl"
 #include "twinray/glsl/spawn.glsl"
 #include "shaders/particles/picture.h"
 layout(local_size_x = 64) in;
+
+#ifdef KERNEL_SHADE
 layout(push_constant, scalar) uniform Push { ShadeArgs args; };
 
 const float PI = 3.14159265;
@@ -81,3 +84,22 @@ void main()
     else
         AT(args.light, i).direct = vec3(0.0);
 }
+#endif
+
+#ifdef KERNEL_ADD_LIGHT
+layout(push_constant, scalar) uniform Push { AddLightArgs args; };
+
+void main()
+{
+    uint pixel = global_index();
+    if (pixel >= args.count) return;
+    vec3 sum = vec3(0.0);
+    for (uint i = pixel * args.samples; i < (pixel + 1u) * args.samples; i++)
+    {
+        Light light = AT(args.light, i);
+        sum += light.indirect;
+        if (AT(args.shadow_hits, i).hit == 0u) sum += light.direct;
+    }
+    AT(args.picture, pixel) = sum / float(args.samples);
+}
+#endif

@@ -3,8 +3,6 @@
 // `waiting` says that the sibling of the node k levels up is still to be searched.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_shader_explicit_arithmetic_types_float64 : require
-#include "twinray/glsl/common.glsl"
 #include "shaders/collide/world_triangle.glsl"
 #include "shaders/points/point_search.h"
 layout(local_size_x = 64) in;

@@ -5,8 +5,6 @@
 #define TWINRAY_SHARED_BUILD_H
 #include "shaders/shared/bvh.h"
 #include "shaders/shared/leaf.h"
-#include "twinray/glsl/rays.h"
-#include "twinray/glsl/transform.h"
 #include "twinray/glsl/triangle.h"
 #include "shaders/shared/workgroup.h"
 

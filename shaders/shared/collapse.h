@@ -9,7 +9,6 @@
 #ifndef TWINRAY_SHARED_COLLAPSE_H
 #define TWINRAY_SHARED_COLLAPSE_H
 #include "shaders/shared/encode_node.h"
-#include "shaders/shared/surface_area.h"
 
 // An inner node that becomes a node of records.
 struct CollapseItem

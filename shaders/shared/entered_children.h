@@ -2,7 +2,6 @@
 // The children of a node that a ray enters, of any layout: the first one, and the others as an entry of the stack.
 #ifndef TWINRAY_SHARED_ENTERED_CHILDREN_H
 #define TWINRAY_SHARED_ENTERED_CHILDREN_H
-#include "shaders/shared/compressed.h"
 #include "shaders/shared/encode_node.h"
 #include "shaders/shared/visit.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Features that a scene or a trace may need and that traversal otherwise leaves out: one bit each of the specialisation
-// constant FEATURES, which features_of() of engine/accel/features_of.h chooses. A kernel specialised for more is also
+// constant FEATURES, which features_of() of engine/accel/trace_desc.h chooses. A kernel specialised for more is also
 // right and gives the same hits, bit for bit; at LEVEL_FAST but for the signs of zeros.
 #ifndef TWINRAY_SHARED_FEATURES_H
 #define TWINRAY_SHARED_FEATURES_H

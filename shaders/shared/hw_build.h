@@ -1,8 +1,21 @@
 // SPDX-License-Identifier: MIT
-// The arguments of the kernels that prepare the driver's input. Needs hw_tlas_header.h and surface_area.h before it.
+// The arguments of the kernels that prepare the driver's input.
 #ifndef TWINRAY_SHARED_HW_BUILD_H
 #define TWINRAY_SHARED_HW_BUILD_H
+#include "shaders/shared/surface_area.h"
+#include "shaders/shared/world_bound.h"
+#include "shaders/shared/hw_tlas_header.h"
 #include "twinray/glsl/triangle.h"
+
+// Morton codes of the instances' centers, for drivers that build in input order.
+struct HwCodesArgs
+{
+    REF(InstanceRecord) records;
+    REF(WorldBound) bound;
+    Uints keys;
+    uint count;
+    uint reserved;
+};
 
 // The driver's input: the records in their build order, each with the address of its bottom-level structure.
 struct HwGatherArgs

@@ -32,14 +32,4 @@ struct HwTlasHeader
     REF(HwInstance) instances;  // by InstanceId; absent without FEATURE_REMAP
 };
 BUFFER_OF(HwTlasHeader, 8);
-
-// Morton codes of the instances' centers, for drivers that build in input order.
-struct HwCodesArgs
-{
-    REF(InstanceRecord) records;
-    REF(WorldBound) bound;
-    Uints keys;
-    uint count;
-    uint reserved;
-};
 #endif

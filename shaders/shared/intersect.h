@@ -2,7 +2,6 @@
 // Watertight ray-triangle tests.
 #ifndef TWINRAY_SHARED_INTERSECT_H
 #define TWINRAY_SHARED_INTERSECT_H
-#include "twinray/glsl/exact.h"
 #include "twinray/glsl/word64.h"
 #include "shaders/shared/ray_space.h"
 

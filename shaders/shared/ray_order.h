@@ -2,8 +2,6 @@
 // The order in which rays that come at random are traced: by their origins, then by their directions.
 #ifndef TWINRAY_SHARED_RAY_ORDER_H
 #define TWINRAY_SHARED_RAY_ORDER_H
-#include "shaders/shared/morton.h"
-#include "twinray/glsl/rays.h"
 #include "shaders/shared/world_bound.h"
 
 const uint RAY_CELL_BITS = 3u; // of each axis of the grid

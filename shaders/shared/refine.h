@@ -6,7 +6,6 @@
 //    One at an end of the ray does not count, and the ray is traced again without it.
 #ifndef TWINRAY_SHARED_REFINE_H
 #define TWINRAY_SHARED_REFINE_H
-#include "shaders/shared/exact_double.h"
 #include "shaders/shared/refine_scene.h"
 #include "shaders/shared/trace.h"
 

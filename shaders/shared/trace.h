@@ -4,7 +4,6 @@
 #define TWINRAY_SHARED_TRACE_H
 #include "shaders/shared/features.h"
 #include "twinray/glsl/program.h"
-#include "twinray/glsl/rays.h"
 #include "shaders/shared/workgroup.h"
 #ifdef TWINRAY_REFINED
 #include "shaders/shared/refine_scene.h"

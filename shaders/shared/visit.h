@@ -3,11 +3,9 @@
 // or of the top level, the needed data of the instance that it is in, and its finds so far.
 #ifndef TWINRAY_SHARED_VISIT_H
 #define TWINRAY_SHARED_VISIT_H
-#include "shaders/shared/bvh.h"
 #include "shaders/shared/leaf_visit.h"
 #include "shaders/shared/ray_space.h"
 #include "shaders/shared/trace.h"
-#include "twinray/glsl/transform.h"
 #ifdef TWINRAY_REFINED
 #include "shaders/shared/certified.h"
 #endif

@@ -2,7 +2,6 @@
 // A box around all instances, from the box of each geometry and the transforms, rounded outward.
 #ifndef TWINRAY_SHARED_WORLD_BOUND_H
 #define TWINRAY_SHARED_WORLD_BOUND_H
-#include "twinray/glsl/exact.h"
 #include "twinray/glsl/instance.h"
 #include "shaders/shared/morton.h"
 

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: MIT
-// Turns binary trees into trees of NODE_WIDTH children per node, level by level: the items of one level make those of
-// the next, and those of subtrees that a group can do whole. Begun once per tree.
+// Turns binary trees into trees of NODE_WIDTH children per node, and writes the records of their leaves.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"
 #include "shaders/shared/collapse.h"
-layout(local_size_x = COLLAPSE_GROUP) in;
-layout(constant_id = 0) const uint STEP = COLLAPSE_LEVEL;
 layout(constant_id = NODE_WIDTH_CONSTANT) const uint NODE_WIDTH = 4u;
+
+#ifdef KERNEL_COLLAPSE
+// Goes level by level: the items of one level make those of the next, and those of subtrees that a group can do whole.
+// Begun once per tree.
+layout(local_size_x = COLLAPSE_GROUP) in;
 layout(push_constant, scalar) uniform Push { CollapseArgs args; };
+layout(constant_id = 0) const uint STEP = COLLAPSE_LEVEL;
 
 // Numbers of items, or positions in their lists, for the next level and for subtrees.
 struct ItemLists
@@ -87,3 +90,75 @@ void main()
     if (STEP == COLLAPSE_ROOTS) begin(index);
     else do_item(load_item(args.items, index));
 }
+#endif
+
+#ifdef KERNEL_COLLAPSE_SUBTREES
+// Does a subtree per group: items wait in a queue, from which the group takes as many as it has invocations.
+layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
+layout(push_constant, scalar) uniform Push { CollapseArgs args; };
+
+// All invocations of a group see the same contents.
+REFERENCE(Queue, coherent, CollapseItem items[], 8)
+
+shared uint queued; // how many items ever were
+
+void do_item(BuildTree tree, Queue queue, CollapseItem item)
+{
+    NodeChildren children = children_of(tree.nodes, item.node_and_level, NODE_WIDTH);
+    uint count = 0u;
+    UNROLL for (uint i = 0u; i < NODE_WIDTH; i = i + 1u) count += leaves_of_item(children, i) != 0u ? 1u : 0u;
+    uint end = 0u;
+    if (count != 0u) end = atomicAdd(queued, count); // before all writes, which it waits for on CPUs
+    CollapseStep found = write_node(tree, args.leaf_indices, item, children, NODE_WIDTH);
+    UNROLL for (uint i = 0u; i < NODE_WIDTH; i = i + 1u)
+    {
+        if (found.leaves[i] == 0u) continue;
+        AT(queue, end) = found.items[i];
+        end = end + 1u;
+    }
+}
+
+void main()
+{
+    if (group_index() >= AT(args.subtree_level, 0).count) return;
+    CollapseItem root = load_item(args.subtrees, group_index());
+    BuildTree tree = AT(args.trees, root.tree);
+    Queue queue = Queue(address_at(args.queues.address,
+                                   queue_begin(tree.first, root.descendants + 1u - records_of_node(NODE_WIDTH)), 16u));
+    if (gl_LocalInvocationID.x == 0u)
+    {
+        AT(queue, 0) = root;
+        queued = 1u;
+    }
+    uint begin = 0u;
+    for (;;)
+    {
+        memoryBarrierBuffer();
+        barrier();
+        uint end = min(begin + gl_WorkGroupSize.x, queued);
+        if (begin == end) return;
+        barrier(); // all have read it before any adds to it
+        memoryBarrierBuffer();
+        uint mine = begin + gl_LocalInvocationID.x;
+        if (mine < end) do_item(tree, queue, AT(queue, mine));
+        begin = end;
+    }
+}
+#endif
+
+#ifdef KERNEL_ENCODE_RECORDS
+layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
+layout(push_constant, scalar) uniform Push { BuildArgs args; };
+
+void main()
+{
+    if (group_index() >= args.chunk_count) return;
+    LeafChunk chunk = AT(args.chunks, group_index());
+    BuildTree tree = AT(args.trees, chunk.tree);
+    for (uint i = gl_LocalInvocationID.x; i < chunk.count; i += gl_WorkGroupSize.x)
+    {
+        uint position = chunk.first + i;
+        store_record(tree.records, AT(args.codes, position), encode_leaf(tree, AT(args.order, position) - tree.first));
+    }
+}
+#endif

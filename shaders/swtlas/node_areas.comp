@@ -5,7 +5,6 @@
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"
 #include "shaders/shared/compressed.h"
-#include "shaders/shared/surface_area.h"
 layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
 layout(push_constant, scalar) uniform Push { NodeAreasArgs args; };
 

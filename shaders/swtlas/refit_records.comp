@@ -1,13 +1,50 @@
 // SPDX-License-Identifier: MIT
-// Makes new records for an old topology. Each invocation has a run of slots, whose leaves it refits one after the
-// other; the last child of a node to be refitted continues with the node.
+// Makes new records for an old topology: first the node above each record, then the records. The slots of a tree are
+// distributed among the blocks of its leaves.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"
 #include "shaders/shared/collapse.h"
-#include "shaders/swtlas/slots.glsl"
-layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
 layout(push_constant, scalar) uniform Push { RefitArgs args; };
+layout(constant_id = NODE_WIDTH_CONSTANT) const uint NODE_WIDTH = 4u;
+
+uint slots_begin(BuildTree tree, LeafChunk chunk) { return record_count(chunk.first - tree.first, NODE_WIDTH); }
+uint slots_end(BuildTree tree, LeafChunk chunk)
+{
+    return record_count(chunk.first - tree.first + chunk.count, NODE_WIDTH);
+}
+
+#ifdef KERNEL_RECORD_PARENTS
+layout(local_size_x = BUILD_GROUP) in;
+
+void visit(BuildTree tree, uint slot)
+{
+    uint base = 2u * tree.first;
+    if (slot == 0u) AT(args.parents, base) = NOTHING;
+    CompressedRecord record = load_record(tree.records, slot);
+    if (is_leaf(record)) return;
+    AT(args.missing, base + slot) = children_in(record);
+    if (children_in(record) == 0u) return;
+    ChildSlots slots = child_slots(record, second_half_of(tree.records, slot, record));
+    DONT_UNROLL for (uint i = 0u; i < NODE_WIDTH; ++i)
+        if (has_child(slots, i)) AT(args.parents, base + child_index(slots, i)) = slot;
+}
+
+void main()
+{
+    if (group_index() >= args.chunk_count) return;
+    LeafChunk chunk = AT(args.chunks, group_index());
+    BuildTree tree = AT(args.trees, chunk.tree);
+    for (uint slot = slots_begin(tree, chunk) + gl_LocalInvocationIndex; slot < slots_end(tree, chunk);
+         slot += BUILD_GROUP)
+        visit(tree, slot);
+}
+#endif
+
+#ifdef KERNEL_REFIT_RECORDS
+// Each invocation has a run of slots, whose leaves it refits one after the other; the last child of a node to be
+// refitted continues with the node.
+layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
 
 // All groups see the same boxes, not through caches of one.
 REFERENCE(SharedBoxes, coherent, LeafBox items[], 8)
@@ -74,3 +111,4 @@ void main()
         while (node != NOTHING) node = leave(tree, node, refit_node(tree, node, boxes));
     }
 }
+#endif

@@ -3,7 +3,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"
-#include "shaders/verify/copy_items.h"
+#include "shaders/shared/copies.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { CopyItemsArgs args; };
 

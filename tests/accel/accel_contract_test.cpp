@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: MIT
 // One body for every accelerator: the software one, the hardware one through each way of tracing, and the reference.
 // Long because it is the contract, row by row: one fact a test, in one place. docs/contract.md lists them.
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <random>
-
 #include "engine/accel/world_bound.h"
 #include "validation/reference/aimed_rays.h"
 #include "tests/accel/accel_fixture.h"
@@ -389,10 +384,8 @@ TEST_P(Accel, TraceRefusesAddressesAndCountsItCannotServe) {
         {{.rays = {88}, .hits = {32}, .count = 2}, "64 bytes of rays at 88 and of hits at 32 must not overlap"},
         {{.rays = {16}, .hits = {16}, .count = 1ull << 32}, "4294967296 rays; at most 4294967295"},
     };
-    for (const auto& [desc, expected] : cases) {
-        const std::string what = error_if_any([&, refused = desc] { accel().trace(commands, view, refused); });
-        EXPECT_NE(what.find(expected), std::string::npos) << what;
-    }
+    for (const auto& [desc, expected] : cases)
+        expect_error(expected, [&, refused = desc] { accel().trace(commands, view, refused); });
     accel().trace(commands, view, {.rays = {}, .hits = {}, .count = 0});
     commands.submit();
     EXPECT_TRUE(accel().closest_hits({}).empty());
@@ -748,17 +741,12 @@ TEST_P(Accel, SixteenMillionRaysGoInOneCall) {
     const Buffer rays(context(), {.name = "rays", .bytes = count * sizeof(Ray)}),
         hits(context(), {.name = "hits", .bytes = count * sizeof(Hit)});
     const Ray ray = down(0.5f, 0.25f);
-    Commands input(context(), "many rays");
-    {
-        const auto pass = input.pass("all rays are void");
-        input.fill(rays, 0, rays.bytes(), 0);
-    }
+    test::submit_pass(context(), "all rays are void",
+                      [&](Commands& commands) { commands.fill(rays, 0, rays.bytes(), 0); });
     const std::uint64_t some[] = {0, 1, 8'388'608, 15'999'999};
-    {
-        const auto pass = input.pass("but these");
-        for (const std::uint64_t i : some) input.write(rays, ray, i * sizeof(Ray));
-    }
-    input.submit();
+    test::submit_pass(context(), "but these", [&](Commands& commands) {
+        for (const std::uint64_t i : some) commands.write(rays, ray, i * sizeof(Ray));
+    });
     Commands commands(context(), "one call");
     accel().trace(commands, accel().view(), {.rays = rays.ref<Ray>(), .hits = hits.ref<Hit>(), .count = count});
     commands.submit();
@@ -811,15 +799,9 @@ TEST_P(Accel, KernelsReadTheWorldBoundOnTheDevice) {
         device_copy(std::array{Transform::scaling({0, 1, 1}), Transform{}, Transform::scaling({1, 1, 0})});
     accel().update_transforms(handle, source.ref<Transform>(), 3);
     accel().sync();
-    const Buffer rays = device_copy(std::vector<Ray>(5, down(0.5f, 0.25f))), hits = device_copy(std::vector<Hit>(5));
-    Commands commands(context(), "count from the bound");
-    accel().trace(commands, accel().view(),
-                  {.rays = rays.ref<Ray>(),
-                   .hits = hits.ref<Hit>(),
-                   .count = 5,
-                   .indirect_count = {accel().world_bound_on_device().address + offsetof(WorldBound, unusable_count)}});
-    commands.submit();
-    const std::vector<Hit> found = download<Hit>(context(), hits, 5);
+    const std::vector<Hit> found = test::traced(
+        accel(), accel().view(), std::vector<Ray>(5, down(0.5f, 0.25f)),
+        {.indirect_count = {accel().world_bound_on_device().address + offsetof(WorldBound, unusable_count)}});
     EXPECT_EQ(found[1].hit, 1u);
     EXPECT_EQ(found[2].hit, 0u) << "two instances are unusable";
 }

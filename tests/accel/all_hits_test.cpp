@@ -3,10 +3,6 @@
 // users' kernels.
 #include <twinray/queries.h>
 
-#include <algorithm>
-#include <array>
-#include <random>
-
 #include "engine/core/kernel.h"
 #include "test_next_hit_hw.spv.h"
 #include "test_next_hit_sw.spv.h"

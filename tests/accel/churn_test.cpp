@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Long histories of edits, checked by the float64 reference after every sync.
-#include <random>
-
-#include "engine/core/vma.h"
+#include "engine/core/context.h"
 #include "validation/reference/aimed_rays.h"
 #include "tests/accel/accel_fixture.h"
 

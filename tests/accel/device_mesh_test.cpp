@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Meshes that are in device memory already: the same trees and hits as from the host, in each format, copied or in
 // place.
-#include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <random>
-
 #include "swtlas/tree.h"
 #include "tests/accel/accel_fixture.h"
 #include "tests/support/caller.h"
@@ -14,7 +9,6 @@ namespace twinray {
 namespace {
 
 using test::down;
-using test::error_if_any;
 using test::expect_error;
 using test::square;
 
@@ -55,16 +49,12 @@ class DeviceMeshTest : public test::AccelTest {
                 if (packing.format == VertexFormat::snorm16) std::memcpy(at, &snorm, 2);
             }
         vertices.resize(vertices.size() / 4 * 4);
-        std::vector<uint> indices;
         std::vector<std::uint16_t> narrow;
         for (const uvec3& triangle : mesh.triangles)
-            for (std::size_t k = 0; k < 3; ++k) {
-                indices.push_back(triangle[k]);
-                narrow.push_back(static_cast<std::uint16_t>(triangle[k]));
-            }
+            for (std::size_t k = 0; k < 3; ++k) narrow.push_back(static_cast<std::uint16_t>(triangle[k]));
         if (narrow.size() % 2) narrow.push_back(0);
         OnDevice made{device_copy(vertices),
-                      packing.indices == IndexFormat::uint16 ? device_copy(narrow) : device_copy(indices),
+                      packing.indices == IndexFormat::uint16 ? device_copy(narrow) : device_copy(mesh.triangles),
                       {}};
         made.mesh = {.name = "on device",
                      .positions = made.vertices.address() + packing.offset,
@@ -89,14 +79,16 @@ class DeviceMeshTest : public test::AccelTest {
         }
         return rays;
     }
-    // Expects the hits of another accelerator that got the mesh from the host.
-    void expect_hits_of(const Mesh& mesh, const char* what) {
+    // Expects the hits of another accelerator that got the mesh from the host, and returns their number.
+    std::ptrdiff_t expect_hits_at(const std::vector<Ray>& rays, const Mesh& mesh, const std::string& what) {
         const auto other = make_accel();
         other->push(mesh);
-        const std::vector<Ray> rays = rays_at(mesh, 2000);
-        const std::vector<Hit> hits = accel().closest_hits(rays), expected = other->closest_hits(rays);
-        EXPECT_EQ(std::memcmp(hits.data(), expected.data(), hits.size() * sizeof(Hit)), 0) << what;
-        EXPECT_GT(std::count_if(hits.begin(), hits.end(), [](const Hit& hit) { return hit.hit != 0; }), 50) << what;
+        const std::vector<Hit> hits = accel().closest_hits(rays);
+        EXPECT_TRUE(test::same_bytes(hits, other->closest_hits(rays))) << what;
+        return std::ranges::count(hits, 1u, &Hit::hit);
+    }
+    void expect_hits_of(const Mesh& mesh, const std::string& what) {
+        EXPECT_GT(expect_hits_at(rays_at(mesh, 2000), mesh, what), 50) << what;
     }
 };
 TWINRAY_OVER_EVERY_ACCEL(DeviceMeshTest);
@@ -106,15 +98,13 @@ TWINRAY_OVER_EVERY_ACCEL(DeviceMeshTest);
 Mesh coarse_soup() {
     Mesh mesh = make_soup(200, 4, 0.3f);
     for (vec3& p : mesh.positions)
-        p = vec3(std::clamp(std::round(p.x * 128), -128.0f, 128.0f), std::clamp(std::round(p.y * 128), -128.0f, 128.0f),
-                 std::clamp(std::round(p.z * 128), -128.0f, 128.0f)) /
-            128.0f;
+        for (int axis = 0; axis < 3; ++axis) p[axis] = std::clamp(std::round(p[axis] * 128), -128.0f, 128.0f) / 128.0f;
     return mesh;
 }
 
 Mesh with_snorm_positions(Mesh mesh) {
     for (vec3& p : mesh.positions)
-        p = vec3(float(snorm_of(p.x) / 32767.0), float(snorm_of(p.y) / 32767.0), float(snorm_of(p.z) / 32767.0));
+        for (int axis = 0; axis < 3; ++axis) p[axis] = float(snorm_of(p[axis]) / 32767.0);
     return mesh;
 }
 
@@ -148,8 +138,7 @@ TEST_P(DeviceMeshTest, TreesAreThoseOfTheHostsMesh) {
     const AccelHandle given = accel().push(device.mesh), host = accel().push(mesh);
     accel().sync();
     const BuiltTree a = download_geometry(*software, given), b = download_geometry(*software, host);
-    ASSERT_EQ(a.records.size(), b.records.size());
-    EXPECT_EQ(std::memcmp(a.records.data(), b.records.data(), a.records.size() * sizeof(CompressedRecord)), 0);
+    EXPECT_TRUE(test::same_bytes(a.records, b.records));
 }
 
 TEST_P(DeviceMeshTest, TheDeviceTellsHowManyTrianglesThereAre) {
@@ -160,23 +149,14 @@ TEST_P(DeviceMeshTest, TheDeviceTellsHowManyTrianglesThereAre) {
     AccelHandle handle;
     std::uint64_t revision = 0;
     for (const uint n : {700u, 3u, 0u, 5000u, 1u}) {
-        Commands commands(context(), "count");
-        {
-            const auto pass = commands.pass("count");
-            commands.write(count, n);
-        }
-        commands.submit();
+        test::upload_to(context(), count, std::array{n});
         if (handle == AccelHandle{})
             handle = accel().push(device.mesh);
         else
             accel().update(handle, device.mesh);
         Mesh expected = mesh;
         expected.triangles.resize(std::min<std::size_t>(n, mesh.triangles.size()));
-        const auto other = make_accel();
-        other->push(expected);
-        const std::vector<Ray> rays = rays_at(mesh, 1000);
-        const std::vector<Hit> hits = accel().closest_hits(rays), wanted = other->closest_hits(rays);
-        EXPECT_EQ(std::memcmp(hits.data(), wanted.data(), hits.size() * sizeof(Hit)), 0) << n;
+        expect_hits_at(rays_at(mesh, 1000), expected, text(n, " triangles"));
         if (revision != 0) {
             EXPECT_EQ(accel().revision(), revision) << "views end where the counts stay";
         }
@@ -209,12 +189,7 @@ TEST_P(DeviceMeshTest, InPlaceItFollowsWhatKernelsWrite) {
     for (int step = 1; step <= 3; ++step) {
         Mesh moved = mesh;
         for (vec3& p : moved.positions) p = p * (1 + 0.25f * static_cast<float>(step)) + vec3(0, 0, p.x);
-        Commands commands(context(), "move");
-        {
-            const auto pass = commands.pass("move");
-            commands.upload(device.vertices, std::span<const vec3>(moved.positions));
-        }
-        commands.submit();
+        test::upload_to(context(), device.vertices, moved.positions);
         accel().mark_vertices_dirty(handle);
         expect_hits_of(moved, "moved in place");
         EXPECT_EQ(accel().revision(), view.revision);
@@ -289,7 +264,7 @@ TEST_P(DeviceMeshTest, WhatCannotBeIsRefused) {
     const auto refused = [&](const char* why, const std::function<void(DeviceMesh&)>& change) {
         DeviceMesh other = device.mesh;
         change(other);
-        const std::string error = error_if_any([&] { accel().push(other); });
+        const std::string error = test::error_of([&] { accel().push(other); });
         test::expect_contains(error, "mesh 'on device'");
         test::expect_contains(error, why);
     };
@@ -299,10 +274,7 @@ TEST_P(DeviceMeshTest, WhatCannotBeIsRefused) {
     refused("stride 14", [](DeviceMesh& m) { m.stride = 14; });
     refused("device address 0 of its indices", [](DeviceMesh& m) { m.indices = 0; });
     refused("indices without an index format", [](DeviceMesh& m) { m.index_format = IndexFormat::none; });
-    refused("which take three each", [](DeviceMesh& m) {
-        m.index_format = IndexFormat::none;
-        m.indices = 0;
-    });
+    refused("which take three each", [](DeviceMesh& m) { m.index_format = IndexFormat::none, m.indices = 0; });
     refused("0 vertices", [](DeviceMesh& m) { m.vertex_count = 0; });
     refused("33554432 triangles", [](DeviceMesh& m) { m.triangle_count = 1u << 25; });
     refused("bounds must be finite", [](DeviceMesh& m) { m.bounds = Bounds{}; });
@@ -330,16 +302,14 @@ TEST_P(DeviceMeshTest, BuiltAndTracedInTheCallersCommandsAfterTheKernelThatMadeI
         for (vec3& p : raised.positions) p.z = static_cast<float>(frame);
         if (frame) accel().mark_vertices_dirty(handle);
         const SyncPoint own = context().last_submission();
-        const CallerCommands buffer = caller.begin();
-        {
-            Commands commands(context(), "frame", buffer);
+        const CallerCommands buffer = caller.record("frame", [&](Commands& commands) {
             {
                 const auto pass = commands.pass("make the mesh");
                 commands.upload(vertices, std::span<const vec3>(raised.positions));
             }
             accel().sync(commands);
             accel().trace(commands, accel().view(), {.rays = rays.ref<Ray>(), .hits = hits.ref<Hit>(), .count = 1});
-        }
+        });
         EXPECT_EQ(context().last_submission().value, own.value) << "twinray submitted something itself";
         caller.submit(buffer);
         EXPECT_EQ(download<Hit>(context(), hits, 1).front().t, 10.0f - static_cast<float>(frame));

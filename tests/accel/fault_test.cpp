@@ -5,14 +5,9 @@
 // fixture.
 #include <cstdio>
 
-#include "engine/core/error.h"
-#include "engine/core/vma.h"
-#include <twinray/geometry.h>
 #include <twinray/queries.h>
-#include "engine/core/vulkan.h"
 #include "tests/accel/fault_world.h"
 #include "tests/support/caller.h"
-#include "tests/support/device.h"
 
 namespace twinray {
 namespace {
@@ -29,10 +24,8 @@ using test::Kind;
 class Faults : public ::testing::TestWithParam<Kind> {
   protected:
     ContextDesc desc() const {
-        return {.validation = test::has_validation(),
-                .use_ray_query = GetParam() == Kind::ray_query,
-                .use_ray_tracing_pipeline = GetParam() == Kind::pipeline,
-                .get_instance_proc_addr = faults_.entry()};
+        return test::desc_of(GetParam(),
+                             {.validation = test::has_validation(), .get_instance_proc_addr = faults_.entry()});
     }
     ContextDesc unvalidated() const {
         ContextDesc quick = desc();

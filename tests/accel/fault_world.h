@@ -2,24 +2,14 @@
 // An accelerator of each kind in a scene whose hits are known, for tests that let Vulkan fail under it.
 #pragma once
 
-#include <cmath>
-#include <memory>
-#include <string>
-#include <vector>
-
-#include <twinray/abstract_accel.h>
-#include <twinray/geometry.h>
-#include <twinray/tlas.h>
-#include "engine/core/vma.h"
+#include "engine/core/context.h"
 #include "report/faults/fault_injection.h"
 #include "tests/accel/accel_fixture.h"
 
 namespace twinray {
 
 inline std::unique_ptr<AbstractAccel> make_accel(Context& context, test::Kind kind) {
-    if (kind == test::Kind::software)
-        return std::make_unique<SwTlas>(context, AccelOptions{.compiles_in_background = false});
-    return std::make_unique<HwTlas>(context);
+    return test::make_accel(context, kind, {.compiles_in_background = kind != test::Kind::software});
 }
 
 // Rays down onto World's scene.
@@ -99,13 +89,7 @@ class World {
     // Fails the test unless the view of the last sync still has the hits that it had then.
     void check_view_of_last_sync() {
         if (!view_.accel) return;
-        const Buffer ray_buffer = test::device_copy(context(), world_rays);
-        const Buffer hits(context(), {.name = "hits", .bytes = world_rays.size() * sizeof(Hit)});
-        Commands commands(context(), "view of the last sync");
-        accel().trace(commands, view_,
-                      {.rays = ray_buffer.ref<Ray>(), .hits = hits.ref<Hit>(), .count = world_rays.size()});
-        commands.submit();
-        EXPECT_EQ(distances(download<Hit>(context(), hits, world_rays.size())), view_expected_);
+        EXPECT_EQ(distances(test::traced(accel(), view_, world_rays)), view_expected_);
     }
 
     // The state that must not change when something fails.

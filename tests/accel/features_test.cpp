@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Programs that leave out what a trace does not need: their hits are, bit for bit, those of the program that leaves out
 // nothing.
-#include <cstring>
-#include <map>
-#include <random>
-
-#include "engine/accel/features_of.h"
+#include "engine/accel/trace_desc.h"
 #include "validation/reference/aimed_rays.h"
 #include "tests/accel/accel_fixture.h"
 #include "test_program.trace_program.h"
@@ -32,19 +28,11 @@ std::vector<Ray> rays_with_zeros() {
 
 class Features : public test::VulkanTest, public ::testing::WithParamInterface<test::LayoutAndLevel> {
   protected:
-    void SetUp() override {
-        VulkanTest::SetUp();
-        if (IsSkipped() || HasFatalFailure()) return;
-        if (SwTlas::capability_on(context().properties(), feature_of(level())).support == Support::unsupported)
-            TWINRAY_LACKS("float64", "no float64");
-        accel_ = std::make_unique<SwTlas>(
+    void prepare() override {
+        if (!test::has_level(context(), level())) TWINRAY_LACKS("float64", "no float64");
+        accel_ = &keep<SwTlas>(
             context(),
             AccelOptions{.level = std::max(level(), Level::watertight), .layout = layout(), .can_move = false});
-    }
-    void TearDown() override {
-        programs_.clear();
-        accel_.reset();
-        VulkanTest::TearDown();
     }
     SwTlas& accel() { return *accel_; }
     static Layout layout() { return std::get<0>(GetParam()); }
@@ -91,25 +79,14 @@ class Features : public test::VulkanTest, public ::testing::WithParamInterface<t
         accel().wait_for_programs();
         for (const bool is_waited_for : {false, true}) {
             if (is_waited_for) accel().wait_for_programs();
-            const std::vector<Hit> answers = answers_alone(rays, desc);
+            desc.query = Query::any;
+            desc.occlusion_only = true;
+            const std::vector<Hit> answers = test::traced(accel(), accel().view(), rays, desc);
             for (std::size_t i = 0; i < rays.size(); ++i) ASSERT_EQ(answers[i].hit, whole[i].hit) << "ray " << i;
         }
     }
 
   private:
-    std::vector<Hit> answers_alone(std::span<const Ray> rays, TraceDesc desc) {
-        const Buffer ray_buffer = device_copy(rays),
-                     hits(context(), {.name = "hits", .bytes = rays.size() * sizeof(Hit)});
-        Commands commands(context(), "answers");
-        desc.rays = ray_buffer.ref<Ray>();
-        desc.hits = hits.ref<Hit>();
-        desc.count = rays.size();
-        desc.query = Query::any;
-        desc.occlusion_only = true;
-        accel().trace(commands, accel().view(), desc);
-        commands.submit();
-        return download<Hit>(context(), hits, rays.size());
-    }
     // Compares to the last bit; at level fast, whose arithmetic compilers may rearrange, signs of zeros may differ.
     static bool is_same(const Hit& a, const Hit& b) {
         if (level() != Level::fast) return std::memcmp(&a, &b, sizeof(Hit)) == 0;
@@ -117,13 +94,13 @@ class Features : public test::VulkanTest, public ::testing::WithParamInterface<t
                a.t == b.t && a.u == b.u && a.v == b.v;
     }
     const TraceProgram& program(uint features) {
-        std::unique_ptr<TraceProgram>& program = programs_[features];
-        if (!program) program = accel().make_program(test_program, features);
+        TraceProgram*& program = programs_[features];
+        if (!program) program = keep<std::unique_ptr<TraceProgram>>(accel().make_program(test_program, features)).get();
         return *program;
     }
 
-    std::unique_ptr<SwTlas> accel_;
-    std::map<uint, std::unique_ptr<TraceProgram>> programs_;
+    SwTlas* accel_ = nullptr;
+    std::map<uint, TraceProgram*> programs_;
 };
 
 INSTANTIATE_TEST_SUITE_P(Every, Features, ::testing::Combine(::testing::Values(Layout::compressed4), test::every_level),

@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Layouts and build qualities of SwTlas, and both rows of KernelTuning: the same hits, bit for bit.
-#include <algorithm>
-#include <cstring>
-#include <random>
-
 #include <twinray/queries.h>
 
 #include "engine/accel/trace_desc.h"
@@ -16,24 +12,17 @@ namespace {
 
 class Layouts : public test::VulkanTest, public ::testing::WithParamInterface<Level> {
   protected:
-    void SetUp() override {
-        VulkanTest::SetUp();
-        if (IsSkipped() || HasFatalFailure()) return;
-        if (SwTlas::capability_on(context().properties(), feature_of(GetParam())).support == Support::unsupported)
-            TWINRAY_LACKS("float64", "no float64");
+    void prepare() override {
+        if (!test::has_level(context(), GetParam())) TWINRAY_LACKS("float64", "no float64");
         for (const Layout layout : all_layouts)
             for (const BuildQuality quality : all_build_qualities)
-                accels_.push_back(std::make_unique<SwTlas>(
-                    context(), AccelOptions{std::max(GetParam(), Level::watertight), layout, quality}));
-    }
-    void TearDown() override {
-        accels_.clear();
-        VulkanTest::TearDown();
+                accels_.push_back(
+                    &keep<SwTlas>(context(), AccelOptions{std::max(GetParam(), Level::watertight), layout, quality}));
     }
     void expect_equal(std::span<const Ray> rays, TraceDesc desc = {}) {
         desc.level = GetParam();
         std::vector<Hit> first;
-        for (const auto& accel : accels_) {
+        for (SwTlas* accel : accels_) {
             const auto program = accel->make_program(test_program);
             desc.program = program.get();
             const std::vector<Hit> closest = accel->closest_hits(rays, desc), any = accel->any_hits(rays, desc);
@@ -47,25 +36,29 @@ class Layouts : public test::VulkanTest, public ::testing::WithParamInterface<Le
         EXPECT_GT(static_cast<std::size_t>(hits), rays.size() / 50);
     }
 
-    std::vector<std::unique_ptr<SwTlas>> accels_;
+    std::vector<SwTlas*> accels_;
 };
 
 INSTANTIATE_TEST_SUITE_P(Every, Layouts, test::every_level,
                          [](const auto& level) { return std::string(name_of(level.param)); });
 
-TEST_P(Layouts, AgreeOnInstancesOfEveryKind) {
+// Pushes instances of every kind within a cube.
+template <class MeshOf>
+void push_sixty(SwTlas& accel, float extent, bool has_filters, const MeshOf& mesh_of) {
     std::mt19937 random(3);
     std::uniform_real_distribution<float> unit(-1, 1);
-    const Mesh meshes[] = {make_icosphere(3), make_soup(500, 3, 0.2f), make_grid(8, 8), make_soup(1, 5)};
-    for (const auto& accel : accels_) {
-        random.seed(3);
-        for (uint i = 0; i < 60; ++i) {
-            const vec3 place = 3.0f * vec3(unit(random), unit(random), unit(random));
-            const vec3 size(unit(random), 0.7f, i % 5 ? 1 : -1e-3f);
-            accel->push(meshes[i % 4], Transform::translation(place) * Transform::scaling(size),
-                        {.custom_index = i, .mask = static_cast<std::uint8_t>(1 + i % 3), .non_opaque = i % 7 == 0});
-        }
+    for (uint i = 0; i < 60; ++i) {
+        const vec3 place = extent * vec3(unit(random), unit(random), unit(random));
+        const vec3 size(unit(random), 0.7f, i % 5 ? 1 : -1e-3f);
+        accel.push(
+            mesh_of(i), Transform::translation(place) * Transform::scaling(size),
+            {.custom_index = i, .mask = static_cast<std::uint8_t>(1 + i % 3), .non_opaque = has_filters && i % 7 == 0});
     }
+}
+
+TEST_P(Layouts, AgreeOnInstancesOfEveryKind) {
+    const Mesh meshes[] = {make_icosphere(3), make_soup(500, 3, 0.2f), make_grid(8, 8), make_soup(1, 5)};
+    for (SwTlas* accel : accels_) push_sixty(*accel, 3, true, [&](uint i) -> const Mesh& { return meshes[i % 4]; });
     const std::vector<Ray> rays = random_rays({vec3(-4), vec3(4)}, 20'000, 4);
     expect_equal(rays);
     expect_equal(rays, {.mask = 2});
@@ -77,9 +70,9 @@ TEST_P(Layouts, AgreeOnInstancesOfEveryKind) {
 TEST_P(Layouts, AgreeWhereMuchWaits) {
     const Mesh soup = make_soup(3000, 7, 0.5f);
     const std::vector<Ray> rays = random_rays({vec3(-1), vec3(1)}, 2'000, 8);
-    for (const auto& accel : accels_) accel->push(soup);
+    for (SwTlas* accel : accels_) accel->push(soup);
     expect_equal(rays);
-    for (const auto& accel : accels_)
+    for (SwTlas* accel : accels_)
         for (int i = 1; i < 20; ++i) accel->push(soup, Transform::translation(vec3(0.05f * static_cast<float>(i))));
     expect_equal(rays);
 }
@@ -87,7 +80,7 @@ TEST_P(Layouts, AgreeWhereMuchWaits) {
 // Rays run within planes of boxes, through corners, from far away, and along axes.
 TEST_P(Layouts, AgreeWhereBoxesAreMetExactly) {
     const Mesh grid = make_grid(16, 16);
-    for (const auto& accel : accels_) accel->push(grid, Transform::scaling({16, 16, 16}));
+    for (SwTlas* accel : accels_) accel->push(grid, Transform::scaling({16, 16, 16}));
     std::mt19937 random(5);
     std::vector<Ray> rays;
     for (int i = 0; i < 20'000; ++i) {
@@ -103,7 +96,7 @@ TEST_P(Layouts, AgreeWhereBoxesAreMetExactly) {
 // One instance needs no top level, and the kernel for it must not be used for more.
 TEST_P(Layouts, InstancesMayComeAndGo) {
     const Ray rays[] = {test::down(0.3f, 0.6f), test::down(10.3f, 0.6f)};
-    for (const auto& accel : accels_) {
+    for (SwTlas* accel : accels_) {
         const auto is_hit = [&] {
             const std::vector<Hit> hits = accel->closest_hits(rays, {.level = GetParam()});
             return std::pair{hits[0].hit, hits[1].hit};
@@ -131,7 +124,7 @@ TEST_P(Layouts, AgreeAfterRefits) {
     std::uniform_real_distribution<float> unit(-1, 1);
     Mesh soup = make_soup(700, 3, 0.2f);
     std::vector<AccelHandle> handles;
-    for (const auto& accel : accels_) {
+    for (SwTlas* accel : accels_) {
         handles.push_back(accel->push(soup, std::vector<Transform>(20)));
         accel->sync();
     }
@@ -154,7 +147,7 @@ class Tunings : public ::testing::TestWithParam<test::LayoutAndLevel> {
     void SetUp() override {
         const std::unique_ptr<Context> context = test::make_context();
         if (!context) return;
-        if (SwTlas::capability_on(context->properties(), feature_of(level())).support == Support::unsupported)
+        if (!test::has_level(*context, level()))
             TWINRAY_LACKS("float64", context->properties().name + " has no float64");
     }
     // Returns hits of the closest and any query, and all hits, of all the scenes, as bytes in turn.
@@ -200,15 +193,8 @@ class Tunings : public ::testing::TestWithParam<test::LayoutAndLevel> {
         return {[](SwTlas& accel) { accel.push(make_icosphere(4)); },
                 [](SwTlas& accel) { accel.push(make_soup(3000, 7, 0.8f)); },
                 [](SwTlas& accel) {
-                    std::mt19937 random(3);
-                    std::uniform_real_distribution<float> unit(-1, 1);
-                    for (uint i = 0; i < 60; ++i) {
-                        const vec3 place = 2.0f * vec3(unit(random), unit(random), unit(random));
-                        const vec3 size(unit(random), 0.7f, i % 5 ? 1 : -1e-3f);
-                        accel.push(i % 2 ? make_icosphere(2) : make_soup(400, i % 4, 0.3f),
-                                   Transform::translation(place) * Transform::scaling(size),
-                                   {.custom_index = i, .mask = static_cast<std::uint8_t>(1 + i % 3)});
-                    }
+                    push_sixty(accel, 2, false,
+                               [](uint i) { return i % 2 ? make_icosphere(2) : make_soup(400, i % 4, 0.3f); });
                 }};
     }
 };

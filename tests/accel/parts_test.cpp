@@ -3,10 +3,6 @@
 #include <twinray/analysis.h>
 #include <twinray/queries.h>
 
-#include <random>
-
-#include <twinray/scene.h>
-
 #include "validation/reference/aimed_rays.h"
 #include "tests/accel/accel_fixture.h"
 

@@ -2,10 +2,7 @@
 // Traces in sorted order find what those in the given order find.
 #include "engine/accel/ray_sort.h"
 
-#include <algorithm>
-#include <cstring>
 #include <numeric>
-#include <random>
 
 #include "validation/reference/aimed_rays.h"
 #include "test_program.trace_program.h"
@@ -35,21 +32,14 @@ std::vector<Ray> mixed_rays(std::size_t count) {
     return rays;
 }
 
-constexpr std::size_t counts[] = {0, 1, 63, 64, 65, 1000, 70'000};
+constexpr std::size_t ray_counts[] = {0, 1, 63, 64, 65, 1000, 70'000};
 const Hit untouched{7, 7, 7, 7, 7, 7, 7, 7};
 
 class SortedRays : public test::AccelTest {
   protected:
     // Traces the rays that `desc` asks for into hits that nothing has touched, and returns these.
-    std::vector<Hit> hits_of(const std::vector<Ray>& rays, TraceDesc desc) {
-        const Buffer input = device_copy(rays), hits = device_copy(std::vector<Hit>(rays.size(), untouched));
-        desc.rays = input.ref<Ray>();
-        desc.hits = hits.ref<Hit>();
-        desc.count = rays.size();
-        Commands commands(context(), "sorted rays");
-        accel().trace(commands, accel().view(), desc);
-        commands.submit();
-        return download<Hit>(context(), hits, rays.size());
+    std::vector<Hit> hits_of(const std::vector<Ray>& rays, const TraceDesc& desc) {
+        return test::traced(accel(), accel().view(), rays, desc, untouched);
     }
     // Expects equal hits in both orders, and returns them.
     std::vector<Hit> expect_equal(const std::vector<Ray>& rays, TraceDesc desc = {}) {
@@ -79,12 +69,11 @@ TWINRAY_OVER_EVERY_ACCEL_AND_THE_REFERENCE(SortedRays);
 
 TEST_P(SortedRays, FindWhatTheyFindInTheGivenOrder) {
     push_scene();
-    for (const std::size_t count : counts)
+    for (const std::size_t count : ray_counts)
         for (const Query query : {Query::closest, Query::any}) {
             if (GetParam() == test::Kind::reference && count > 1000) continue;
             const std::vector<Hit> hits = expect_equal(mixed_rays(count), {.query = query});
-            const auto n = std::count_if(hits.begin(), hits.end(), [](const Hit& hit) { return hit.hit == 1; });
-            EXPECT_GE(static_cast<std::size_t>(n), count / 3);
+            EXPECT_GE(static_cast<std::size_t>(std::ranges::count(hits, 1u, &Hit::hit)), count / 3);
         }
 }
 
@@ -153,7 +142,7 @@ TEST_P(SortedRaysOfAccels, AreThoseThatTheOrderNames) {
     program->record(commands, args, Query::closest, Level::watertight);
     commands.submit();
     const std::vector<Hit> found = download<Hit>(context(), hits, rays.size());
-    for (const uint i : {0u, 1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u, 9u})
+    for (std::size_t i = 0; i < rays.size(); ++i)
         EXPECT_EQ(found[i].hit == untouched.hit, i != 2 && i != 5 && i != 8) << i;
 }
 
@@ -168,9 +157,7 @@ TEST_P(SortedRaysOfAccels, AreSortedOnlyWhereThatIsAskedFor) {
         commands.submit();
         const std::vector<PassTiming> passes = commands.timings();
         ASSERT_FALSE(passes.empty()) << "the device has no timestamps, which tell of passes";
-        const bool is_sorted = std::any_of(passes.begin(), passes.end(),
-                                           [](const PassTiming& pass) { return pass.name == "engine_ray_keys"; });
-        EXPECT_EQ(is_sorted, order == RayOrder::sorted);
+        EXPECT_EQ(std::ranges::count(passes, "engine_ray_keys", &PassTiming::name) > 0, order == RayOrder::sorted);
     }
 }
 
@@ -199,17 +186,10 @@ class RaySortTest : public test::VulkanTest {
         };
         return {at(result.keys), at(result.values)};
     }
-    void SetUp() override {
-        VulkanTest::SetUp();
-        if (!IsSkipped() && !HasFatalFailure()) sort_.emplace(context());
-    }
-    void TearDown() override {
-        sort_.reset();
-        VulkanTest::TearDown();
-    }
+    void prepare() override { sort_ = &keep<RaySort>(context()); }
 
   private:
-    std::optional<RaySort> sort_;
+    RaySort* sort_ = nullptr;
 };
 
 // The keys of the first `count` rays, and the last key of the rest.
@@ -233,8 +213,7 @@ std::vector<uint> expected_order(const std::vector<uint>& keys) {
 }
 
 TEST_F(RaySortTest, OrdersAllRaysByTheirKeys) {
-    for (const std::size_t count : counts) {
-        if (count == 0) continue;
+    for (const std::size_t count : std::span(ray_counts).subspan(1)) {
         const std::vector<Ray> rays = mixed_rays(count);
         const std::vector<uint> keys = expected_keys(rays, count);
         const Sorted found = sorted(rays);
@@ -256,9 +235,7 @@ TEST_F(RaySortTest, RaysBeyondTheCountComeLast) {
 
 TEST_F(RaySortTest, RaysOfWhichNoneIsTracedStayAsTheyAre) {
     const std::vector<Ray> rays(500, Ray{vec3(NAN), 0, vec3(0), INFINITY});
-    std::vector<uint> order(rays.size());
-    std::iota(order.begin(), order.end(), 0u);
-    EXPECT_EQ(sorted(rays).order, order);
+    EXPECT_EQ(sorted(rays).order, expected_order(std::vector<uint>(rays.size())));
 }
 
 }  // namespace

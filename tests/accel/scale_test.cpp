@@ -1,11 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Scenes of any size and place: a power of two changes nothing but t, and metres of UTM are hit to micrometres.
-#include <algorithm>
-#include <cmath>
-#include <random>
-
-#include <twinray/scene.h>
-
 #include "tests/accel/accel_fixture.h"
 #include "tests/scene/far_houses.h"
 #include "validation/reference/aimed_rays.h"

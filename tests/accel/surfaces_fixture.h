@@ -2,12 +2,6 @@
 // Meshes with everything that surfaces may have, pushed into an accelerator that keeps it.
 #pragma once
 
-#include <array>
-#include <cmath>
-#include <random>
-#include <span>
-#include <utility>
-
 #include "tests/accel/accel_fixture.h"
 
 namespace twinray::test {

@@ -2,10 +2,6 @@
 // Surfaces of hits, compared with float64 and with the same functions on the host, on both accelerators.
 #include "engine/accel/surface_tables.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstring>
-
 #include "tests/accel/surfaces_fixture.h"
 #include "test_surface_kernel.spv.h"
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 // sync() never waits, does nothing on a clean accelerator, and records into the caller's command buffer.
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
 
-#include "engine/core/vma.h"
+#include "engine/core/context.h"
 #include "tests/accel/accel_fixture.h"
 #include "tests/support/caller.h"
 
@@ -33,6 +32,25 @@ class Sync : public test::AccelTest {
     void release_queue() {
         if (is_occupied_) caller_->signal();
         is_occupied_ = false;
+    }
+
+    using Record = std::function<void(Commands&)>;
+    // Moves a square, and pushes another in the fourth frame. `submit` records a sync and a trace of each frame.
+    void expect_frames(const std::function<void(const Record&)>& submit) {
+        const AccelHandle handle = accel().push(square(0));
+        const Buffer rays = device_copy(std::vector<Ray>{down(0.5f, 0.25f)});
+        const Buffer hits(context(), {.name = "hits", .bytes = sizeof(Hit)});
+        for (int frame = 0; frame < 5; ++frame) {
+            const auto height = static_cast<float>(frame);
+            accel().update_transform(handle, Transform::translation({0, 0, height}));
+            if (frame == 3) accel().push(square(5));
+            submit([&](Commands& commands) {
+                accel().sync(commands);
+                accel().trace(commands, accel().view(), {.rays = rays.ref<Ray>(), .hits = hits.ref<Hit>(), .count = 1});
+            });
+            EXPECT_EQ(accel().world_bound().lo.z, height);
+            EXPECT_EQ(download<Hit>(context(), hits, 1).front().t, frame < 3 ? 10.0f - height : 5.0f);
+        }
     }
 
     void TearDown() override {
@@ -163,25 +181,13 @@ TEST_P(Sync, TheScratchBudgetBoundsWhatABuildTakes) {
 
 TEST_P(Sync, BuildsAndTracesInTheCallersCommandBufferOnTheCallersTimeline) {
     test::Caller caller(context());
-    const AccelHandle handle = accel().push(square(0));
-    const Buffer rays = device_copy(std::vector<Ray>{down(0.5f, 0.25f)});
-    const Buffer hits(context(), {.name = "hits", .bytes = sizeof(Hit)});
-    for (int frame = 0; frame < 5; ++frame) {
-        accel().update_transform(handle, Transform::translation({0, 0, static_cast<float>(frame)}));
-        if (frame == 3) accel().push(square(5));
+    expect_frames([&](const Record& record) {
         const SyncPoint own = context().last_submission();
-        const CallerCommands buffer = caller.begin();
-        {
-            Commands commands(context(), "frame", buffer);
-            accel().sync(commands);
-            accel().trace(commands, accel().view(), {.rays = rays.ref<Ray>(), .hits = hits.ref<Hit>(), .count = 1});
-        }
+        const CallerCommands buffer = caller.record("frame", record);
         EXPECT_EQ(context().last_submission().value, own.value) << "twinray submitted something itself";
         EXPECT_EQ(accel().world_bound_if_ready(), std::nullopt);
         caller.submit(buffer);
-        EXPECT_EQ(accel().world_bound().lo.z, static_cast<float>(frame));
-        EXPECT_EQ(download<Hit>(context(), hits, 1).front().t, frame < 3 ? 10.0f - static_cast<float>(frame) : 5.0f);
-    }
+    });
 }
 
 TEST_P(Sync, WhatTheCallersCommandsUseOutlivesThem) {
@@ -192,11 +198,9 @@ TEST_P(Sync, WhatTheCallersCommandsUseOutlivesThem) {
     const Buffer rays = device_copy(std::vector<Ray>{down(0.1f, 0.2f)});
     const Buffer hits(context(), {.name = "hits", .bytes = sizeof(Hit)});
     context().wait_for_gpu();
-    const CallerCommands buffer = caller.begin();
-    {
-        Commands commands(context(), "late frame", buffer);
+    const CallerCommands buffer = caller.record("late frame", [&](Commands& commands) {
         accel().trace(commands, view, {.rays = rays.ref<Ray>(), .hits = hits.ref<Hit>(), .count = 1});
-    }
+    });
     const std::uint64_t bytes = context().allocated_bytes();
     drop_accel();
     context().wait(Commands(context(), "collects").submit());
@@ -215,22 +219,14 @@ TEST_P(Sync, CallersCommandsMustBeComplete) {
 }
 
 TEST_P(Sync, OwnCommandsBuildAndTraceInOneSubmission) {
-    const AccelHandle handle = accel().push(square(0));
-    const Buffer rays = device_copy(std::vector<Ray>{down(0.5f, 0.25f)});
-    const Buffer hits(context(), {.name = "hits", .bytes = sizeof(Hit)});
-    for (int frame = 0; frame < 5; ++frame) {
-        accel().update_transform(handle, Transform::translation({0, 0, static_cast<float>(frame)}));
-        if (frame == 3) accel().push(square(5));
+    expect_frames([&](const Record& record) {
         Commands commands(context(), "frame");
-        accel().sync(commands);
-        accel().trace(commands, accel().view(), {.rays = rays.ref<Ray>(), .hits = hits.ref<Hit>(), .count = 1});
+        record(commands);
         EXPECT_EQ(accel().world_bound_if_ready(), std::nullopt);
         expect_error("must be submitted first", [&] { accel().world_bound(); });
         expect_error("must be submitted first", [&] { accel().sync(); });
         commands.submit();
-        EXPECT_EQ(accel().world_bound().lo.z, static_cast<float>(frame));
-        EXPECT_EQ(download<Hit>(context(), hits, 1).front().t, frame < 3 ? 10.0f - static_cast<float>(frame) : 5.0f);
-    }
+    });
 }
 
 TEST_P(Sync, OwnCommandsAreSubmittedInTheOrderOfTheirSyncs) {

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Vertices that move: how the trees change, and when a sync rebuilds them.
-#include <algorithm>
-#include <cmath>
-#include <random>
-
 #include "validation/reference/aimed_rays.h"
 #include "tests/accel/accel_fixture.h"
-#include "tests/support/seam.h"
+#include "tests/support/sw_build.h"
 
 namespace twinray {
 namespace {
@@ -18,22 +14,19 @@ using test::square;
 class Vertices : public test::AccelTest {
   protected:
     // Expects agreement with the reference on a mesh that is alone.
-    void expect_agreement(const Mesh& mesh);
+    void expect_agreement(const Mesh& mesh) {
+        Scene scene;
+        scene.meshes = {mesh};
+        scene.instances = {{"", 0, Transform{}}};
+        const ReferenceScene reference = ReferenceScene::of(scene);
+        std::vector<Ray> rays = random_rays(bounds_of(mesh), 2000, 1);
+        for (const Ray& ray : vertex_aimed_rays(reference, 500, 2)) rays.push_back(ray);
+        const HitClassCounts classes = classes_of(reference, rays, accel().closest_hits(rays));
+        EXPECT_EQ(classes.faults_of_ours(), 0u);
+        EXPECT_EQ(classes[HitClass::hw_false] + classes[HitClass::hw_t_err] + classes[HitClass::hw_range], 0u);
+    }
 };
 TWINRAY_OVER_EVERY_ACCEL(Vertices);
-
-void Vertices::expect_agreement(const Mesh& mesh) {
-    Scene scene;
-    scene.meshes = {mesh};
-    scene.instances = {{"", 0, Transform{}}};
-    const ReferenceScene reference = ReferenceScene::of(scene);
-    std::vector<Ray> rays = random_rays(bounds_of(mesh), 2000, 1);
-    for (const Ray& ray : vertex_aimed_rays(reference, 500, 2)) rays.push_back(ray);
-    const std::vector<Hit> hits = accel().closest_hits(rays);
-    const HitClassCounts classes = classes_of(reference, rays, hits);
-    EXPECT_EQ(classes.faults_of_ours(), 0u);
-    EXPECT_EQ(classes[HitClass::hw_false] + classes[HitClass::hw_t_err] + classes[HitClass::hw_range], 0u);
-}
 
 std::vector<vec3> raised(const Mesh& mesh, float height) {
     std::vector<vec3> positions = mesh.positions;

@@ -2,11 +2,7 @@
 // Scenes ten thousand kilometres from 0: details that float32 cannot tell apart there, and hits in float64.
 #include <twinray/world.h>
 
-#include <cmath>
-#include <random>
-
 #include "tests/accel/accel_fixture.h"
-#include "twinray/glsl/cpp.h"
 
 namespace twinray {
 namespace {

@@ -7,8 +7,6 @@
 #include <cmath>
 #include <random>
 
-#include "engine/analysis/pair_sums.h"
-#include "engine/analysis/row_sums.h"
 #include "twinray/glsl/cpp_sampling.h"
 
 namespace twinray {

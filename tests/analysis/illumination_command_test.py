@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Runs `twinray illumination` and `twinray centroid`. Usage: illumination_command_test.py TWINRAY"""
+"""Runs `twinray illumination`, `centroid` and `visible`. Usage: illumination_command_test.py TWINRAY"""
 import csv
 import pathlib
 import sys
@@ -68,4 +68,34 @@ expect_refusals([
         (["--sun", "none.csv"], 1, "sun file 'none.csv' cannot be read"),
         (["--sun", "squares.ply"], 1, "'format ascii 1.0' is not x,y,z,hours")], "illumination", "squares.ply")
 assert "--direction is required" in run("centroid", "squares.ply", status=2)
-print("illumination: areas, shares, sky, hours and centroid are those of two squares")
+
+# Sensors at a wall of x = 0, as wide and high as one sees.
+(here / "wall.obj").write_text("v 0 -1e4 -1e4\nv 0 1e4 -1e4\nv 0 1e4 1e4\nv 0 -1e4 1e4\nf 1 2 3 4\n")
+(here / "grid.pts").write_text(
+    "# x y z dx dy dz\n1 0 1  0 0 1\n-1 0 1  0 0 1\n1 0 1  1 0 0\n1 0 1  -1 0 0\n0 0 1  1 0 0\n")
+(here / "bad.pts").write_text("1 2 3 0 0\n")
+sensors = ["visible", "wall.obj", "--sensors", "grid.pts"]
+
+
+def patches():
+    rows = table("out.csv", "sensor,free_patches,share")
+    return [(int(sensor), int(free), float(share)) for sensor, free, share in rows]
+
+
+for accel in ["sw", "hw"]:
+    run(*sensors, "--up", "0", "0", "1", "--t-near", "0.01", "-o", "out.csv", "--accel", accel, "--json", "log.json")
+    upward, behind, away, facing, on_it = patches()
+    # 65 of 145 patches are behind the wall, and 15 over it: two of each row, and the zenith.
+    assert upward[1] == behind[1] == 80, patches()
+    assert 0.5 < upward[2] < 0.6 and away[2] == 1 and on_it == (4, *away[1:]) and facing[1:] == (0, 0), patches()
+    assert 65 <= away[1] <= 72, patches()
+record = command.records("log.json")[-1]
+assert record["sensors"] == 5 and record["sky"] == "tregenza145" and record["n"] == 5 * 145, record
+# The same scene with y up: its sky is over y, and the wall still hides one half.
+run(*sensors, "--patches", "reinhart577", "-o", "out.csv")
+assert patches()[2][2] == 1 and 200 < patches()[2][1] < 290, patches()
+expect_refusals([
+        (["--sensors", "bad.pts"], 1, "line 1"), ([], 2, "--sensors"),
+        (["--sensors", "grid.pts", "--up", "0", "0", "0"], 1, "--up"),
+        (["--sensors", "grid.pts", "--patches", "cie"], 2, "reinhart2305")], "visible", "wall.obj")
+print("illumination: areas, shares, sky, hours, centroid and patches are those of squares and a wall")

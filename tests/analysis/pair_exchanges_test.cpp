@@ -3,16 +3,12 @@
 
 #include <cmath>
 
-#include "tests/analysis/view_factor_scenes.h"
+#include "tests/analysis/scenes.h"
 
-namespace twinray {
+namespace twinray::test {
 namespace {
 
-using test::entry_of;
-using test::scene_of;
-using test::turned;
-
-class PairExchangesOfAccels : public test::AnalysisTest {
+class PairExchangesOfAccels : public AnalysisTest {
   protected:
     PairExchanges exchanges(const Scene& scene, const ViewFactorOptions& options, PairEstimator estimator) {
         const Faces faces(context(), scene);
@@ -20,8 +16,8 @@ class PairExchangesOfAccels : public test::AnalysisTest {
     }
     std::vector<ViewFactorRow> rows(const Scene& scene, const ViewFactorOptions& options, PairEstimator estimator) {
         fill(scene);
+        const PairExchanges pairs = exchanges(scene, options, estimator);
         const Faces faces(context(), scene);
-        const PairExchanges pairs = exchanges_of_pairs(accel(), faces, options, estimator);
         ViewFactors factors(accel(), faces, options, pairs.known);
         return factors.rows(0, factors.row_count());
     }
@@ -31,42 +27,33 @@ TWINRAY_OVER_EVERY_ACCEL(PairExchangesOfAccels);
 class PairExchangesTest : public PairExchangesOfAccels {};
 TWINRAY_OVER_SOFTWARE(PairExchangesTest);
 
-// Makes a square below another, and a plate between them.
-Scene plate_between(float distance) {
-    Scene scene = test::parallel_squares(distance);
-    scene.meshes.push_back(make_quad(vec3(0.2f, 0.2f, distance / 2), vec3(0, 0.6f, 0), vec3(0.6f, 0, 0)));
-    scene.instances.push_back({"plate", 2, {}});
-    return scene;
-}
-
 // Takes the common edge of two rectangles apart.
 Scene perpendicular_apart(float gap) {
-    Scene scene = test::perpendicular_rectangles(1, 1);
+    Scene scene = perpendicular_rectangles(1, 1);
     scene.instances[0].transform = Transform::translation(vec3(gap, 0, 0));
     return scene;
 }
 
 TEST_P(PairExchangesTest, IntervalsOfAreasHoldTheTruthAsOftenAsTheyShould) {
-    const std::vector<Scene> scenes = {test::parallel_squares(0.1f), test::parallel_squares(0.5f),
-                                       test::parallel_squares(2),    test::parallel_squares(10),
-                                       perpendicular_apart(0.1f),    perpendicular_apart(1)};
+    const std::vector<Scene> scenes = {parallel_squares(0.1f), parallel_squares(0.5f),    parallel_squares(2),
+                                       parallel_squares(10),   perpendicular_apart(0.1f), perpendicular_apart(1)};
     for (const Sequence sequence : {Sequence::sobol, Sequence::random}) {
         uint inside = 0;
         for (const Scene& scene : scenes) {
             fill(scene);
-            const double truth = test::contour_flow(scene);
+            const double truth = contour_flow(scene);
             uint here = 0;
-            for (uint seed = 1; seed <= test::seeds(); ++seed) {
+            for (uint seed = 1; seed <= seeds(); ++seed) {
                 const PairExchanges pairs =
                     exchanges(scene, {.grouping = FaceGrouping::mesh, .sequence = sequence, .rays = 1024, .seed = seed},
                               PairEstimator::area);
                 const KnownExchange& exchange = pairs.known.at(0);
                 here += exchange.low <= truth && truth <= exchange.high;
             }
-            EXPECT_GE(here, 0.8 * test::seeds()) << name_of(sequence) << ' ' << truth;
+            EXPECT_GE(here, 0.8 * seeds()) << name_of(sequence) << ' ' << truth;
             inside += here;
         }
-        const double percent = 100.0 * inside / static_cast<double>(scenes.size() * test::seeds());
+        const double percent = 100.0 * inside / static_cast<double>(scenes.size() * seeds());
         EXPECT_GE(percent, 88) << name_of(sequence);
         EXPECT_LE(percent, 99) << name_of(sequence) << ": intervals are longer than they need to be";
     }
@@ -87,7 +74,7 @@ TEST_P(PairExchangesTest, IntervalsHoldTheTruthWhereAFaceIsMostlyBehindTheOther)
     for (const Scene& scene : {mostly_behind(1), mostly_behind(0.2f), mostly_behind(0.01f), mostly_behind(1e-4f),
                                mostly_behind(0.2f, Transform::scaling(vec3(-3, 3, 3)))}) {
         fill(scene);
-        const double truth = test::contour_flow(scene);
+        const double truth = contour_flow(scene);
         uint inside = 0;
         double sum = 0;
         constexpr uint trials = 100;
@@ -104,7 +91,7 @@ TEST_P(PairExchangesTest, IntervalsHoldTheTruthWhereAFaceIsMostlyBehindTheOther)
 
 // If faces see hardly anything else, rays may count more than there is.
 TEST_P(PairExchangesTest, NoFaceSendsMoreThanItHas) {
-    const Scene scene = test::parallel_squares(0.09f);
+    const Scene scene = parallel_squares(0.09f);
     fill(scene);
     bool is_cut = false;
     for (uint seed = 1; seed <= 10; ++seed) {
@@ -136,7 +123,7 @@ Mesh pierced_plate() {
 
 // It is chance whether rays of an area find the hole, but the mean must not depend on it.
 TEST_P(PairExchangesTest, FewRaysThroughAHoleHaveNoBias) {
-    Scene scene = test::parallel_squares(1);
+    Scene scene = parallel_squares(1);
     scene.meshes.push_back(pierced_plate());
     scene.instances.push_back({"", 2, {}});
     constexpr double known = 0.00210311518129349067;  // the integral over the hole of Howell's B-4
@@ -166,7 +153,7 @@ TEST_P(PairExchangesTest, FewRaysThroughAHoleHaveNoBias) {
 bool overlap(const ViewFactor& a, const ViewFactor& b) { return a.low <= b.high && b.low <= a.high; }
 
 TEST_P(PairExchangesTest, AllEstimatorsAndSequencesAgree) {
-    for (const Scene& scene : {test::parallel_squares(1), plate_between(2)}) {
+    for (const Scene& scene : {parallel_squares(1), plate_between(2)}) {
         std::vector<ViewFactorRow> all;
         for (const PairEstimator estimator : {PairEstimator::automatic, PairEstimator::hits, PairEstimator::area})
             for (const Sequence sequence : {Sequence::sobol, Sequence::random})
@@ -187,11 +174,7 @@ TEST_P(PairExchangesTest, AllEstimatorsAndSequencesAgree) {
 }
 
 TEST_P(PairExchangesTest, RowsThatContoursFillNeedFewRays) {
-    Scene room;
-    room.materials.resize(1);
-    room.meshes = {make_box(vec3(-1), vec3(1))};
-    for (uvec3& t : room.meshes[0].triangles) std::swap(t.y, t.z);
-    room.instances = {{"", 0, Transform{}}};
+    Scene room = scene_of({turned(make_box(vec3(-1), vec3(1)))});
     for (const ViewFactorRow& row : rows(room, {.rays = 1 << 15}, PairEstimator::automatic)) {
         EXPECT_EQ(row.rays, 1024u);
         double sum = 0;
@@ -232,7 +215,7 @@ TEST_P(PairExchangesOfAccels, OfConcentricSpheresContoursTellWhatIsNotHidden) {
 }
 
 TEST_P(PairExchangesTest, ProjectionKeepsWhatIsKnownBest) {
-    Scene room = scene_of({turned(make_box(vec3(-2), vec3(2))), make_box(vec3(-0.5f), vec3(0.5f))});
+    const Scene room = scene_of({turned(make_box(vec3(-2), vec3(2))), make_box(vec3(-0.5f), vec3(0.5f))});
     fill(room);
     const Faces faces(context(), room);
     const ViewFactorOptions options{.rays = 4096};
@@ -287,17 +270,17 @@ TEST_P(PairExchangesTest, RowsWhoseEntriesAreKnownNeedNoMoreRays) {
 TEST_P(PairExchangesTest, AGroupSeesItselfByEveryEstimator) {
     for (const PairEstimator estimator : {PairEstimator::contour, PairEstimator::area, PairEstimator::hits}) {
         const std::vector<ViewFactorRow> all =
-            rows(test::parallel_squares(1), {.grouping = FaceGrouping::material, .rays = 1 << 15}, estimator);
+            rows(parallel_squares(1), {.grouping = FaceGrouping::material, .rays = 1 << 15}, estimator);
         EXPECT_NEAR(entry_of(all[0], 0).value, 0.199824895698387383, 0.004) << name_of(estimator);
         EXPECT_EQ(entry_of(all[0], 0).by, estimator);
     }
 }
 
 TEST_P(PairExchangesOfAccels, AllAcceleratorsTellTheSame) {
-    fill(plate_between(2));
-    const PairExchanges ours = exchanges(plate_between(2), {.rays = 4096}, PairEstimator::area);
-    SwTlas software(context());
     const Scene scene = plate_between(2);
+    fill(scene);
+    const PairExchanges ours = exchanges(scene, {.rays = 4096}, PairEstimator::area);
+    SwTlas software(context());
     push_scene(software, scene);
     const Faces faces(context(), scene);
     const PairExchanges theirs = exchanges_of_pairs(software, faces, {.rays = 4096}, PairEstimator::area);
@@ -324,4 +307,4 @@ TEST_P(PairExchangesTest, TinyFacesAreAsAccurateAsLargeOnes) {
 }
 
 }  // namespace
-}  // namespace twinray
+}  // namespace twinray::test

@@ -1,35 +1,55 @@
 // SPDX-License-Identifier: MIT
-#include <twinray/analysis.h>
-
+// View factors by hits of rays, and the coverage of their intervals.
 #include <cmath>
 
+#include <twinray/analysis.h>
 #include <twinray/scene.h>
+
 #include "engine/core/statistics.h"
+#include "tests/analysis/scenes.h"
 
-#include "tests/accel/accel_fixture.h"
-#include "tests/analysis/view_factor_scenes.h"
-
-namespace twinray {
+namespace twinray::test {
 namespace {
 
-using test::entry_of;
-using test::scene_of;
-using test::turned;
+struct Trial {
+    uint inside = 0;
+    double rms = 0;
+};
 
-class ViewFactorsOfAccels : public test::AccelTest {
+class ViewFactorsOfAccels : public AnalysisTest {
   protected:
     std::vector<ViewFactorRow> rows(const Scene& scene, const ViewFactorOptions& options) {
-        const auto accel = make_accel();
-        push_scene(*accel, scene);
+        fill(scene);
         const Faces faces(context(), scene);
-        ViewFactors factors(*accel, faces, options);
+        ViewFactors factors(accel(), faces, options);
         return factors.rows(0, factors.row_count());
+    }
+    ViewFactorRow first_row(const Faces& faces, const ViewFactorOptions& options) {
+        return ViewFactors(accel(), faces, options).rows(0, 1).front();
+    }
+    // Estimates the factor with these seeds and tells how often it is within its interval.
+    Trial trial(const KnownFactor& known, Sequence sequence, std::uint64_t rays, uint seeds, uint first_seed = 0) {
+        fill(known.scene);
+        const Faces faces(context(), known.scene);
+        Trial found;
+        for (uint seed = first_seed; seed < first_seed + seeds; ++seed) {
+            const ViewFactorRow row =
+                first_row(faces, {.grouping = FaceGrouping::mesh, .sequence = sequence, .rays = rays, .seed = seed});
+            EXPECT_EQ(row.factors.size(), known.entries) << known.name;
+            const ViewFactor& estimate = entry_of(row, 1);
+            const double error = static_cast<double>(estimate.value) - known.value;
+            found.inside +=
+                static_cast<double>(estimate.low) <= known.value && known.value <= static_cast<double>(estimate.high);
+            found.rms += error * error / seeds;
+        }
+        found.rms = std::sqrt(found.rms);
+        return found;
     }
 };
 TWINRAY_OVER_EVERY_ACCEL(ViewFactorsOfAccels);
 
 class ViewFactorsTest : public ViewFactorsOfAccels {};
-INSTANTIATE_TEST_SUITE_P(On, ViewFactorsTest, ::testing::Values(test::Kind::software), test::name_of_kind);
+TWINRAY_OVER_SOFTWARE(ViewFactorsTest);
 
 // A room with walls that look inwards and two things in it, one of them under a transform with shear.
 Scene room() {
@@ -41,52 +61,26 @@ Scene room() {
 }
 
 // Howell, "A Catalog of Radiation Heat Transfer Configuration Factors", C-11 and C-14, evaluated with 30 digits.
-std::vector<test::KnownFactor> known_factors() {
-    return {{"parallel, distance 1", test::parallel_squares(1), 0.199824895698387383},
-            {"parallel, distance 0.5", test::parallel_squares(0.5f), 0.415253283577146735},
-            {"parallel, distance 2", test::parallel_squares(2), 0.0685895888185524478},
-            {"parallel, distance 0.1", test::parallel_squares(0.1f), 0.826994522397256578},
-            {"parallel, distance 0.01", test::parallel_squares(0.01f), 0.9804166029259733},
-            {"perpendicular, 1 by 1", test::perpendicular_rectangles(1, 1), 0.200043776075403154},
-            {"perpendicular, 2 by 1", test::perpendicular_rectangles(2, 1), 0.116426301397680944},
-            {"perpendicular, 0.5 by 0.5", test::perpendicular_rectangles(0.5f, 0.5f), 0.240636006176961697}};
-}
-
-struct Trial {
-    int inside = 0;
-    double rms = 0;
-};
-Trial estimates(AbstractAccel& accel, const Faces& faces, const test::KnownFactor& known, Sequence sequence,
-                std::uint64_t rays, uint seeds, uint first_seed = 0) {
-    Trial trial;
-    for (uint seed = 0; seed < seeds; ++seed) {
-        ViewFactors factors(
-            accel, faces,
-            {.grouping = FaceGrouping::mesh, .sequence = sequence, .rays = rays, .seed = first_seed + seed});
-        const ViewFactorRow row = factors.rows(0, 1).front();
-        if (row.factors.size() != 1) return {};
-        const ViewFactor estimate = row.factors.front();
-        const double error = static_cast<double>(estimate.value) - known.value;
-        trial.inside +=
-            static_cast<double>(estimate.low) <= known.value && known.value <= static_cast<double>(estimate.high);
-        trial.rms += error * error / seeds;
-    }
-    trial.rms = std::sqrt(trial.rms);
-    return trial;
+std::vector<KnownFactor> known_factors() {
+    return {{"parallel, distance 1", parallel_squares(1), 0.199824895698387383},
+            {"parallel, distance 0.5", parallel_squares(0.5f), 0.415253283577146735},
+            {"parallel, distance 2", parallel_squares(2), 0.0685895888185524478},
+            {"parallel, distance 0.1", parallel_squares(0.1f), 0.826994522397256578},
+            {"parallel, distance 0.01", parallel_squares(0.01f), 0.9804166029259733},
+            {"perpendicular, 1 by 1", perpendicular_rectangles(1, 1), 0.200043776075403154},
+            {"perpendicular, 2 by 1", perpendicular_rectangles(2, 1), 0.116426301397680944},
+            {"perpendicular, 0.5 by 0.5", perpendicular_rectangles(0.5f, 0.5f), 0.240636006176961697}};
 }
 
 TEST_P(ViewFactorsTest, KnownFactorsLieWithinTheirIntervalsAsOftenAsTheyShould) {
     constexpr uint seeds = 100;
     for (const Sequence sequence : {Sequence::sobol, Sequence::random}) {
-        int inside = 0;
-        const std::vector<test::KnownFactor> all = known_factors();
-        for (const test::KnownFactor& known : all) {
-            const auto accel = make_accel();
-            push_scene(*accel, known.scene);
-            const Faces faces(context(), known.scene);
-            const Trial trial = estimates(*accel, faces, known, sequence, 2048, seeds);
-            EXPECT_GE(trial.inside, 88) << known.name << ", " << name_of(sequence);
-            inside += trial.inside;
+        uint inside = 0;
+        const std::vector<KnownFactor> all = known_factors();
+        for (const KnownFactor& known : all) {
+            const uint here = trial(known, sequence, 2048, seeds).inside;
+            EXPECT_GE(here, 88u) << known.name << ", " << name_of(sequence);
+            inside += here;
         }
         const double percent = 100.0 * inside / (static_cast<double>(all.size()) * seeds);
         EXPECT_GE(percent, 93) << name_of(sequence);
@@ -101,15 +95,11 @@ TEST_P(ViewFactorsTest, ErrorsFallAsTheyShouldWithTheRays) {
     for (const Sequence sequence : {Sequence::sobol, Sequence::random}) {
         double slopes = 0;
         uint seed = 0;
-        const std::vector<test::KnownFactor> all = known_factors();
-        for (const test::KnownFactor& known : all) {
-            const auto accel = make_accel();
-            push_scene(*accel, known.scene);
-            const Faces faces(context(), known.scene);
+        const std::vector<KnownFactor> all = known_factors();
+        for (const KnownFactor& known : all) {
             std::vector<double> errors;
             for (const double n : rays) {
-                errors.push_back(
-                    estimates(*accel, faces, known, sequence, static_cast<std::uint64_t>(n), seeds, seed).rms);
+                errors.push_back(trial(known, sequence, static_cast<std::uint64_t>(n), seeds, seed).rms);
                 seed += seeds;
             }
             slopes += fit_power_law(rays, errors).value().slope / static_cast<double>(all.size());
@@ -141,15 +131,6 @@ TEST_P(ViewFactorsOfAccels, EveryRayInAClosedRoomMeetsAFace) {
     }
 }
 
-bool is_same(const ViewFactorRow& a, const ViewFactorRow& b) {
-    const auto equal = [](const ViewFactor& x, const ViewFactor& y) {
-        return x.target == y.target && x.value == y.value && x.low == y.low && x.high == y.high;
-    };
-    return a.group == b.group && a.rays == b.rays && a.hits == b.hits && a.open.value == b.open.value &&
-           a.back.value == b.back.value &&
-           std::equal(a.factors.begin(), a.factors.end(), b.factors.begin(), b.factors.end(), equal);
-}
-
 TEST_P(ViewFactorsOfAccels, AllAcceleratorsCountTheSame) {
     const Scene scene = room();
     const Faces faces(context(), scene);
@@ -174,16 +155,15 @@ TEST_P(ViewFactorsTest, RowsDoNotDependOnWhatIsComputedWithThem) {
 }
 
 TEST_P(ViewFactorsTest, WhatIsHiddenOrTurnedAwayHasNoFactor) {
-    Scene blocked = test::parallel_squares(1);
-    blocked.meshes.push_back(make_quad(vec3(-9, -9, 0.5f), vec3(20, 0, 0), vec3(0, 20, 0)));
-    blocked.instances.push_back({"plate", 2, {}});
+    Scene blocked = plate_between(1);
+    blocked.meshes[2] = make_quad(vec3(-9, -9, 0.5f), vec3(20, 0, 0), vec3(0, 20, 0));
     std::vector<ViewFactorRow> all = rows(blocked, {.grouping = FaceGrouping::mesh});
     EXPECT_EQ(entry_of(all[0], 1).value, 0);
     EXPECT_EQ(entry_of(all[1], 0).value, 0);
     EXPECT_GT(entry_of(all[1], 2).value, 0.99f) << "the plate's front";
     EXPECT_GT(all[0].back.value, 0.99) << "and its back";
 
-    Scene away = test::parallel_squares(1);
+    Scene away = parallel_squares(1);
     for (Mesh& mesh : away.meshes) mesh = turned(mesh);
     all = rows(away, {.grouping = FaceGrouping::mesh});
     EXPECT_TRUE(all[0].factors.empty() && all[1].factors.empty());
@@ -191,7 +171,7 @@ TEST_P(ViewFactorsTest, WhatIsHiddenOrTurnedAwayHasNoFactor) {
     all = rows(away, {.grouping = FaceGrouping::mesh, .sides = Sides::both});
     EXPECT_NEAR(entry_of(all[0], 1).value, 0.199824895698387383 / 2, 0.003) << "half of the rays leave the other side";
 
-    Scene coplanar = scene_of({test::square(0), make_quad(vec3(1, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0))});
+    Scene coplanar = scene_of({square(0), make_quad(vec3(1, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0))});
     all = rows(coplanar, {.grouping = FaceGrouping::mesh, .sides = Sides::both});
     EXPECT_TRUE(all[0].factors.empty() && all[1].factors.empty());
 }
@@ -203,10 +183,10 @@ TEST_P(ViewFactorsTest, NarrowGapsAndPanelsAreAsAccurateAsWideOnes) {
         double value;
     };
     // The panel's factor is that of the rectangle, by reciprocity.
-    const std::vector<Case> cases = {{test::parallel_squares(1e-3f), 0, 0.998005631907579727},
-                                     {test::parallel_squares(1e-6f), 0, 0.9999980000100295},
-                                     {test::perpendicular_rectangles(1, 0.01f), 1, 0.489584926850668304},
-                                     {test::perpendicular_rectangles(1, 1e-6f), 1, 0.499997492619688762}};
+    const std::vector<Case> cases = {{parallel_squares(1e-3f), 0, 0.998005631907579727},
+                                     {parallel_squares(1e-6f), 0, 0.9999980000100295},
+                                     {perpendicular_rectangles(1, 0.01f), 1, 0.489584926850668304},
+                                     {perpendicular_rectangles(1, 1e-6f), 1, 0.499997492619688762}};
     for (const Case& one : cases) {
         const ViewFactorRow row = rows(one.scene, {.grouping = FaceGrouping::mesh, .rays = 1 << 18})[one.from];
         ASSERT_EQ(row.factors.size(), 1u) << one.value;
@@ -230,7 +210,7 @@ TEST_P(ViewFactorsOfAccels, OfConcentricSpheresTheInnerSeesTheOuterAlone) {
 }
 
 TEST_P(ViewFactorsTest, InstancesStandWhereTheirTransformsPutThem) {
-    Scene scene = test::parallel_squares(1);
+    Scene scene = parallel_squares(1);
     const Transform in_half = Transform::scaling(vec3(0.5f, 0.25f, 8));
     for (Mesh& mesh : scene.meshes)
         for (vec3& position : mesh.positions) position = transform_point(in_half, position);
@@ -252,7 +232,7 @@ TEST_P(ViewFactorsTest, RowsEndWhenTheirErrorIsSmallEnough) {
 }
 
 TEST_P(ViewFactorsTest, TrianglesWithoutAreaHaveNoRays) {
-    Scene scene = test::parallel_squares(1);
+    Scene scene = parallel_squares(1);
     scene.meshes[0].triangles.push_back(uvec3(0, 0, 1));
     scene.meshes[0].positions[3].x = NAN;
     const std::vector<ViewFactorRow> all = rows(scene, {});
@@ -264,35 +244,122 @@ TEST_P(ViewFactorsTest, TrianglesWithoutAreaHaveNoRays) {
 
 // Its kernels read what a hit names from tables of the scene's faces.
 TEST_P(ViewFactorsTest, AnAcceleratorOfAnotherSceneIsRefused) {
-    const Scene scene = test::parallel_squares(1);
+    const Scene scene = parallel_squares(1);
     const Faces faces(context(), scene);
     const auto refusal_of = [&](const Scene& other) {
-        const auto accel = make_accel();
-        push_scene(*accel, other);
-        return test::error_if_any([&] { ViewFactors(*accel, faces, {}); });
+        fill(other);
+        return error_if_any([&] { ViewFactors(accel(), faces, {}); });
     };
     EXPECT_EQ(refusal_of(scene), "");
     Scene more = scene;
     more.instances.push_back(more.instances.back());
-    test::expect_contains(refusal_of(more), "view factors: it has 3 instances and the scene 2");
+    expect_contains(refusal_of(more), "view factors: it has 3 instances and the scene 2");
     Scene finer = scene;
     finer.meshes[1] = make_icosphere(2);
-    test::expect_contains(refusal_of(finer), "its instance 1 has 320 primitives and the scene's 2 triangles");
-    const auto accel = make_accel();
-    push_scene(*accel, scene);
-    ViewFactors factors(*accel, faces, {});
-    accel->push(make_icosphere(0));
-    test::expect_contains(test::error_of([&] { factors.rows(0, 1); }), "it has 3 instances");
-    test::expect_contains(test::error_of([&] { exchanges_of_pairs(*accel, faces, {}, PairEstimator::area, nullptr); }),
-                          "exchanges of pairs: it has 3 instances");
+    expect_contains(refusal_of(finer), "its instance 1 has 320 primitives and the scene's 2 triangles");
+    fill(scene);
+    ViewFactors factors(accel(), faces, {});
+    accel().push(make_icosphere(0));
+    expect_contains(error_of([&] { factors.rows(0, 1); }), "it has 3 instances");
+    expect_contains(error_of([&] { exchanges_of_pairs(accel(), faces, {}, PairEstimator::area, nullptr); }),
+                    "exchanges of pairs: it has 3 instances");
 }
 
 TEST_P(ViewFactorsTest, OptionsOutOfRangeAreRefused) {
-    const Scene scene = test::parallel_squares(1);
-    test::expect_contains(test::error_of([&] { rows(scene, {.rays = 0}); }), "0 rays a row");
-    test::expect_contains(test::error_of([&] { rows(scene, {.target_error = -1}); }), "target error of -1");
-    test::expect_contains(test::error_of([&] { rows(scene, {.target_error = NAN}); }), "target error");
+    const Scene scene = parallel_squares(1);
+    expect_contains(error_of([&] { rows(scene, {.rays = 0}); }), "0 rays a row");
+    expect_contains(error_of([&] { rows(scene, {.target_error = -1}); }), "target error of -1");
+    expect_contains(error_of([&] { rows(scene, {.target_error = NAN}); }), "target error");
+}
+
+// Intervals hold the truth as often as they should, from narrow gaps to round things.
+class ViewFactorCoverage : public ViewFactorsOfAccels {};
+TWINRAY_OVER_SOFTWARE(ViewFactorCoverage);
+
+double area_of(const Scene& scene) {
+    double area = 0;
+    for (uint i = 0; i < scene.meshes[0].triangles.size(); ++i) area += length(area_vector(scene, {0, i}));
+    return area;
+}
+
+KnownFactor by_contour(std::string name, Scene scene) {
+    const double value = contour_flow(scene) / area_of(scene);
+    return {std::move(name), std::move(scene), value};
+}
+
+Scene discs(float r1, float r2, float distance) {
+    Scene scene = scene_of({make_disc(12, r1), turned(make_disc(12, r2))});
+    scene.instances[1].transform = Transform::translation(vec3(0, 0, distance));
+    return scene;
+}
+
+Scene sphere_pair(float r1, float r2, float distance) {
+    Scene scene = scene_of({make_icosphere(1, r1), make_icosphere(1, r2)});
+    scene.instances[1].transform = Transform::translation(vec3(distance, 0, 0));
+    return scene;
+}
+
+TEST_P(ViewFactorCoverage, OfDiscsAndSpheres) {
+    const std::vector<KnownFactor> all = {
+        by_contour("discs", discs(1, 1, 1)),
+        by_contour("a disc and one of twice its radius", discs(1, 2, 1)),
+        by_contour("spheres 4 apart", sphere_pair(1, 1, 4)),
+        by_contour("spheres of 1 and 2, 6 apart", sphere_pair(1, 2, 6)),
+        {"concentric spheres, inwards", scene_of({turned(make_icosphere(1, 2)), make_icosphere(1, 1)}), 0.25, 2}};
+    for (const Sequence sequence : {Sequence::sobol, Sequence::random}) {
+        uint inside = 0;
+        for (const KnownFactor& known : all) inside += trial(known, sequence, 8192, seeds(), 1).inside;
+        const double percent = 100.0 * inside / static_cast<double>(all.size() * seeds());
+        EXPECT_GE(percent, 88) << name_of(sequence);
+        EXPECT_LE(percent, 99) << name_of(sequence);
+    }
+}
+
+// The radiation that leaves a gap follows from the rays that meet nothing: 1 - F, which is as small as the gap.
+TEST_P(ViewFactorCoverage, OfWhatLeavesNarrowGaps) {
+    const std::vector<std::pair<float, double>> gaps = {
+        {1e-1f, 1 - 0.826994522397256578},
+        {1e-2f, 1 - 0.9804166029259733},
+        {1e-3f, 1 - 0.998005631907579727},
+        {1e-4f, 1.99929022211512853e-4},
+        {1e-5f, 1.99991436349952814e-5}};  // narrower ones: pair_plan_test.cpp
+    for (const auto& [gap, open] : gaps) {
+        const std::uint64_t rays = gap >= 1e-4f ? 1 << 13 : 1 << 17;
+        const double leaving = open * static_cast<double>(rays) * seeds();
+        const Scene scene = parallel_squares(gap);
+        fill(scene);
+        const Faces faces(context(), scene);
+        uint inside = 0;
+        double squares = 0, mean = 0;
+        for (uint seed = 1; seed <= seeds(); ++seed) {
+            const ViewFactorRow row = first_row(faces, {.grouping = FaceGrouping::mesh, .rays = rays, .seed = seed});
+            mean += row.open.value / seeds();
+            inside += row.open.interval_95.low <= open && open <= row.open.interval_95.high;
+            EXPECT_EQ(row.back.value, 0) << gap;
+            squares += std::pow(row.open.value / open - 1, 2) / seeds();
+        }
+        EXPECT_GE(inside, 0.85 * seeds()) << gap;
+        EXPECT_NEAR(mean / open, 1, 4 / std::sqrt(leaving)) << gap;
+        // This holds for independent rays; Sobol's have a smaller error.
+        EXPECT_LT(std::sqrt(squares), 1.5 * std::sqrt((1 - open) / (open * static_cast<double>(rays)))) << gap;
+    }
+}
+
+// The same square is cut into 2 to 512 faces, in a long run up to 131 072, with at least 64 rays each.
+TEST_P(ViewFactorCoverage, RefinementLeavesTheFactorOfTheWhole) {
+    const int finest = seeds() > 100 ? 8 : 4;
+    for (int level = 0; level <= finest; level += 2) {
+        Mesh grid = make_grid(1u << level, 1u << level);  // looks to +y
+        const Scene scene = scene_of({grid, make_quad(vec3(0, 1, 0), vec3(1, 0, 0), vec3(0, 0, 1))});
+        fill(scene);
+        const ViewFactorRow row = first_row(Faces(context(), scene), {.grouping = FaceGrouping::mesh, .rays = 1 << 16});
+        ASSERT_EQ(row.factors.size(), 1u);
+        const double error = static_cast<double>(row.factors[0].value) - 0.199824895698387383;
+        const double half = static_cast<double>(row.factors[0].high - row.factors[0].low) / 2;
+        EXPECT_LT(std::abs(error), 2 * half) << level;
+        EXPECT_LT(half, 0.003) << level;
+    }
 }
 
 }  // namespace
-}  // namespace twinray
+}  // namespace twinray::test

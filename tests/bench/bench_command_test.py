@@ -2,28 +2,22 @@
 # SPDX-License-Identifier: MIT
 """Runs `twinray bench` and the scripts that keep its history, as a user does. Usage: bench_command_test.py TWINRAY FOLDER,
 the latter with the scripts."""
-import json
 import pathlib
 import subprocess
 import sys
-import tempfile
 
-twinray, scripts, here = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(tempfile.mkdtemp())
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import command
+from command import here, program as twinray, run
 
-
-def call(*command, status=0):
-    run = subprocess.run(command, capture_output=True, text=True)
-    assert run.returncode == status, f"{command}: status {run.returncode}\n{run.stdout}{run.stderr}"
-    assert "VUID" not in run.stderr and "SYNC-HAZARD" not in run.stderr, run.stderr
-    return run.stdout + run.stderr
+scripts = pathlib.Path(sys.argv[2])
 
 
 def bench(*arguments, status=0):
     """What it prints, and its records."""
-    file = here / "records.jsonl"
-    file.unlink(missing_ok=True)
-    said = call(twinray, "bench", "--quiet", "--json", str(file), *arguments, status=status)
-    return said, [json.loads(line) for line in file.read_text().splitlines()] if file.exists() else []
+    (here / "records.jsonl").unlink(missing_ok=True)
+    said = run("bench", "--quiet", "--json", "records.jsonl", *arguments, status=status)
+    return said, command.records("records.jsonl") if (here / "records.jsonl").exists() else []
 
 
 KINDS = ["primary", "incoherent", "occlusion"]
@@ -131,29 +125,26 @@ assert "--scene" in bench("--trees", status=2)[0]
 # Errors are reported.
 assert "'abc' is not a whole number" in bench("--scene", "sphere:abc", status=1)[0]
 assert "no backend's name contains 'nobody'" in bench("--scene", "sphere:80", "--backends", "nobody", status=1)[0]
-bench("--scene", "sphere:80", "--ray-kinds", "diffuse", status=2)
-bench("--scene", "sphere:80", "--ray-orders", "random", status=2)
-bench("--scene", "sphere:80", "--width", "12", status=2)
-bench("--scene", "sphere:80", "--max-seconds", "0", status=2)
-bench("--growth", "1", status=2)
-bench("--rounds", "1", status=2)
-bench("--feature-costs", status=2)
-bench("--scene", "sphere:80", "--growth", "80", status=2)
+for wrong in (["--ray-kinds", "diffuse"], ["--ray-orders", "random"], ["--width", "12"], ["--max-seconds", "0"],
+              ["--growth", "80"]):
+    bench("--scene", "sphere:80", *wrong, status=2)
+for wrong in (["--growth", "1"], ["--rounds", "1"], ["--feature-costs"]):
+    bench(*wrong, status=2)
 
 # History: each run is appended, and drawn where matplotlib is.
 options = ["--", "--width", "16", "--rounds", "1", "--backends", "sw compressed4"]
 for runs in (1, 2):
-    call(scripts / "record_history.sh", "-t", twinray, "-o", str(here / "history"), "sphere:80", "soup:80", *options)
+    run("-t", twinray, "-o", "history", "sphere:80", "soup:80", *options, of=scripts / "record_history.sh")
     (history,) = (here / "history").glob("*.jsonl")
-    kept = [json.loads(line) for line in history.read_text().splitlines()]
+    kept = command.records(history)
     assert len(kept) == runs * 2 * 3 and {r["scene"] for r in kept} == {"sphere:80", "soup:80"}
     assert all(r["started"] and r["git"] and r["device"]["driver"] for r in kept)
-call(scripts / "record_history.sh", "-t", twinray, "-o", str(here / "history"), "sphere:80", "sphere:abc", *options, status=1)
+run("-t", twinray, "-o", "history", "sphere:80", "sphere:abc", *options, status=1, of=scripts / "record_history.sh")
 assert len(history.read_text().splitlines()) == len(kept), "a run that failed was recorded"
-call(scripts / "record_history.sh", "--nonsense", status=2)
+run("--nonsense", status=2, of=scripts / "record_history.sh")
 has_matplotlib = subprocess.run([sys.executable, "-c", "import matplotlib"], capture_output=True).returncode == 0
 for picture in ("plot.svg", "plot.png"):
-    said = call(sys.executable, scripts / "plot_history.py", str(history), "-o", str(here / picture),
-                status=0 if has_matplotlib else 1)
+    said = run(scripts / "plot_history.py", history, "-o", picture, status=0 if has_matplotlib else 1,
+               of=sys.executable)
     assert (here / picture).exists() if has_matplotlib else "python3-matplotlib" in said, said
 print("bench: the command and its history work")

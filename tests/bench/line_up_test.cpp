@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Rays that a device makes for a scene, and the backends that must find the same hits for them.
-#include "bench/line_up.h"
+#include "bench/backend.h"
 
 #include <cmath>
 #include <cstring>
 
-#include "bench/embree_backend.h"
 #include "bench/measure.h"
-#include "bench/rays.h"
+#include "bench/scenes.h"
 #include "tests/scene/temp_dir.h"
 #include "tests/support/device.h"
 
@@ -75,23 +74,6 @@ TEST_F(LineUpTest, TakesThoseThatAreNamed) {
     EXPECT_EQ(find(Baseline::software, software), 0u);
     EXPECT_FALSE(find(Baseline::embree8, software).has_value());
     test::expect_error("'nobody'", [&] { make_line_up(context(), nullptr, {.only = {"nobody"}}); });
-}
-
-TEST_F(LineUpTest, TracesInEachOrderThatIsAskedFor) {
-    LineUp line_up =
-        make_line_up(context(), nullptr,
-                     {.layouts = {Layout::bvh2}, .ray_orders = {RayOrder::given, RayOrder::sorted}, .only = {"sw"}});
-    EXPECT_EQ(names_of(line_up), (std::vector<std::string>{"sw bvh2 watertight", "sw bvh2 watertight sorted"}));
-    const BenchScene scene = make_scene("sphere:500");
-    const RayBatch rays(make_rays(context(), scene, 16, 1)[0], Query::closest, true);
-    std::vector<std::uint64_t> hashes;
-    for (const auto& backend : line_up) {
-        backend->build(scene.scene);
-        hashes.push_back(hash_of(traced(*backend, rays), rays.query()));
-    }
-    EXPECT_EQ(hashes[0], hashes[1]);
-    EXPECT_EQ(line_up[0]->labels().ray_order, "given");
-    EXPECT_EQ(line_up[1]->labels().ray_order, "sorted");
 }
 
 TEST_F(LineUpTest, EveryBaselineIsItself) {

@@ -4,16 +4,14 @@
 bit.
 Usage: vector_widths_test.py TWINRAY"""
 import concurrent.futures
-import json
-import os
 import pathlib
 import re
-import subprocess
 import sys
-import tempfile
 
-twinray, here = sys.argv[1], pathlib.Path(tempfile.mkdtemp())
-devices = subprocess.run([twinray, "devices"], capture_output=True, text=True).stdout
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import command
+
+devices = command.run("devices")
 if "llvmpipe" not in devices:
     print("skipped: no device is llvmpipe, which LP_NATIVE_VECTOR_WIDTH is for")
     sys.exit(77)
@@ -25,15 +23,12 @@ if int(re.search(r"llvmpipe Mesa (\d+)", devices).group(1)) >= 26:
 def hits_of(setting):
     """Hashes by what was traced."""
     width, tuning = setting
-    file = here / f"{width}-{tuning}.jsonl"
-    variables = {"LP_NATIVE_VECTOR_WIDTH": str(width), "TWINRAY_TUNING": tuning}
-    command = [twinray, "bench", "--quiet", "--json", str(file), "--pipelines", "", "--device", "llvmpipe", "--scene",
-               "instances:12x80", "--width", "32", "--rounds", "1", "--levels", "fast,watertight,certified",
-               "--backends", "sw",
-               "--no-embree", "--no-build"]
-    run = subprocess.run(command, capture_output=True, text=True, env={**os.environ, **variables})
-    assert run.returncode == 0, f"{variables}: {run.stdout}{run.stderr}"
-    records = [json.loads(line) for line in file.read_text().splitlines()]
+    file = f"{width}-{tuning}.jsonl"
+    command.run("bench", "--quiet", "--json", file, "--pipelines", "", "--device", "llvmpipe", "--scene",
+                "instances:12x80", "--width", "32", "--rounds", "1", "--levels", "fast,watertight,certified",
+                "--backends", "sw", "--no-embree", "--no-build",
+                env={"LP_NATIVE_VECTOR_WIDTH": str(width), "TWINRAY_TUNING": tuning})
+    records = command.records(file)
     device = records[0]["device"]["name"]
     assert f"{width} bits" in device, f"{device} was to have vectors of {width} bits"
     return {(r["rays"], r["contestant"]): r["hits_hash"] for r in records}

@@ -1,21 +1,18 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """What `twinray` says of itself, without a device. Usage: cli_command_test.py TWINRAY"""
+import functools
 import pathlib
 import re
 import shutil
 import subprocess
 import sys
-import tempfile
 
-twinray, here = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(tempfile.mkdtemp())
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import command
+from command import here, program as twinray
 
-
-def run(*arguments, status=0):
-    done = subprocess.run([twinray, *arguments], capture_output=True, text=True, cwd=here)
-    assert done.returncode == status, f"{arguments}: status {done.returncode}\n{done.stdout}{done.stderr}"
-    return done.stderr if status else done.stdout
-
+run = functools.partial(command.run, one_stream=True)
 
 commands = re.findall(r"^    ([a-z]+)  ", run("help"), re.M)
 assert {"trace", "devices", "verify", "viewfactors", "help", "completion"} <= set(commands), commands

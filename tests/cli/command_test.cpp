@@ -6,8 +6,6 @@
 #include <sstream>
 #include <vector>
 
-#include "cli/command/help_text.h"
-#include "cli/command/parse.h"
 #include "tests/cli/sample_command.h"
 
 namespace twinray::cli {

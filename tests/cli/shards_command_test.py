@@ -8,14 +8,13 @@ import random
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from ranks import rank_of
+from command import here, program as twinray, rank_of, run
 
-twinray, mpirun = sys.argv[1], "".join(sys.argv[2:])
-os.chdir(tempfile.mkdtemp())
+mpirun = "".join(sys.argv[2:])
+os.chdir(here)
 
 
 def write_files():
@@ -35,14 +34,8 @@ def write_files():
     pathlib.Path("sun.csv").write_text("0.5,0,-1,2\n-0.5,0.3,-1,1\n")
 
 
-def run(*words, status=0, start=()):
-    done = subprocess.run([*start, twinray, *map(str, words)], capture_output=True, text=True)
-    assert done.returncode == status, f"{words}: status {done.returncode}\n{done.stdout}{done.stderr}"
-    return done.stdout + done.stderr
-
-
 def under_mpi(*words, **options):
-    return run(*words, start=[mpirun, "--oversubscribe", "-n", "2"], **options)
+    return run("--oversubscribe", "-n", 2, twinray, *words, of=mpirun, **options)
 
 
 COMMANDS = [

@@ -2,13 +2,9 @@
 // Contacts of triangles by the GPU, compared with the exact class of every pair and with known counts.
 #include <twinray/queries.h>
 
-#include <algorithm>
-
-#include "engine/collide/exact_class.h"
 #include "tests/accel/accel_fixture.h"
 #include "tests/collide/triangle_pairs.h"
 #include "tests/points/point_reference.h"
-#include "tests/validation/reference/meshes.h"
 
 namespace twinray {
 namespace {
@@ -17,15 +13,9 @@ using test::Soup;
 
 class NarrowPhaseTest : public test::VulkanTest {
   protected:
-    void SetUp() override {
-        VulkanTest::SetUp();
-        if (IsSkipped() || HasFatalFailure()) return;
+    void prepare() override {
         if (!context().properties().shader_float64) TWINRAY_LACKS("float64", "no float64");
-        narrow_phase_ = std::make_unique<NarrowPhase>(context());
-    }
-    void TearDown() override {
-        narrow_phase_.reset();
-        VulkanTest::TearDown();
+        narrow_phase_ = &keep<NarrowPhase>(context());
     }
     NarrowPhase& narrow_phase() { return *narrow_phase_; }
     Contacts find(const std::vector<MeshView>& meshes, const std::vector<MeshInstance>& instances,
@@ -37,7 +27,7 @@ class NarrowPhaseTest : public test::VulkanTest {
     }
 
   private:
-    std::unique_ptr<NarrowPhase> narrow_phase_;
+    NarrowPhase* narrow_phase_ = nullptr;
 };
 
 // Returns the contacts of different instances.
@@ -207,13 +197,13 @@ TEST_F(NarrowPhaseTest, NothingAndWhatIsNotFinite) {
 }
 
 TEST_F(NarrowPhaseTest, WrongUseIsAnError) {
-    using test::error_if_any;
+    using test::error_of, test::expect_error;
     const Soup ball = test::sphere(1);
-    EXPECT_EQ(error_if_any([&] { find({ball.view()}, {{0, {}}, {1, {}}}); }), "collide: instance 1 is of mesh 1 of 1");
+    EXPECT_EQ(error_of([&] { find({ball.view()}, {{0, {}}, {1, {}}}); }), "collide: instance 1 is of mesh 1 of 1");
     narrow_phase().set_max_pairs(100);
-    EXPECT_NE(error_if_any([&] { find({ball.view()}, {{0, {}}, {0, {}}}); }).find("at most 100"), std::string::npos);
+    expect_error("at most 100", [&] { find({ball.view()}, {{0, {}}, {0, {}}}); });
     const TrianglePair pair{test::triangle_of(dvec3(NAN), dvec3(0), dvec3(1)), {}};
-    EXPECT_NE(error_if_any([&] { narrow_phase().classify(std::span(&pair, 1)); }).find("pair 0"), std::string::npos);
+    expect_error("pair 0", [&] { narrow_phase().classify(std::span(&pair, 1)); });
 }
 
 }  // namespace

@@ -2,15 +2,7 @@
 // Contexts, their buffers and passes, and memory that two of them share.
 #include "engine/core/context.h"
 
-#include <filesystem>
-#include <fstream>
-
-#include <twinray/tlas.h>
 #include "engine/core/commands.h"
-#include "engine/core/error.h"
-#include "engine/core/platform.h"
-#include "engine/core/vma.h"
-#include "engine/core/vulkan.h"
 #include "tests/accel/accel_fixture.h"
 #include "tests/scene/temp_dir.h"
 

@@ -5,12 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
-
 #define VK_NO_PROTOTYPES
 #include <volk.h>
 
-#include "engine/core/context.h"
 #include "tests/support/device.h"
 
 namespace twinray::test {

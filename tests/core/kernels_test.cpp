@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Kernels: equal ones share a pipeline, and none gets an address that cannot be read. Every VulkanTest checks that for
 // each dispatch, by a validation message; here the message is seen to come.
-#include "engine/core/kernel_addresses.h"
-#include "engine/core/pipeline_table.h"
-
-#include <gtest/gtest.h>
-
-#include <cstring>
+#include "engine/core/pipelines.h"
 
 #include <twinray/tlas.h>
 #include "engine/accel/trace_desc.h"
-#include "engine/core/error.h"
 #include "engine/core/kernel.h"
 #include "swtlas_trace.spv.h"
 #include "test_nothing.spv.h"

@@ -2,13 +2,8 @@
 // Loops over tuples at compile time, and over indices on threads.
 #include <twinray/sets.h>
 
-#include <gtest/gtest.h>
-#include <string>
 #include <chrono>
 #include <thread>
-
-#include <array>
-#include <stdexcept>
 
 #include "engine/core/parallel.h"
 #include "tests/scene/temp_dir.h"

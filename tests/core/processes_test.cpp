@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Contexts in forked processes, and calls whose caller wants them to end.
+// Contexts in forked processes, calls whose caller wants them to end, and a full disk, imitated by the limit on the
+// size of files.
 #include <sys/wait.h>
+
+#include <csignal>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include "engine/core/interruption.h"
 #include "engine/core/parallel.h"
 #include "tests/accel/accel_fixture.h"
+#include "tests/scene/temp_dir.h"
 
 namespace twinray {
 namespace {
@@ -108,6 +113,29 @@ TEST(Interruption, LoopsOnAllCoresLookOnTheThreadOfTheirCaller) {
 INSTANTIATE_TEST_SUITE_P(, ProcessesTest,
                          ::testing::Values(test::Kind::software, test::Kind::ray_query, test::Kind::pipeline),
                          test::name_of_kind);
+
+using FullDisk = test::VulkanTest;
+
+TEST_F(FullDisk, AFailedSaveLeavesTheOldFileAndNoOther) {
+    SwTlas accel(context());
+    accel.push(make_icosphere(4));
+    context().wait(accel.sync());
+    const test::TempDir folder;
+    const std::filesystem::path file = folder.write("scene.swtlas", "old");
+    rlimit before{};
+    getrlimit(RLIMIT_FSIZE, &before);
+    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit small{20'000, before.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &small);
+    const std::string what = test::error_of([&] { accel.save(file); });
+    setrlimit(RLIMIT_FSIZE, &before);
+    std::signal(SIGXFSZ, handler);
+    test::expect_contains(what, "scene.swtlas': cannot be written: File too large");
+    EXPECT_EQ(read_file(file), (Bytes{'o', 'l', 'd'}));
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(file.parent_path()), {}), 1);
+    accel.save(file);
+    EXPECT_EQ(SwTlas::load(context(), file).handles.size(), 1u);
+}
 
 }  // namespace
 }  // namespace twinray

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "engine/core/radix_sort.h"
 
-#include <algorithm>
 #include <numeric>
-#include <random>
 
-#include "engine/core/error.h"
 #include "tests/support/device.h"
 
 namespace twinray {

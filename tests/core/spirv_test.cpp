@@ -3,15 +3,7 @@
 // One file of more than 400 lines, since all tests share the builders of modules below.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cstring>
-#include <fstream>
-#include <random>
-#include <set>
-
-#include "engine/accel/features_of.h"
-#include "engine/core/error.h"
-#include "engine/core/files.h"
+#include "engine/accel/trace_desc.h"
 #include "engine/core/radix_sort.h"
 #include "engine/core/spirv_words.h"
 #include "tests/scene/temp_dir.h"

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "validation/records/bootstrap.h"
 #include "engine/core/statistics.h"
 
 #include <gtest/gtest.h>

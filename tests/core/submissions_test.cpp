@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Submissions: their order, how many items each gets, and what the error of a lost device says.
 #include "engine/core/device_fault.h"
-#include "engine/core/pace.h"
-#include "engine/core/promised_points.h"
-#include "engine/core/submission_log.h"
+#include "engine/core/commands.h"
+#include "engine/core/context.h"
 #include "engine/core/vulkan.h"
 
 #include <gtest/gtest.h>

@@ -3,9 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <random>
-
 #include "engine/core/error.h"
 #include "swtlas/structures.h"
 #include "tests/validation/reference/meshes.h"

@@ -3,6 +3,7 @@
 
 scene.glb    a room with two blocks that cut into each other, a lamp and a camera; all of it closed
 fox.glb      a block that an animation, "Run", turns once in a second
+spheres.trace_program.h    as twinray_add_trace_program() makes it of the page's spheres.glsl
 """
 
 import json
@@ -101,3 +102,5 @@ def runner():
 def write(folder):
     room().write(folder / "scene.glb")
     runner().write(folder / "fox.glb")
+    code = "#pragma once\n#include <twinray/trace.h>\n\nextern const twinray::TraceProgramCode spheres;\n"
+    (folder / "spheres.trace_program.h").write_text(code)

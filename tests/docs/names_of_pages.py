@@ -12,11 +12,6 @@ import re
 import subprocess
 import sys
 
-try:
-    import blocks
-except ModuleNotFoundError as error:
-    print(f"{error}: tools/docs.sh installs it into build/docs/venv")
-    sys.exit(77)
 import code_blocks
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -148,7 +143,7 @@ def faults_of(page, text, public, programs):
         looked_at["cells"] += 1
         names = {name for span in SPAN.findall(cell) for match in NAME.findall(span) for name in match if name}
         faults += [(number, f"no {name} in headers or package") for name in sorted(names - public.words)]
-    for block in blocks.blocks_of(text):
+    for block in code_blocks.blocks_of(text):
         if "not-run" in block.options and block.language == "sh":
             faults += [(block.line, fault) for fault in map(programs.fault, commands_of(block.text)) if fault]
     return [f"{page}:{number}: {fault}" for number, fault in faults]

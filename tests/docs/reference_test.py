@@ -13,8 +13,7 @@ import tempfile
 
 root = pathlib.Path(sys.argv[1])
 sys.path.insert(0, str(root / "docs/site"))
-import doxygen_xml as xml  # noqa: E402
-import glsl_pages  # noqa: E402
+import reference_pages as pages  # noqa: E402
 
 KINDS = {"function", "enum", "typedef", "define"}
 
@@ -34,17 +33,17 @@ def header_of(node):
 
 
 def undocumented(folder):
-    for compound in xml.compounds(folder):
+    for compound in pages.compounds(folder):
         name = compound.findtext("compoundname")
-        if compound.get("prot") == "private" or glsl_pages.NOT_FOR_KERNELS & {pathlib.Path(name).name}:
+        if compound.get("prot") == "private" or pages.NOT_FOR_KERNELS & {pathlib.Path(name).name}:
             continue
-        if compound.get("kind") in ("class", "struct", "file") and not xml.is_documented(compound):
+        if compound.get("kind") in ("class", "struct", "file") and not pages.is_documented(compound):
             yield f"{header_of(compound)}: {compound.get('kind')} {name}"
         for member in compound.iter("memberdef"):
-            if glsl_pages.is_guard(member) or glsl_pages.is_own(member) or not needs_words(member):
+            if pages.is_guard(member) or pages.is_own(member) or not needs_words(member):
                 continue
-            if not xml.is_documented(member):
-                yield f"{header_of(member)}: {member.get('kind')} {name}: {glsl_pages.signature(member)}"
+            if not pages.is_documented(member):
+                yield f"{header_of(member)}: {member.get('kind')} {name}: {pages.signature(member)}"
 
 
 def undocumented_python(package):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Files made by the tools that people have, as twinray reads them: as many triangles as the tool made, the same area,
 and hits of rays from the middle where the tool's own rays, or Open3D's on the tool's triangles, hit. Run by
-exporters.sh.
+run.sh.
 
 Usage: exporters.py FOLDER, that of the built programs; the working directory takes the files. What is printed is the
 table of docs/conventions.md. A tool that is not installed is a row that says so."""

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Files that a twinray may refuse, the remedy that it or docs/troubleshooting.md names, and whether twinray reads what
-comes of it: the same triangles, and a picture like that of the file before it was compressed. Run by remedies.sh.
+comes of it: the same triangles, and a picture like that of the file before it was compressed. Run by run.sh.
 
 Usage: remedies.py FOLDER, that of the built programs; the working directory takes the files."""
 

@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/fuzz/accel_arguments.h"
 #include "tests/fuzz/accel_model.h"
-#include "tests/fuzz/contract.h"
 #include <twinray/context.h>
 #include <twinray/validation.h>
 
@@ -53,8 +51,8 @@ class History {
     }
 
     // Runs `change` on the model if the call must be taken.
-    template <class Call, class Change>
-    void expect(bool is_right, const std::string& name, const Call& call, const Change& change) {
+    template <class Call, class Change = decltype([] {})>
+    void expect(bool is_right, const std::string& name, const Call& call, const Change& change = {}) {
         require(is_taken(call) == is_right, name + (is_right ? " takes right use" : " refuses wrong use"));
         if (is_right) change();
     }
@@ -251,31 +249,23 @@ class History {
 
     // Calls that fail while edits wait for a sync, or before the first one, and settings.
     void look() {
-        expect(
-            model_.pending == Pending::nothing, "view",
-            [&] {
-                seen_ = SeenView{accel_->view(), accel_count_};
-            },
-            [] {});
+        expect(model_.pending == Pending::nothing, "view", [&] { seen_ = SeenView{accel_->view(), accel_count_}; });
         const AccelHandle handle = any_handle();
-        expect(
-            model_.find(handle) && model_.pending == Pending::nothing, "object_bound",
-            [&] { accel_->object_bound(handle); }, [] {});
+        expect(model_.find(handle) && model_.pending == Pending::nothing, "object_bound",
+               [&] { accel_->object_bound(handle); });
         const double ratio = double(source_.number());
         expect(
             ratio >= 1, "set_rebuild_ratio", [&] { accel_->set_rebuild_ratio(ratio); },
             [&] { require(accel_->rebuild_ratio() == ratio, "the rebuild ratio is that which was set"); });
-        expect(
-            model_.revision > 0, "world_bound", [&] { accel_->world_bound(); }, [] {});
+        expect(model_.revision > 0, "world_bound", [&] { accel_->world_bound(); });
     }
 
     // Traces through a view that may be stale, or of an earlier accelerator.
     void trace_view() {
         if (!seen_) return;
         Commands commands(shared_context(), "fuzz");
-        expect(
-            seen_->accel == accel_count_ && seen_->view.revision == model_.revision, "trace",
-            [&] { accel_->trace(commands, seen_->view, {}); }, [] {});
+        expect(seen_->accel == accel_count_ && seen_->view.revision == model_.revision, "trace",
+               [&] { accel_->trace(commands, seen_->view, {}); });
     }
 
     void ask_for_owners() {
@@ -283,17 +273,13 @@ class History {
         for (const ModelPlacing& placing : model_.placings)
             for (std::size_t i = 0; i < placing.instances.size(); ++i, ++instance) {
                 const Hit hit{1, 1, 0, 0, 0, 0, uint(instance), 0};
-                expect(
-                    model_.pending == Pending::nothing, "handle_of",
-                    [&] {
-                        require(accel_->handle_of(hit) == placing.handle && accel_->index_in_handle(hit) == i,
-                                "a hit names the handle and the instance of it");
-                    },
-                    [] {});
+                expect(model_.pending == Pending::nothing, "handle_of", [&] {
+                    require(accel_->handle_of(hit) == placing.handle && accel_->index_in_handle(hit) == i,
+                            "a hit names the handle and the instance of it");
+                });
             }
         const Hit beyond{1, 1, 0, 0, 0, 0, uint(instance), 0};
-        expect(
-            false, "handle_of", [&] { accel_->handle_of(beyond); }, [] {});
+        expect(false, "handle_of", [&] { accel_->handle_of(beyond); });
     }
 
     void trace() {

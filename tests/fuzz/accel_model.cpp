@@ -6,15 +6,9 @@
 #include <set>
 
 #include "engine/accel/trace_desc.h"
-#include "tests/fuzz/contract.h"
 #include "validation/reference/reference_accel.h"
 
 namespace twinray::fuzz {
-namespace {
-
-constexpr uint most_custom_index = (1u << 24) - 1;
-
-}  // namespace
 
 bool is_placeable(float unit, std::span<const Transform> transforms, std::span<const InstanceOptions> options) {
     const auto fits = [&](const Transform& transform) {
@@ -22,7 +16,7 @@ bool is_placeable(float unit, std::span<const Transform> transforms, std::span<c
         return fault_of(transform).empty() && is_usable(placed, inverse_of(placed));
     };
     return (options.empty() || options.size() == transforms.size()) && std::ranges::all_of(transforms, fits) &&
-           std::ranges::all_of(options, [](const InstanceOptions& o) { return o.custom_index <= most_custom_index; });
+           std::ranges::all_of(options, [](const InstanceOptions& o) { return o.custom_index < 1u << 24; });
 }
 
 ModelPlacing* AccelModel::find(AccelHandle handle) {

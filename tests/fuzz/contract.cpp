@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tests/fuzz/contract.h"
+#include "tests/fuzz/targets.h"
 
 #include <unistd.h>
 

@@ -5,15 +5,15 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/command/parse.h"
+#include "cli/command/command.h"
 #include "cli/csv_files.h"
-#include "cli/kernels/limits.h"
-#include "engine/scene/bytes.h"
+#include "cli/kernels/kernels.h"
+#include "engine/core/files.h"
 #include "engine/scene/ray_file.h"
 #include "report/replay/replay.h"
 #include "tests/cli/sample_command.h"
-#include "tests/fuzz/contract.h"
-#include "validation/leaks/leak_state.h"
+#include "tests/fuzz/targets.h"
+#include "validation/leaks/leak_test.h"
 #include "validation/records/recorder.h"
 #include "viewer/events.h"
 

@@ -20,20 +20,8 @@ import zlib
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 MOST_BYTES = 1 << 16
-TARGET_OF = {
-    ".gltf": "gltf",
-    ".glb": "gltf",
-    ".ply": "ply",
-    ".stl": "stl",
-    ".png": "image",
-    ".jpg": "image",
-    ".jpeg": "image",
-    ".hdr": "hdr",
-    ".exr": "exr",
-    ".csv": "csv",
-    ".npy": "rays",
-    ".gz": "encodings",
-}
+TARGET_OF = {f".{target}": target for target in ("gltf", "ply", "stl", "hdr", "exr", "csv")}
+TARGET_OF |= {".glb": "gltf", ".png": "image", ".jpg": "image", ".jpeg": "image", ".npy": "rays", ".gz": "encodings"}
 COMMAND_LINES = [
     "a.ply --accel sw --levels=watertight,fast --count 7 --up -1 -.5 1e-3 --within +2.5 --quiet",
     "-o here a.ply --picture 1.png --growth 1e3,5",
@@ -73,15 +61,16 @@ class Seeds:
 
     def add_file(self, file):
         suffix = file.suffix.lower()
+        if file.stat().st_size > MOST_BYTES:
+            return
         if suffix == ".obj":
             libraries = [line.split(None, 1)[1].strip() for line in lines_of(file) if line.startswith("mtllib ")]
             materials = [file.parent / name for name in libraries if (file.parent / name).is_file()]
-            if file.stat().st_size <= MOST_BYTES:
-                body = file.read_bytes().replace(b"\r\n", b"\n")
-                for name in libraries:
-                    body = body.replace(f"mtllib {name}".encode(), b"mtllib input.mtl")
-                self.add("obj", file.name, body + b"\n#mtl\n" + b"\n".join(m.read_bytes() for m in materials))
-        elif suffix in TARGET_OF and file.stat().st_size <= MOST_BYTES:
+            body = file.read_bytes().replace(b"\r\n", b"\n")
+            for name in libraries:
+                body = body.replace(f"mtllib {name}".encode(), b"mtllib input.mtl")
+            self.add("obj", file.name, body + b"\n#mtl\n" + b"\n".join(m.read_bytes() for m in materials))
+        elif suffix in TARGET_OF:
             self.add(TARGET_OF[suffix], file.name, file.read_bytes())
 
     def add_tree(self, folder):

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/fuzz/contract.h"
+#include "tests/fuzz/targets.h"
 
 namespace twinray::fuzz {
 namespace {

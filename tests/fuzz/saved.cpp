@@ -2,10 +2,10 @@
 // Files of twinray's own with checksums: as they are, and with corrected checksums, since a fuzzer does not guess them.
 #include <cstring>
 
-#include "engine/scene/bytes.h"
+#include "engine/core/files.h"
 #include "renderer/film_file.h"
 #include "swtlas/saved.h"
-#include "tests/fuzz/contract.h"
+#include "tests/fuzz/targets.h"
 #include <twinray/analysis.h>
 
 namespace twinray::fuzz {

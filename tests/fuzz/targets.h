@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT
-// The targets that are fuzzed. Each function gets any bytes at all and must return: the code it calls either takes them
-// or throws one Error. Another exception, a message of a sanitizer, a hang or gigabytes of memory is a finding; see
-// docs/fuzzing.md.
+// The targets that are fuzzed, the contract of their readers, and files made of bytes. Each function gets any bytes at
+// all and must return: the code it calls either takes them or throws one Error. Another exception, a message of a
+// sanitizer, a hang or gigabytes of memory is a finding; see docs/fuzzing.md.
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <span>
+#include <string>
+
+#include <twinray/geometry.h>
 
 namespace twinray::fuzz {
 
@@ -40,5 +44,25 @@ inline constexpr Target all_targets[] = {
     {"ply", ply},       {"rays", rays},       {"rows", rows}, {"saved_accel", saved_accel},
     {"stl", stl},
 };
+
+// Ends the process, as a sanitizer does, if `holds` is false.
+void require(bool holds, const std::string& promise);
+
+// Returns whether `read` took its input; false means that it refused by an Error, which says something. Every other
+// exception goes through and is a finding.
+template <class Read>
+bool is_taken(const Read& read) {
+    try {
+        read();
+        return true;
+    } catch (const Error& error) {
+        require(error.what()[0] != '\0', "an Error says what is wrong");
+        return false;
+    }
+}
+
+// Writes the bytes to a file of this name in a folder of this process, in memory if the system has such files. The file
+// exists until the process ends.
+std::filesystem::path file_of(Input bytes, const std::string& name);
 
 }  // namespace twinray::fuzz

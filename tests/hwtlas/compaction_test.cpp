@@ -2,8 +2,7 @@
 // Bottom levels move into less memory. Not every driver asks for more than it needs (lavapipe does not); here it seems
 // to.
 #include "engine/core/error.h"
-#include "engine/core/vma.h"
-#include <twinray/geometry.h>
+#include "engine/core/context.h"
 #include <twinray/tlas.h>
 #include "tests/support/caller.h"
 #include "tests/support/device.h"
@@ -12,35 +11,27 @@
 namespace twinray {
 namespace {
 
-constexpr std::uint64_t slack = 4097;
+constexpr std::uint64_t structure_slack = 4097;
 
 class Compaction : public test::VulkanTest {
   protected:
     ContextDesc context_desc() const override { return {.get_instance_proc_addr = driver_.entry()}; }
-    void SetUp() override {
-        VulkanTest::SetUp();
-        if (IsSkipped() || HasFailure()) return;
+    void prepare() override {
         if (!missing_for_hardware(context().properties()).empty())
             TWINRAY_LACKS("ray_tracing", context().properties().name);
-        driver_.set_structure_slack(slack);
-        accel_ = std::make_unique<HwTlas>(context());
-    }
-    void TearDown() override {
-        accel_.reset();
-        VulkanTest::TearDown();
+        driver_.set_structure_slack(structure_slack);
+        accel_ = &keep<HwTlas>(context());
     }
     HwTlas& accel() { return *accel_; }
     // Wipes freed memory, so that nothing is found there any more.
     void wipe_freed_memory() {
         context().wait_for_gpu();
         std::vector<Buffer> wiped;
-        for (int i = 0; i < 64; ++i) wiped.emplace_back(context(), BufferDesc{.name = "wiped", .bytes = slack});
-        Commands commands(context(), "wipe");
-        {
-            const auto pass = commands.pass("wipe");
-            for (const Buffer& buffer : wiped) commands.fill(buffer, 0, slack / 4 * 4, 0);
-        }
-        context().wait(commands.submit());
+        for (int i = 0; i < 64; ++i)
+            wiped.emplace_back(context(), BufferDesc{.name = "wiped", .bytes = structure_slack});
+        context().wait(test::submit_pass(context(), "wipe", [&](Commands& commands) {
+            for (const Buffer& buffer : wiped) commands.fill(buffer, 0, structure_slack / 4 * 4, 0);
+        }));
     }
     void sync_and_wait() { context().wait(accel().sync()); }
     float t_at(float x) {
@@ -51,7 +42,7 @@ class Compaction : public test::VulkanTest {
 
   private:
     faults::FaultInjector driver_;
-    std::unique_ptr<HwTlas> accel_;
+    HwTlas* accel_ = nullptr;
 };
 
 TEST_F(Compaction, HappensWhenAskedForAndKeepsViewsAndHits) {
@@ -65,7 +56,8 @@ TEST_F(Compaction, HappensWhenAskedForAndKeepsViewsAndHits) {
     EXPECT_EQ(accel().memory_usage().structures(), bytes) << "a clean sync does nothing";
     EXPECT_TRUE(accel().compact());
     sync_and_wait();
-    EXPECT_LE(accel().memory_usage().structures(), bytes - 3 * slack) << "a driver may make them smaller still";
+    EXPECT_LE(accel().memory_usage().structures(), bytes - 3 * structure_slack)
+        << "a driver may make them smaller still";
     EXPECT_EQ(accel().revision(), view.revision);
     EXPECT_EQ(accel().view().scene, view.scene);
     wipe_freed_memory();
@@ -80,7 +72,7 @@ TEST_F(Compaction, HappensInASyncThatHasOtherWork) {
     const std::uint64_t bytes = accel().memory_usage().structures();
     const AccelHandle third = push_box(4);
     sync_and_wait();
-    EXPECT_LT(accel().memory_usage().structures(), bytes + slack);
+    EXPECT_LT(accel().memory_usage().structures(), bytes + structure_slack);
     accel().update_transform(third, Transform::translation({0, 0, 1}));
     sync_and_wait();
     EXPECT_FALSE(accel().compact());
@@ -112,7 +104,7 @@ TEST_F(Compaction, IsNotForgottenBySyncsOfOtherMeshes) {
     const std::uint64_t bytes = accel().memory_usage().structures();
     EXPECT_TRUE(accel().compact());
     sync_and_wait();
-    EXPECT_LE(accel().memory_usage().structures(), bytes - 2 * slack);
+    EXPECT_LE(accel().memory_usage().structures(), bytes - 2 * structure_slack);
     EXPECT_EQ(t_at(0), 9.0f);
     EXPECT_EQ(t_at(2), 9.0f);
 }

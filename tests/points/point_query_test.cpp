@@ -2,15 +2,12 @@
 // The nearest triangles of points, by the GPU, compared with all triangles one by one.
 #include <twinray/queries.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstdlib>
 
 #include "engine/core/parallel.h"
 #include "tests/accel/accel_fixture.h"
 #include "tests/points/point_reference.h"
 #include "tests/scene/temp_dir.h"
-#include "tests/validation/reference/meshes.h"
 
 namespace twinray {
 namespace {
@@ -21,15 +18,9 @@ using test::Soup;
 
 class PointQueryTest : public test::VulkanTest {
   protected:
-    void SetUp() override {
-        VulkanTest::SetUp();
-        if (IsSkipped() || HasFatalFailure()) return;
+    void prepare() override {
         if (!context().properties().shader_float64) TWINRAY_LACKS("float64", "no float64");
-        query_ = std::make_unique<PointQuery>(context());
-    }
-    void TearDown() override {
-        query_.reset();
-        VulkanTest::TearDown();
+        query_ = &keep<PointQuery>(context());
     }
     PointQuery& query() { return *query_; }
     void set(const std::vector<MeshView>& meshes, const std::vector<MeshInstance>& instances) {
@@ -101,7 +92,7 @@ class PointQueryTest : public test::VulkanTest {
         return std::max({length(t.a - t.b), length(t.b - t.c), length(t.c - t.a)});
     }
 
-    std::unique_ptr<PointQuery> query_;
+    PointQuery* query_ = nullptr;
     std::vector<PlacedTriangle> placed_;
     std::vector<double> sides_;  // the longest of each
 };

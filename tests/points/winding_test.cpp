@@ -2,9 +2,6 @@
 // Inside and outside, compared with sums of solid angles and known answers.
 #include <twinray/queries.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "engine/points/boundary.h"
 #include "tests/accel/accel_fixture.h"
 #include "tests/points/point_reference.h"
@@ -15,9 +12,7 @@ namespace {
 
 class WindingTest : public test::VulkanTest {
   protected:
-    void SetUp() override {
-        VulkanTest::SetUp();
-        if (IsSkipped() || HasFatalFailure()) return;
+    void prepare() override {
         if (!context().properties().shader_float64) TWINRAY_LACKS("float64", "no float64");
     }
     std::vector<int> windings(const std::vector<MeshView>& meshes, const std::vector<MeshInstance>& instances,

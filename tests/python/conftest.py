@@ -2,6 +2,8 @@
 """What all tests of the Python package share."""
 
 import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -40,21 +42,28 @@ def grid(n, seed=1):
 def cube(size=1.0):
     """A closed cube, fronts outward."""
     vertices = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], np.float32) * size
-    triangles = [
-        [0, 1, 3],
-        [0, 3, 2],
-        [4, 6, 7],
-        [4, 7, 5],
-        [0, 4, 5],
-        [0, 5, 1],
-        [2, 3, 7],
-        [2, 7, 6],
-        [0, 2, 6],
-        [0, 6, 4],
-        [1, 5, 7],
-        [1, 7, 3],
-    ]
-    return vertices, np.array(triangles, np.uint32)
+    sides = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+    return vertices, np.array(sides, np.uint32)[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
+
+
+def scene_of(*meshes, **options):
+    """A scene of arrays of vertices and triangles."""
+    scene = twinray.Scene(**options)
+    for mesh in meshes:
+        scene.add_triangles(*mesh)
+    return scene
+
+
+def write_obj(file, vertices, triangles, form="v {} {} {}"):
+    lines = [form.format(*vertex) for vertex in vertices]
+    file.write_text("\n".join([*lines, *(f"f {a + 1} {b + 1} {c + 1}" for a, b, c in triangles)]))
+
+
+def run_python(code, **environment):
+    """Run a program by this Python, with these variables beside those of the environment."""
+    return subprocess.run(
+        [sys.executable, "-c", code], env=os.environ | environment, capture_output=True, text=True, timeout=120
+    )
 
 
 def raster(rows=40, columns=50, seed=2, step=10.0):

@@ -6,15 +6,13 @@ import re
 import numpy as np
 import pytest
 import twinray
-from conftest import cube, grid, needed
+from conftest import cube, grid, needed, scene_of
 
 
 def room():
     """A closed cube seen from inside: fronts inward."""
     vertices, triangles = cube()
-    scene = twinray.Scene()
-    scene.add_triangles(vertices, triangles[:, ::-1])
-    return scene
+    return scene_of((vertices, triangles[:, ::-1]))
 
 
 def test_view_factors_of_a_cube():
@@ -40,33 +38,24 @@ def test_sparse_is_the_same():
 
 
 def test_a_shadow_takes_its_part_of_the_light():
-    scene = twinray.Scene()
-    scene.add_triangles([[0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0]], [[0, 1, 2], [0, 2, 3]])
-    scene.add_triangles([[1, 1, 1], [2, 1, 1], [2, 2, 1], [1, 2, 1]], [[0, 1, 2], [0, 2, 3]])
+    halves = [[0, 1, 2], [0, 2, 3]]
+    ground, roof = [[0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0]], [[1, 1, 1], [2, 1, 1], [2, 2, 1], [1, 2, 1]]
+    scene = scene_of((ground, halves), (roof, halves))
     light = twinray.illumination(scene, [0, 0, -1], groups=[0, 0, 1, 1], side=500)
-    assert (
-        np.abs(light["area"] - [15, 1]).max() < 0.05
-        and (light["low"] <= [15, 1]).all()
-        and (light["high"] >= [15, 1]).all()
-    )
+    assert np.abs(light["area"] - [15, 1]).max() < 0.05
+    assert (light["low"] <= [15, 1]).all() and (light["high"] >= [15, 1]).all()
     assert (light["surface"] == [16, 1]).all() and light["unobstructed"].tolist() == [16, 1]
     value, low, high = twinray.sky_light(scene)
-    assert (
-        value.shape == (4,)
-        and (value[2:] == 1).all()
-        and (value[:2] < 1).all()
-        and (low <= value).all()
-        and (value <= high).all()
-    )
+    assert value.shape == (4,) and (value[2:] == 1).all() and (value[:2] < 1).all()
+    assert (low <= value).all() and (value <= high).all()
     mean, error = twinray.centroid(scene, [0, 0, -1], side=300)
     assert np.abs(mean - [2, 2, 1 / 16]).max() < 0.02 and (error > 0).any()
     assert twinray.centroid(twinray.Scene(), [0, 0, 1]) == (None, None)
 
 
 def test_collisions_are_exact():
-    scene = twinray.Scene()
     vertices, triangles = cube()
-    scene.add_triangles(vertices, triangles)
+    scene = scene_of(cube())
     scene.remove(scene.add_triangles(vertices, triangles))
     scene.add_triangles(vertices, triangles, transform=[[1, 0, 0, 1], [0, 1, 0, 0], [0, 0, 1, 0]])
     touch = twinray.collide(scene)
@@ -83,8 +72,7 @@ def test_collisions_are_exact():
 
 
 def test_hits_are_verified():
-    scene = twinray.Scene(accel="sw")
-    scene.add_triangles(*grid(12))
+    scene = scene_of(grid(12), accel="sw")
     scene.add_triangles(*cube(), transform=[[0.1, 0.02, 0, 0.4], [0, 0.1, 0, 0.4], [0, 0, 0.1, 0.2]])
     result = twinray.verify(scene, count=20_000)
     assert result["faults"] == 0 and result["bound_95"] < 1e-3 and result["classes"].shape == (20_000,)
@@ -95,8 +83,7 @@ def test_hits_are_verified():
 
 
 def test_visible_is_what_occlusion_rays_say():
-    scene = twinray.Scene()
-    scene.add_triangles(*grid(20))
+    scene = scene_of(grid(20))
     random = np.random.default_rng(1)
     points = np.hstack([random.uniform(0, 1, (300, 2)), np.full((300, 1), 0.05)])
     vectors, _ = twinray.sky_patches("reinhart577")
@@ -105,9 +92,8 @@ def test_visible_is_what_occlusion_rays_say():
     rays = np.concatenate([np.repeat(points, 577, axis=0), np.tile(vectors, (300, 1))], axis=1)
     assert (free == ~scene.test_occlusions(rays).reshape(300, 577)).all()
     near = twinray.visible(points, vectors, scene=scene, tnear=0.01, tfar=0.1)
-    assert (
-        near == ~scene.test_occlusions(rays, 0.01, 0.1).reshape(300, 577)
-    ).all() and near.mean() > free.mean() + 0.01
+    assert (near == ~scene.test_occlusions(rays, 0.01, 0.1).reshape(300, 577)).all()
+    assert near.mean() > free.mean() + 0.01
     with pytest.raises(twinray.Error, match="t_far 0 must be above 0"):
         twinray.visible(points, vectors, scene=scene, tfar=0)
     east = twinray.visible(points, vectors, np.tile([1.0, 0, 0], (300, 1)), scene=scene)
@@ -120,8 +106,7 @@ def test_visible_is_what_occlusion_rays_say():
 @pytest.mark.parametrize("size, place", [(1, 0), (100, 0), (1, 1000), (30, -5000.3)])
 def test_sensors_on_a_roof_see_the_sky(accel, size, place, caplog):
     roof = np.array([[0, 0, 1], [1, 0, 1], [1, 1, 1.7], [0, 1, 1.7]]) * size + place
-    scene = twinray.Scene(accel, origin=[0, 0, 0.0])
-    scene.add_triangles(roof, [[0, 1, 2], [0, 2, 3]])
+    scene = scene_of((roof, [[0, 1, 2], [0, 2, 3]]), accel=accel, origin=[0, 0, 0.0])
     caplog.clear()  # the origin is asked for
     across, along = roof[1] - roof[0], roof[3] - roof[0]
     normal = np.cross(across, along) / np.linalg.norm(np.cross(across, along))

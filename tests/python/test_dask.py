@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import twinray
-from conftest import grid, needed, raster, same
+from conftest import grid, needed, raster, same, scene_of
 
 dask = needed("dask")
 da = needed("dask.array")
@@ -32,8 +32,7 @@ def rays():
 
 @pytest.mark.parametrize("chunk", [500, 77])
 def test_rays_are_those_of_a_scene(accel, rays, chunk):
-    scene = twinray.Scene(accel)
-    scene.add_triangles(*grid(20))
+    scene = scene_of(grid(20), accel=accel)
     spec = td.SceneSpec(grid(20), accel=accel)
     chunked = da.from_array(rays, chunks=(chunk, 3))
     wanted, got = scene.cast_rays(rays), dask.compute(td.cast_rays(spec, chunked))[0]
@@ -59,8 +58,7 @@ def test_sensors_see_the_same_in_any_chunks(has_normals):
     normals = np.tile(np.float32([0, 0.1, 1]), (len(points), 1)) if has_normals else None
     spec = td.SceneSpec(grid(20))
     directions, angles = twinray.sky_patches()
-    scene = twinray.Scene()
-    scene.add_triangles(*grid(20))
+    scene = scene_of(grid(20))
     seen = twinray.visible(points, directions, normals, scene=scene)
     views = []
     for chunk in (441, 100, 7):
@@ -83,8 +81,7 @@ def test_weights_choose_patches():
 
 def test_light_of_directions():
     directions = np.array([[0, 0, -1], [0.5, 0, -1], [0, 0.5, -1]])
-    scene = twinray.Scene()
-    scene.add_triangles(*grid(4))
+    scene = scene_of(grid(4))
     found = td.illumination(grid(4), da.from_array(directions, chunks=(2, 3)), side=50, seed=3)
     for i, direction in enumerate(directions):
         wanted = twinray.illumination(scene, direction, side=50, seed=3)
@@ -93,8 +90,7 @@ def test_light_of_directions():
 
 @pytest.mark.parametrize("estimator", ["auto", "hits"])
 def test_rows_of_view_factors(estimator):
-    scene = twinray.Scene()
-    scene.add_triangles(*grid(8))
+    scene = scene_of(grid(8))
     groups = np.arange(128) // 2 if estimator == "hits" else None
     options = {"groups": groups, "rays": 256, "estimator": estimator, "seed": 5}
     wanted = twinray.view_factors(scene, **options)
@@ -102,9 +98,8 @@ def test_rows_of_view_factors(estimator):
         assert all(map(same, dask.compute(*td.view_factors(grid(8), chunk=chunk, **options)), wanted))
     blocks = td.view_factors(grid(8), chunk=17, sparse=True, **options)[0]
     assert same(blocks.compute().toarray(), wanted[0])
-    assert [type(b).__name__ for b in dask.compute(*blocks.to_delayed().ravel())] == ["csr_matrix"] * len(
-        blocks.chunks[0]
-    )
+    parts = dask.compute(*blocks.to_delayed().ravel())
+    assert [type(part).__name__ for part in parts] == ["csr_matrix"] * len(blocks.chunks[0])
 
 
 def test_data_arrays_keep_their_coordinates(rays):
@@ -255,8 +250,7 @@ def test_the_example_of_ray(tmp_path):
     pytest.importorskip("ray")
     (block,) = blocks_of("python.md", "needs Ray")
     assert len(block.strip().splitlines()) <= 24
-    scene = twinray.Scene()
-    scene.add_triangles([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+    scene = scene_of(([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]))
     rays = np.random.default_rng(1).uniform(-1, 1, (100_000, 6))
     assert run_in(tmp_path, block).strip().endswith(str(scene.test_occlusions(rays).mean()))
 

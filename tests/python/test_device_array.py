@@ -5,18 +5,16 @@ import ctypes
 import os
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 import twinray
-from conftest import cube
+from conftest import cube, run_python, scene_of
 
 
 def scene_and_rays(n=1000):
-    scene = twinray.Scene(accel="sw")
-    scene.add_triangles(*cube())
+    scene = scene_of(cube(), accel="sw")
     random = np.random.default_rng(1)
     rays = np.zeros((n, 8), np.float32)
     rays[:, :3] = random.uniform(-1, 2, (n, 3))
@@ -125,21 +123,24 @@ assert cuda.fake_imports() == 0, cuda.fake_imports()
 def run_with_cuda(tmp_path, uuid):
     here = str(Path(__file__).parent)
     package = str(Path(twinray.__file__).parents[1])
-    environment = os.environ | {
+    environment = {
         "LD_LIBRARY_PATH": f"{fake_cuda(tmp_path).parent}:{os.environ.get('LD_LIBRARY_PATH', '')}",
         "PYTHONPATH": f"{package}:{here}",
         "FAKE_CUDA_UUID": uuid,
+        "PYTHONWARNINGS": "ignore",
     }
-    code = [sys.executable, "-W", "ignore", "-c", WITH_CUDA]
-    return subprocess.run(code, env=environment, capture_output=True, text=True)
+    return run_python(WITH_CUDA, **environment)
+
+
+def exported_memory():
+    try:
+        return twinray._core.DeviceMemory(scene_and_rays()[0]._core, 64, False)
+    except twinray.Error as error:
+        pytest.skip(str(error))
 
 
 def test_cuda_sees_exported_memory(tmp_path):
-    scene, _ = scene_and_rays()
-    try:
-        memory = twinray._core.DeviceMemory(scene._core, 64, False)
-    except twinray.Error as error:
-        pytest.skip(str(error))
+    memory = exported_memory()
     result = run_with_cuda(tmp_path, memory.device_uuid().hex())
     assert result.returncode == 0, result.stderr
     other = run_with_cuda(tmp_path, "00" * 16)
@@ -153,11 +154,57 @@ def test_without_cuda_it_says_so(tmp_path):
         pass
     else:
         pytest.skip("CUDA is there")
-    scene, _ = scene_and_rays()
-    try:
-        memory = twinray._core.DeviceMemory(scene._core, 64, False)
-    except twinray.Error as error:
-        pytest.skip(str(error))
-    array = twinray.DeviceArray(memory, (16,), np.dtype(np.float32))
+    array = twinray.DeviceArray(exported_memory(), (16,), np.dtype(np.float32))
     with pytest.raises(BufferError, match="CUDA's driver cannot be loaded"):
         array.__cuda_array_interface__  # noqa: B018
+
+
+# PyTorch and CuPy see a GPU's memory by CUDA, where such a GPU, and one of them, is there.
+
+
+def on_a_gpu(package):
+    module = pytest.importorskip(package)
+    scene, rays = scene_and_rays()
+    if scene.backend["kind"] == "CPU":
+        pytest.skip("the device's memory is the host's")
+    return module, scene, rays
+
+
+def test_pytorch_writes_rays_and_reads_hits_in_place():
+    torch, scene, rays = on_a_gpu("torch")
+    shared = scene.device_array(rays.shape)
+    tensor = torch.as_tensor(shared, device="cuda")
+    assert tensor.shape == shared.shape and tensor.is_cuda
+    tensor.copy_(torch.from_numpy(rays))
+    assert (shared.numpy() == rays).all()  # as Vulkan reads it back
+    hits = scene.trace(shared)
+    check(hits.numpy(), scene, rays)
+    t = torch.as_tensor(hits["t_hit"], device="cuda")
+    assert (t.cpu().numpy() == hits.numpy()["t_hit"]).all()
+    tensor[:, 7] = 0.25  # on CUDA's stream, which trace waits for
+    scene.trace(shared, hits)
+    expected = hits.numpy()["t_hit"]
+    assert ((expected <= 0.25) | (expected == -1)).all() and (t.cpu().numpy() == expected).all()
+    del shared, hits, scene
+    assert (t.cpu().numpy() == expected).all()  # memory lives as long as its views
+
+
+def test_cupy_writes_rays_and_reads_hits_in_place():
+    cupy, scene, rays = on_a_gpu("cupy")
+    shared = scene.device_array(rays.shape)
+    cupy.asarray(shared)[...] = cupy.asarray(rays)
+    hits = scene.trace(shared)
+    check(hits.numpy(), scene, rays)
+    ids = cupy.asarray(hits["primitive_ids"])
+    assert ids.dtype == np.uint32 and (ids.get() == hits.numpy()["primitive_ids"]).all()
+    met = cupy.asarray(hits["is_hit"]) != 0
+    assert int(met.sum()) == int((hits.numpy()["is_hit"] != 0).sum())
+
+
+def test_numpy_sees_a_copy_alone():
+    _, scene, rays = on_a_gpu("twinray")
+    shared = scene.device_array(rays.shape)
+    with pytest.raises(BufferError, match="GPU's memory"):
+        np.asarray(shared)
+    assert shared.numpy().shape == rays.shape
+    assert twinray.HIT == scene.trace(shared).dtype

@@ -8,43 +8,33 @@ import threading
 
 import numpy as np
 import twinray
-from conftest import cube, grid
+from conftest import cube, grid, scene_of
 
 CALLS = 10_000
 
 
 def hostile_array(random, columns):
     """Of any shape, dtype and content."""
+    shapes = [(3, columns), (0, columns), (columns,), (2, 2, columns), (columns, 3), (), (3, columns + 1)]
     kind = random.integers(16)
-    shape = [(3, columns), (0, columns), (columns,), (2, 2, columns), (columns, 3), (), (3, columns + 1)][
-        random.integers(7)
-    ]
+    shape = shapes[random.integers(7)]
     values = random.normal(size=shape) * 10.0 ** random.integers(-300, 300)
-    if kind == 0:
-        return None
-    if kind == 1:
-        return "an array"
-    if kind == 2:
-        return [[1, 2], [3]]
-    if kind == 3:
-        return object()
-    if kind == 4:
-        return values.astype(complex)
-    if kind == 5:
-        return values.astype(str)
-    if kind == 6:
-        return (values > 0).astype(bool)
-    if kind == 7:
-        return np.full(shape, [np.nan, np.inf, -np.inf, 1e308, 1e-310, -0.0][random.integers(6)])
-    if kind == 8:
-        return (random.uniform(-100, 100, shape)).astype(np.int8)
-    if kind == 9:
-        return np.asfortranarray(random.normal(size=shape).astype(np.float32))
-    if kind == 10:
-        return random.normal(size=(8, columns))[::-2]
-    if kind == 11:
-        return {1: 2}
-    return random.normal(size=shape).astype([np.float16, np.float32, np.float64, np.longdouble][random.integers(4)])
+    made = {
+        0: lambda: None,
+        1: lambda: "an array",
+        2: lambda: [[1, 2], [3]],
+        3: lambda: object(),
+        4: lambda: values.astype(complex),
+        5: lambda: values.astype(str),
+        6: lambda: (values > 0).astype(bool),
+        7: lambda: np.full(shape, [np.nan, np.inf, -np.inf, 1e308, 1e-310, -0.0][random.integers(6)]),
+        8: lambda: (random.uniform(-100, 100, shape)).astype(np.int8),
+        9: lambda: np.asfortranarray(random.normal(size=shape).astype(np.float32)),
+        10: lambda: random.normal(size=(8, columns))[::-2],
+        11: lambda: {1: 2},
+    }
+    dtypes = [np.float16, np.float32, np.float64, np.longdouble]
+    return made.get(kind, lambda: random.normal(size=shape).astype(dtypes[random.integers(4)]))()
 
 
 def hostile_number(random):
@@ -57,8 +47,7 @@ def memory():
 
 def test_ten_thousand_hostile_calls():
     random = np.random.default_rng(7)
-    scene = twinray.Scene(accel="sw")
-    scene.add_triangles(*cube())
+    scene = scene_of(cube(), accel="sw")
     stop = threading.Event()
 
     def disturb():
@@ -87,16 +76,7 @@ def test_ten_thousand_hostile_calls():
         "transform": [lambda: scene.set_transform(0, hostile_array(random, 4))],
         "geometry": [lambda: scene.remove(hostile_number(random)), lambda: scene.add_instance(hostile_number(random))],
     }
-    argument_names = (
-        "rays",
-        "query_points",
-        "vertex_positions",
-        "triangle_indices",
-        "transform",
-        "geometry",
-        "tnear",
-        "tfar",
-    )
+    argument_names = (*calls, "triangle_indices", "tnear", "tfar")
     thread = threading.Thread(target=disturb)
     thread.start()
     answered, told, half = 0, 0, None
@@ -118,6 +98,4 @@ def test_ten_thousand_hostile_calls():
         thread.join()
     assert answered > 1000 and told > 1000
     assert memory() < half + 100, "megabytes at the most, and at half of the calls"
-    still = twinray.Scene(accel="sw")
-    still.add_triangles(*cube())
-    assert still.cast_rays([0.3, 0.6, -1, 0, 0, 1])["t_hit"] == 1
+    assert scene_of(cube(), accel="sw").cast_rays([0.3, 0.6, -1, 0, 0, 1])["t_hit"] == 1

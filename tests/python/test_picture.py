@@ -9,15 +9,9 @@ import zlib
 import numpy as np
 import pytest
 import twinray
-from conftest import cube, needed
+from conftest import cube, needed, scene_of
 
 ORANGE, BLUE, WHITE = (213, 94, 0), (0, 114, 178), (255, 255, 255)
-
-
-def scene_of_cube(accel="sw"):
-    scene = twinray.Scene(accel=accel)
-    scene.add_triangles(*cube())
-    return scene
 
 
 def front(scene, **options):
@@ -47,7 +41,7 @@ def near(pixel, color, by=3):
 
 
 def test_the_scene_is_seen_where_it_is(accel, tmp_path):
-    scene = scene_of_cube(accel)
+    scene = scene_of(cube(), accel=accel)
     pixels = front(scene)
     assert pixels.shape == (80, 80, 3)
     assert near(pixels[2, 2], WHITE, 0) and not near(pixels[40, 40], WHITE, 60)
@@ -62,7 +56,7 @@ def test_the_scene_is_seen_where_it_is(accel, tmp_path):
 
 
 def test_rays_end_where_they_hit():
-    scene = scene_of_cube()
+    scene = scene_of(cube(), accel="sw")
     rays = [[-3, 0.5, 0.99, 1, 0, 0], [-0.5, 1.2, 0.5, 1, 0, 0]]
     pixels = front(scene, rays=rays)
     row = int(40 - 0.5 * 80 / np.tan(np.deg2rad(15)) * 0.7 / 4.5)
@@ -73,8 +67,7 @@ def test_rays_end_where_they_hit():
 
 
 def test_rays_near_the_camera_are_whole_lines():
-    scene = twinray.Scene(accel="sw")
-    scene.add_triangles([[-50, -50, 0], [50, -50, 0], [0, 90, 0]], [[0, 1, 2]])
+    scene = scene_of(([[-50, -50, 0], [50, -50, 0], [0, 90, 0]], [[0, 1, 2]]), accel="sw")
     near_eye = [0.1, -8, 4.999, 0, 1, 0]
     pixels = scene.show([near_eye], eye=(0, -5, 5), center=(0, 0, 5), up=(0, 0, 1), size=(80, 80)).pixels
     column = pixels[:, 41:80].astype(int)
@@ -86,7 +79,7 @@ def test_rays_near_the_camera_are_whole_lines():
 
 
 def test_values_are_colours_with_a_range():
-    scene = scene_of_cube()
+    scene = scene_of(cube(), accel="sw")
     faces = int(scene.first_faces()[-1])
     values = np.where((cube()[0][cube()[1], 2] == 1).all(axis=1), 7.0, 2.0)
     picture = scene.show(values=values, eye=(0.5, 0.5, 5), center=(0.5, 0.5, 0), size=(80, 80))
@@ -100,7 +93,7 @@ def test_values_are_colours_with_a_range():
 
 def test_nothing_and_what_is_not_finite_are_shown_too():
     assert (twinray.Scene().show(size=(8, 8)).pixels == 255).all()
-    scene = scene_of_cube()
+    scene = scene_of(cube(), accel="sw")
     scene.show([[np.nan] * 6, [0, 0, 0, 0, 0, 0]], points=[[np.inf, 0, 0]], size=(8, 8))
 
 
@@ -119,18 +112,18 @@ def test_nothing_and_what_is_not_finite_are_shown_too():
 )
 def test_bad_arguments_are_named(options, message):
     with pytest.raises(ValueError, match=message):
-        scene_of_cube().show(**options)
+        scene_of(cube(), accel="sw").show(**options)
 
 
 def test_interactive_shows_in_what_is_installed(monkeypatch):
     trimesh = needed("trimesh")
     monkeypatch.setitem(sys.modules, "pyvista", None)
     monkeypatch.setattr(trimesh.Scene, "show", lambda scene: scene)
-    shown = scene_of_cube().show([[-3, 0.5, 0.5, 1, 0, 0]], values=np.arange(12.0), interactive=True)
+    shown = scene_of(cube(), accel="sw").show([[-3, 0.5, 0.5, 1, 0, 0]], values=np.arange(12.0), interactive=True)
     assert len(shown.geometry) == 2
     monkeypatch.setitem(sys.modules, "trimesh", None)
     with pytest.raises(ImportError, match="PyVista or trimesh"):
-        scene_of_cube().show(interactive=True)
+        scene_of(cube(), accel="sw").show(interactive=True)
 
 
 def test_pyvista_gets_all_of_it(monkeypatch):
@@ -144,14 +137,14 @@ def test_pyvista_gets_all_of_it(monkeypatch):
     pyvista.PolyData = types.SimpleNamespace(from_regular_faces=lambda points, faces: (points, faces))
     monkeypatch.setitem(sys.modules, "pyvista", pyvista)
     rays = [[-3, 0.5, 0.5, 1, 0, 0], [0, 9, 0, 1, 0, 0]]
-    scene_of_cube().show(rays, points=[[0, 0, 2]], interactive=True)
+    scene_of(cube(), accel="sw").show(rays, points=[[0, 0, 2]], interactive=True)
     assert [name for name, _ in pyvista.calls] == ["add_mesh", "add_lines", "add_lines", "add_points", "show"]
     assert pyvista.calls[0][1][0][0].shape == (36, 3)
 
 
 def test_progress_is_shown_by_tqdm(capsys, monkeypatch):
     needed("tqdm")
-    scene = scene_of_cube()
+    scene = scene_of(cube(), accel="sw")
     points = np.random.default_rng(1).uniform(1, 2, (500, 3))
     vectors = np.random.default_rng(2).normal(size=(20, 3))
     shown = twinray.visible(points, vectors, scene=scene, progress=True)
@@ -169,7 +162,7 @@ def test_view_gives_the_scene_to_the_command(tmp_path, monkeypatch):
     command.write_text('#!/bin/sh\ncp "$2" "$(dirname "$0")/seen.ply"\necho "$@" > "$(dirname "$0")/words"\n')
     command.chmod(0o755)
     monkeypatch.setenv("TWINRAY_COMMAND", str(command))
-    assert scene_of_cube().view("--layer", "steps").wait() == 0
+    assert scene_of(cube(), accel="sw").view("--layer", "steps").wait() == 0
     words = (tmp_path / "words").read_text().split()
     assert words[0] == "view" and words[2:] == ["--layer", "steps"]
     again = twinray.Scene(accel="sw")
@@ -177,4 +170,4 @@ def test_view_gives_the_scene_to_the_command(tmp_path, monkeypatch):
     assert again._core.triangle_count() == 12 and again.bounds().tolist() == [[0, 0, 0], [1, 1, 1]]
     monkeypatch.setenv("TWINRAY_COMMAND", str(tmp_path / "nothing"))
     with pytest.raises(FileNotFoundError, match="TWINRAY_COMMAND"):
-        scene_of_cube().view()
+        scene_of(cube(), accel="sw").view()

@@ -15,19 +15,13 @@ import time
 import numpy as np
 import pytest
 import twinray
-from conftest import cube, grid, needed
+from conftest import cube, grid, needed, run_python, scene_of
 
 DOWN = [[0.3, 0.6, 9, 0, 0, -1]]
 
 
 def height(scene):
     return float(scene.cast_rays(DOWN)["t_hit"][0])
-
-
-def scene_of_cube(accel="auto"):
-    scene = twinray.Scene(accel)
-    scene.add_triangles(*cube())
-    return scene
 
 
 def answer_of_child(ask):
@@ -51,9 +45,9 @@ def answer_of_child(ask):
 
 
 def test_a_child_opens_a_device_of_its_own(accel):
-    scene = scene_of_cube(accel)
+    scene = scene_of(cube(), accel=accel)
     assert height(scene) == 8
-    assert answer_of_child(lambda: height(scene_of_cube(accel))) == 8
+    assert answer_of_child(lambda: height(scene_of(cube(), accel=accel))) == 8
     assert height(scene) == 8
 
 
@@ -86,7 +80,7 @@ def test_a_scene_of_the_parent_goes_on_in_the_child(accel):
 
 
 def test_what_lies_on_the_parents_device_is_refused_by_name():
-    scene = scene_of_cube()
+    scene = scene_of(cube())
     rays = scene.device_array((1, 8))
     rays.numpy()[:] = [0.3, 0.6, 9, 0, 0, 0, -1, np.inf]
     scene.trace(rays)
@@ -105,7 +99,7 @@ def test_a_child_ends_as_any_program_does():
         "print(os.waitpid(child, 0)[1] if child else 'right')\n"
         "sys.exit(0 if child else 3)"
     )
-    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=100)
+    ended = run_python(code)
     assert ended.returncode == 0 and ended.stdout == f"right\n{3 << 8}\n", ended
 
 
@@ -114,24 +108,24 @@ def test_a_scene_that_others_hold_at_the_end_says_nothing():
         "import ctypes, twinray; scene = twinray.Scene(); "
         "ctypes.pythonapi.Py_IncRef(ctypes.py_object(scene)); ctypes.pythonapi.Py_IncRef(ctypes.py_object(scene._core))"
     )
-    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=100)
+    ended = run_python(code)
     assert ended.returncode == 0 and "leak" not in ended.stderr, ended
 
 
 def test_a_fork_while_another_thread_works_never_hangs():
-    scene = scene_of_cube()
+    scene = scene_of(cube())
     rays = np.repeat(DOWN, 1_000_000, 0)
     thread = threading.Thread(target=lambda: [scene.cast_rays(rays) for _ in range(8)])
     thread.start()
     time.sleep(0.2)
     told = answer_of_child(lambda: height(scene))
     assert told == 8 or "spawn" in told
-    assert answer_of_child(lambda: height(scene_of_cube())) == 8
+    assert answer_of_child(lambda: height(scene_of(cube()))) == 8
     thread.join()
 
 
 def test_pools_of_processes():
-    scene = scene_of_cube()
+    scene = scene_of(cube())
     assert height(scene) == 8
     for method in ("fork", "spawn"):
         with multiprocessing.get_context(method).Pool(2) as pool:
@@ -196,7 +190,7 @@ stop.set()
 thread.join()
 print("ended")
 """
-    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120).stdout == "ended\n"
+    assert run_python(code).stdout == "ended\n"
 
 
 LONG = {
@@ -211,6 +205,20 @@ LONG = {
 }
 
 
+# It is interrupted even where a shell's background jobs ignore that.
+INTERRUPTIBLE = f"""
+import logging, os, signal, sys, threading, time
+signal.signal(signal.SIGINT, signal.default_int_handler)
+sys.path.insert(0, {os.path.dirname(__file__)!r})
+import numpy as np, twinray
+from concurrent.futures import ThreadPoolExecutor
+from conftest import grid, scene_of
+logging.disable()
+vertices, faces = grid(70)
+scene = scene_of((vertices, faces))
+"""
+
+
 def interrupted(code, seconds):
     """A program that printed "begun" and got Ctrl-C so much later, and when it got it."""
     program = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
@@ -223,15 +231,6 @@ def interrupted(code, seconds):
 @pytest.mark.parametrize("call", LONG)
 def test_ctrl_c_ends_a_call(call):
     code = f"""
-import logging, os, signal, sys, threading, time
-signal.signal(signal.SIGINT, signal.default_int_handler)  # which a shell's background jobs ignore
-sys.path.insert(0, {os.path.dirname(__file__)!r})
-import numpy as np, twinray
-from conftest import grid
-logging.disable()
-vertices, faces = grid(70)
-scene = twinray.Scene()
-scene.add_triangles(vertices, faces)
 scene.cast_rays([[0.3, 0.6, 9, 0, 0, -1]])
 print("begun", flush=True)
 try:
@@ -243,18 +242,15 @@ except KeyboardInterrupt:
         print(np.isfinite(scene.cast_rays([[0.3, 0.6, 9, 0, 0, -1]])["t_hit"]).all(), flush=True)
 os._exit(0)
 """
-    program, begun = interrupted(code, 2)
+    program, begun = interrupted(INTERRUPTIBLE + code, 2)
     try:
         answer = program.stdout.readline()
         seconds = time.monotonic() - begun
         rest = program.communicate(timeout=60)
     finally:
         program.kill()
-    assert answer == "interrupted\n" and seconds < 5, (
-        answer,
-        seconds,
-        rest,
-    )  # a tenth of a second where nobody else works
+    # It takes a tenth of a second where nobody else works.
+    assert answer == "interrupted\n" and seconds < 5, (answer, seconds, rest)
     assert "thread" in call or rest[0] == "True\n", rest
 
 
@@ -268,21 +264,12 @@ def test_ctrl_c_ends_the_calls_of_other_threads(has_dask):
         else "list(ThreadPoolExecutor(2).map(lambda tile: twinray.sky_light(scene, samples=1 << 20), range(2)))"
     )
     code = f"""
-import logging, os, signal, sys
-signal.signal(signal.SIGINT, signal.default_int_handler)
-sys.path.insert(0, {os.path.dirname(__file__)!r})
-import numpy as np, twinray
-from concurrent.futures import ThreadPoolExecutor
 {"from twinray import terrain" if has_dask else ""}
-from conftest import grid
-logging.disable()
 heights = np.random.default_rng(1).random((1024, 1024))
-scene = twinray.Scene()
-scene.add_triangles(*grid(70))
 print("begun", flush=True)
 {call}
 """
-    program, begun = interrupted(code, 3)
+    program, begun = interrupted(INTERRUPTIBLE + code, 3)
     try:
         rest = program.communicate(timeout=60)
     finally:

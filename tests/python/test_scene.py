@@ -6,10 +6,7 @@ One file of more than 400 lines, since it is about one class.
 
 import copy
 import doctest
-import os
 import re
-import subprocess
-import sys
 import threading
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -17,14 +14,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import twinray
-from conftest import cube, grid, needed
+from conftest import cube, grid, needed, run_python, scene_of, write_obj
 from twinray import INVALID_ID
-
-
-def scene_of(mesh, **options):
-    scene = twinray.Scene(**options)
-    scene.add_triangles(*mesh)
-    return scene
 
 
 def test_answers_have_open3ds_shapes_and_dtypes():
@@ -115,9 +106,7 @@ def test_geometries_move_go_and_are_repeated(accel):
 
 
 def test_files_are_added(tmp_path):
-    vertices, triangles = cube()
-    lines = [f"v {x} {y} {z}" for x, y, z in vertices] + [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in triangles]
-    (tmp_path / "cube.obj").write_text("\n".join(lines))
+    write_obj(tmp_path / "cube.obj", *cube())
     scene = twinray.Scene()
     assert scene.add_file(tmp_path / "cube.obj") == [0]
     assert scene.count_intersections([0.3, 0.6, -1, 0, 0, 1]) == 2
@@ -275,9 +264,8 @@ def test_an_edge_is_counted_once_whatever_traces(accel):
 
 
 def test_fronts_stay_fronts_where_a_transform_mirrors(accel):
-    vertices, triangles = cube()
     scene = twinray.Scene(accel)
-    scene.add_triangles(vertices, triangles, transform=np.diag([-1.0, 1, 1, 1]))
+    scene.add_triangles(*cube(), transform=np.diag([-1.0, 1, 1, 1]))
     rays = [[-0.3, 0.6, -1, 0, 0, 1], [1, 0.6, 0.3, -1, 0, 0]]
     outward = [[0, 0, -1], [1, 0, 0]]
     assert np.array_equal(scene.cast_rays(rays)["primitive_normals"], outward)
@@ -321,8 +309,7 @@ def test_poses_far_from_the_origin_are_told_once(tmp_path, caplog):
         (message,) = caplog.messages
         assert told in message
     vertices, triangles = cube()
-    lines = [f"v {x} {y} {z}" for x, y, z in vertices + pose[:3, 3]]
-    (tmp_path / "far.obj").write_text("\n".join(lines + [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in triangles]))
+    write_obj(tmp_path / "far.obj", vertices + pose[:3, 3], triangles)
     caplog.clear()
     scene_of(cube(), accel="sw").add_file(tmp_path / "far.obj")
     (message,) = caplog.messages
@@ -340,8 +327,7 @@ def test_poses_far_from_the_origin_are_told_once(tmp_path, caplog):
 def test_files_far_from_0_keep_their_precision(tmp_path):
     offset = np.array([500000.25, 5600000.5, 120])
     vertices, triangles = cube()
-    lines = [f"v {x:.4f} {y:.4f} {z:.4f}" for x, y, z in vertices + offset]
-    (tmp_path / "cube.obj").write_text("\n".join(lines + [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in triangles]))
+    write_obj(tmp_path / "cube.obj", vertices + offset, triangles, "v {:.4f} {:.4f} {:.4f}")
     scene = twinray.Scene(accel="sw")
     assert scene.add_file(tmp_path / "cube.obj") == [0]
     found = scene.cast_rays(np.concatenate([offset + [0.3, 0.6, -1], [0, 0, 1]]))
@@ -398,14 +384,9 @@ def test_signs_do_not_flip_next_to_edges_and_diagonals():
 def test_signs_hold_on_open_and_on_touching_meshes():
     vertices, triangles = cube()
     opened = scene_of((vertices, triangles[1:]))
-    assert opened.compute_occupancy([[0.5, 0.5, 0.5], [0.9, 0.9, 0.9], [3, 3, 3], [0.5, 0.5, 2]]).tolist() == [
-        1,
-        1,
-        0,
-        0,
-    ]
-    two = scene_of((vertices, triangles))
-    two.add_triangles(vertices + [1, 0, 0], triangles)  # they share a face
+    inside = opened.compute_occupancy([[0.5, 0.5, 0.5], [0.9, 0.9, 0.9], [3, 3, 3], [0.5, 0.5, 2]])
+    assert inside.tolist() == [1, 1, 0, 0]
+    two = scene_of((vertices, triangles), (vertices + [1, 0, 0], triangles))  # they share a face
     assert two.compute_occupancy([[0.5, 0.5, 0.5], [1.5, 0.5, 0.5], [2.5, 0.5, 0.5]]).tolist() == [1, 1, 0]
 
 
@@ -488,14 +469,8 @@ def test_threads_ask_while_others_move():
     assert not wrong and len(scene) == 2
 
 
-def in_another_process(code, **environment):
-    return subprocess.run(
-        [sys.executable, "-c", code], env=os.environ | environment, capture_output=True, text=True, timeout=100
-    )
-
-
 def test_without_vulkan_the_first_scene_says_so():
-    ended = in_another_process(
+    ended = run_python(
         "import twinray\ntry: twinray.Scene()\nexcept twinray.Error as error: print('told:', error)",
         VK_DRIVER_FILES="/nowhere", VK_ICD_FILENAMES="/nowhere",
     )  # fmt: skip
@@ -504,12 +479,12 @@ def test_without_vulkan_the_first_scene_says_so():
 
 def test_a_cpu_driver_is_told_once():
     code = "import twinray; s = [twinray.Scene() for _ in range(3)]; print(s[0].backend['kind'])"
-    ended = in_another_process(code, PYTHONWARNINGS="error")
+    ended = run_python(code, PYTHONWARNINGS="error")
     assert ended.returncode == 0 and ended.stderr.count("runs on a CPU") == (ended.stdout == "CPU\n"), ended
 
 
 def test_a_python_without_its_lock_is_refused():
-    ended = in_another_process("import sys; sys._is_gil_enabled = lambda: False; import twinray")
+    ended = run_python("import sys; sys._is_gil_enabled = lambda: False; import twinray")
     assert ended.returncode == 1 and "ImportError: twinray needs the GIL" in ended.stderr, ended
 
 
@@ -577,17 +552,12 @@ def test_ends_of_rays_are_decided_by_float64(accel, level):
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     step = (normal / np.linalg.norm(normal, axis=1, keepdims=True) * 256).round() / 256
     rays = np.hstack([on_plane - step, step]).astype(np.float32)
-    scene = twinray.Scene(accel, level=level, origin=[0, 0, 0])
-    scene.add_triangles(corners.reshape(-1, 3), np.arange(3 * count).reshape(-1, 3))
+    mesh = corners.reshape(-1, 3), np.arange(3 * count).reshape(-1, 3)
+    scene = scene_of(mesh, accel=accel, level=level, origin=[0, 0, 0])
     own = np.arange(count)
     last_before, next_after = np.nextafter(np.float32(1), np.float32([0, 2]))
-    for interval, is_hit in (
-        ((0, 1), False),
-        ((0, next_after), True),
-        ((1, 2), False),
-        ((last_before, 2), True),
-    ):
-        found = scene.cast_rays(rays, tnear=interval[0], tfar=interval[1])["primitive_ids"]
-        assert ((found == own) == is_hit).all(), interval
-        blocked = scene.test_occlusions(rays, tnear=interval[0], tfar=min(interval[1], next_after))
-        assert (blocked == is_hit).all(), interval
+    for near, far, is_hit in ((0, 1, False), (0, next_after, True), (1, 2, False), (last_before, 2, True)):
+        found = scene.cast_rays(rays, tnear=near, tfar=far)["primitive_ids"]
+        assert ((found == own) == is_hit).all(), (near, far)
+        blocked = scene.test_occlusions(rays, tnear=near, tfar=min(far, next_after))
+        assert (blocked == is_hit).all(), (near, far)

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Rows of docs/how-to/from_trimesh_and_open3d.md that say where answers differ: ours, and theirs where they are
-installed."""
+"""Peers: rows of docs/how-to/from_trimesh_and_open3d.md that say where answers differ, ours, and theirs where they are
+installed; what users of peers have reported, with the right answer, in tests with the names of the public threads."""
 
 import numpy as np
 import pytest
 import twinray
 import twinray.trimesh
-from conftest import cube, needed
+from conftest import cube, needed, scene_of
 
 SQUARE = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], np.float32), np.array([[0, 1, 2], [0, 2, 3]], np.uint32)
 # Points on the middles of the sides below, left, right and above, then on the corners.
@@ -26,13 +26,6 @@ BODIES = {
     "overlapping": ([cube(), moved(cube(), [0.5, 0.25, 0.25])], [[0.7, 0.6, 0.55], [0.2, 0.3, 0.25]]),
 }
 INSIDE_BY_PARITY = [False, True]
-
-
-def scene_of(*meshes, **options):
-    scene = twinray.Scene(**options)
-    for mesh in meshes:
-        scene.add_triangles(*mesh)
-    return scene
 
 
 def open3d_scene_of(*meshes):
@@ -144,3 +137,44 @@ def test_order_of_rows():
 def test_coincident_faces_give_the_lowest_geometry():
     found = scene_of(SQUARE, SQUARE, SQUARE, accel="sw").cast_rays(TO_A_PLANE)
     assert found["geometry_ids"].tolist() == [0]
+
+
+def sphere(rings=24, segments=48):
+    """A closed sphere with poles, as Open3D's create_sphere makes them: vertices on the axes."""
+    theta = np.linspace(0, np.pi, rings + 1)[1:-1]
+    phi = np.linspace(0, 2 * np.pi, segments, endpoint=False)
+    ring = np.stack(
+        [
+            np.outer(np.sin(theta), np.cos(phi)),
+            np.outer(np.sin(theta), np.sin(phi)),
+            np.outer(np.cos(theta), phi * 0 + 1),
+        ],
+        axis=-1,
+    ).reshape(-1, 3)
+    vertices = np.vstack([[[0, 0, 1]], ring, [[0, 0, -1]]]).astype(np.float32)
+    i = 1 + np.arange((rings - 1) * segments).reshape(rings - 1, segments)
+    j = np.roll(i, -1, axis=1)
+    caps = [np.stack([i[0] * 0, i[0], j[0]], -1), np.stack([i[-1] * 0 + len(vertices) - 1, j[-1], i[-1]], -1)]
+    sides = [np.stack([i[:-1], i[1:], j[1:]], -1).reshape(-1, 3), np.stack([i[:-1], j[1:], j[:-1]], -1).reshape(-1, 3)]
+    return vertices, np.concatenate(caps + sides).astype(np.uint32)
+
+
+def test_open3d_5669_5797_signs_along_axes_do_not_flip():
+    vertices, triangles = sphere()
+    scene = scene_of((vertices, triangles))
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    steps = np.linspace(-0.5, 1.5, 33)[:, None] * (high - low) + low  # through vertices, edges, diagonals
+    points = np.stack(np.meshgrid(*steps.T, indexing="ij"), axis=-1)
+    radius = np.linalg.norm(points, axis=-1)
+    inside, clear = radius < 0.99, (radius < 0.99) | (radius > 1.001)
+    assert ((scene.compute_signed_distance(points) < 0) == inside)[clear].all()
+    assert (scene.compute_occupancy(points) == inside)[clear].all()
+
+
+def test_open3d_5430_rays_from_a_surface_leave_it():
+    vertices, triangles = sphere()
+    scene = scene_of((vertices, triangles), accel="sw")
+    middles = vertices[triangles].mean(axis=1, dtype=np.float64)
+    normals = middles / np.linalg.norm(middles, axis=1, keepdims=True)
+    rays = np.hstack([middles + 1e-5 * normals, normals])
+    assert not scene.test_occlusions(rays).any()

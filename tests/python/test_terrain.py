@@ -6,7 +6,7 @@ import warnings
 import numpy as np
 import pytest
 import twinray
-from conftest import grid, needed, raster, same
+from conftest import grid, needed, raster, same, scene_of
 
 da = needed("dask.array")
 xr = needed("xarray")
@@ -33,8 +33,7 @@ def test_terrain_against_a_scene_of_all():
     there = np.ones(heights.shape, bool)
     x, y = np.meshgrid(heights.x, heights.y)
     vertices = np.stack([x, y, heights], axis=-1)
-    scene = twinray.Scene()
-    scene.add_triangles(vertices.reshape(-1, 3), terrain.triangles_of(there))
+    scene = scene_of((vertices.reshape(-1, 3), terrain.triangles_of(there)))
     directions, _ = twinray.sky_patches()
     points = vertices.reshape(-1, 3) + [0, 0, 10 / 1024]
     wanted = twinray.visible(points, directions, scene=scene, tnear=1e-9).reshape(*there.shape, -1)
@@ -67,16 +66,8 @@ def test_the_horizon_is_exact(curvature, azimuths, oblong):
     found = terrain.horizon(heights, tile=16, **options).compute().values
     assert same(found, terrain.horizon(heights, tile=64, **options).compute().values)
     largest = 0.0
-    cells = [
-        *np.random.default_rng(3).integers(0, (30, 41), (40, 2)),
-        (0, 7),
-        (29, 9),
-        (11, 0),
-        (5, 40),
-        (9, 22),
-        (12, 19),
-    ]
-    for row, column in cells:
+    cells = [(0, 7), (29, 9), (11, 0), (5, 40), (9, 22), (12, 19)]
+    for row, column in [*np.random.default_rng(3).integers(0, (30, 41), (40, 2)), *cells]:
         if np.isnan(heights.values[row, column]):
             assert np.isnan(found[row, column]).all()
             continue
@@ -195,6 +186,3 @@ def test_a_geotiff_becomes_a_map(tmp_path):
     found = terrain.sun_hours(tmp_path / "heights.tif", [[1, 0, 0.1], [0, 0, 1]], tile=32)
     wanted = terrain.sun_hours(raster(), [[1, 0, 0.1], [0, 0, 1]])
     assert same(found.compute().values, wanted.compute().values)
-
-
-# Workers

@@ -96,17 +96,15 @@ TEST(Layers, SamplesFollowTheirDensity) {
 }
 
 TEST(Layers, WeightsAreValuesOverDensities) {
-    for (const auto& [title, of_title] : all_cases()) {
-        const std::string& name = title;
-        const auto& bsdf = of_title;
+    for (const Named& one : all_cases()) {
         const vec3 wo = direction(0.4f, 0.2f);
         mean_of_samples(
-            bsdf, wo,
+            one.bsdf, wo,
             [&](const BsdfSample& s) {
                 if (s.pdf == 0) return 0;
-                const BsdfValue value = evaluate(bsdf, wo, s.wi);
-                EXPECT_EQ(s.pdf, value.pdf) << name;
-                EXPECT_EQ(s.weight, value.f / value.pdf) << name;
+                const BsdfValue value = evaluate(one.bsdf, wo, s.wi);
+                EXPECT_EQ(s.pdf, value.pdf) << one.name;
+                EXPECT_EQ(s.weight, value.f / value.pdf) << one.name;
                 return 0;
             },
             1000);

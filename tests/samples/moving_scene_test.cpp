@@ -49,13 +49,11 @@ class MovingSceneTest : public test::VulkanTest {
         HdrImage before, after, expected;
     };
     Pictures pictures(Scene scene, const Pose& pose, bool hardware) {
-        RenderSetup setup;
-        setup.settings.camera = camera_rays(look({0, 6, 9}, {0, 1, 0}, 0.4f), 1);
+        RenderSetup setup = seen_from({0, 6, 9}, {0, 1, 0}, 0.4f);
         setup.settings.samples = 2;
         setup.hardware = hardware;
         Scene made = scene;
-        const LocalLights lights = collect_lights(scene);
-        DeviceScene device_scene(context(), scene, lights, nullptr);
+        DeviceScene device_scene(context(), scene, collect_lights(scene), nullptr);
         Renderer renderer(context(), device_scene, setup.settings);
         const std::unique_ptr<AbstractAccel> accel = make_accel(context(), hardware);
         push_scene(*accel, scene);
@@ -162,9 +160,8 @@ TEST_F(MovingSceneTest, InstancesMayHaveMaterialsOfTheirOwn) {
     shared.instances.insert(shared.instances.begin() + 2, {"dark lamp", 1, Transform::translation({0, -1, 0}), 3});
     shared.instances[3].material = 0;
     own.meshes[2].materials.assign(own.meshes[2].triangles.size(), 0);
-    RenderSetup setup;
+    RenderSetup setup = seen_from({0, 6, 9}, {0, 1, 0}, 0.4f);
     setup.settings.samples = 16;
-    setup.settings.camera = camera_rays(look({0, 6, 9}, {0, 1, 0}, 0.4f), 1);
     const Statistics expected = statistics(render(context(), own, setup));
     expect_mean(render(context(), shared, setup), expected.mean, "a lamp that is none");
     // The other way round, a dark mesh shines.
@@ -180,13 +177,11 @@ TEST_F(MovingSceneTest, InstancesMayHaveMaterialsOfTheirOwn) {
 // Rays are queued by kind of material: a clear one needs a kernel that passes surfaces, which the mesh's own does not.
 TEST_F(MovingSceneTest, MaterialsOfTheirOwnAreOfTheirOwnKind) {
     Scene scene;
-    Material white{.name = "white", .unlit = true};
-    add(scene, wide_floor(), white);
+    add(scene, wide_floor(), {.name = "white", .unlit = true});
     add(scene, wide_floor(1), {.name = "black", .base_color = vec4(0), .unlit = true});
     scene.materials.push_back({.name = "clear", .base_color = vec4(0), .alpha_mode = AlphaMode::blend});
-    RenderSetup setup;
+    RenderSetup setup = seen_from({0, 3, 0}, vec3(0), 0.1f);
     setup.settings.samples = 1;
-    setup.settings.camera = camera_rays(look({0, 3, 0}, vec3(0), 0.1f), 1);
     EXPECT_EQ(statistics(render(context(), scene, setup)).mean, 0);
     scene.instances[1].material = 2;
     EXPECT_EQ(statistics(render(context(), scene, setup)).mean, 1);

@@ -9,8 +9,7 @@ import sys
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from command import here, program as path_tracer, same
-from ranks import rank_of
+from command import here, program as path_tracer, rank_of, same
 
 if len(sys.argv) < 3:
     print("built without MPI")

@@ -80,11 +80,16 @@ inline Mesh wide_floor(float height = 0) { return make_quad({-5, height, -5}, {0
 inline Mesh square_above() { return make_quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}); }
 inline constexpr double factor_of_square_above = 0.554126423979571987;
 
+inline RenderSetup seen_from(vec3 from, vec3 to, float half_height) {
+    RenderSetup setup;
+    setup.settings.camera = camera_rays(look(from, to, half_height), 1);
+    return setup;
+}
+
 // Returns a setup that looks at the middle of the floor from close by, under what is above it.
 inline RenderSetup of_the_floor() {
-    RenderSetup setup;
+    RenderSetup setup = seen_from({0, 0.5f, 0}, vec3(0), 1e-4f);
     setup.settings.max_depth = 1;
-    setup.settings.camera = camera_rays(look({0, 0.5f, 0}, vec3(0), 1e-4f), 1);
     return setup;
 }
 
@@ -105,6 +110,30 @@ inline Statistics statistics(const HdrImage& picture) {
 inline void expect_mean(const HdrImage& picture, double expected, const char* what) {
     const Statistics found = statistics(picture);
     EXPECT_NEAR(found.mean, expected, 4 * found.error + 2e-6 * expected) << what << ", error " << found.error;
+}
+
+inline const char* name_of_strategy(uint strategy) {
+    return strategy == STRATEGY_MIS ? "both" : strategy == STRATEGY_LIGHTS ? "lights" : "surfaces";
+}
+
+inline void expect_mean_by_every_strategy(Context& context, const Scene& scene, RenderSetup setup, double expected) {
+    for (const uint strategy : strategies) {
+        setup.settings.strategy = strategy;
+        expect_mean(render(context, scene, setup), expected, name_of_strategy(strategy));
+    }
+}
+
+// Returns the mean that every strategy finds.
+inline double same_mean_by_every_strategy(Context& context, const Scene& scene, RenderSetup setup) {
+    Statistics found[3];
+    for (const uint strategy : strategies) {
+        setup.settings.strategy = strategy;
+        found[strategy] = statistics(render(context, scene, setup));
+        EXPECT_NEAR(found[strategy].mean, found[STRATEGY_MIS].mean,
+                    4 * (found[strategy].error + found[STRATEGY_MIS].error))
+            << name_of_strategy(strategy);
+    }
+    return found[STRATEGY_MIS].mean;
 }
 
 }  // namespace twinray::path_tracer

@@ -31,6 +31,10 @@ RenderSetup from_above(vec2 at, float half, uint width = 1, uint samples = 1) {
     return setup;
 }
 
+void expect_near(vec3 found, vec3 expected, float tolerance, const char* what = "") {
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(found[i], expected[i], tolerance) << what << ' ' << i;
+}
+
 class VertexAttributes : public test::VulkanTest {
   protected:
     // Returns the colour of an unlit surface at a point.
@@ -47,11 +51,15 @@ class VertexAttributes : public test::VulkanTest {
         EXPECT_EQ(first.count, samples_of_first_surfaces);
         return first.normal / static_cast<float>(first.count);
     }
-};
 
-void expect_near(vec3 found, vec3 expected, float tolerance, const char* what = "") {
-    for (int i = 0; i < 3; ++i) EXPECT_NEAR(found[i], expected[i], tolerance) << what << ' ' << i;
-}
+    // Expects a grey floor to be as bright as it is under an even sky, without noise.
+    void expect_half_of_the_sky(const Scene& scene) {
+        RenderSetup setup = from_above({0, 0}, 1, 16, 16);
+        setup.environment = sky(1);
+        setup.settings.strategy = STRATEGY_BSDF;
+        for (const vec3& pixel : render(context(), scene, setup).rgb) expect_near(pixel, vec3(0.5f), 1e-5f);
+    }
+};
 
 Material unlit(vec4 color = vec4(1)) { return {.name = "unlit", .base_color = color, .unlit = true}; }
 
@@ -192,47 +200,32 @@ TEST_F(VertexAttributes, TheNearestTexelIsShownUnfiltered) {
 }
 
 TEST_F(VertexAttributes, NormalsWithoutADirectionAreThoseOfTheTriangle) {
-    Mesh mesh = floor_quad();
-    Scene scene = scene_of(mesh, lambert(0.5f));
-    RenderSetup setup = from_above({0, 0}, 1, 16, 16);
-    setup.environment = sky(1);
-    setup.settings.strategy = STRATEGY_BSDF;  // without noise
+    Scene scene = scene_of(floor_quad(), lambert(0.5f));
     for (const vec3 none : {vec3(0), vec3(nan), vec3(infinity, 0, 0), vec3(0, nan, 1)}) {
         scene.meshes[0].normals.assign(4, none);
         expect_near(normal_at(scene, {0.3f, 0.2f}), {0, 1, 0}, 1e-6f);
-        for (const vec3& pixel : render(context(), scene, setup).rgb) expect_near(pixel, vec3(0.5f), 1e-5f);
+        expect_half_of_the_sky(scene);
     }
 }
 
-// Looks at the middle of the triangle with vertices 0, 1 and 2.
-TEST_F(VertexAttributes, ACornerWithoutADirectionTakesTheTriangles) {
-    const vec3 tilted(0.6f, 0.8f, 0);
-    Scene scene = scene_of(floor_quad(), lambert(0.5f));
-    for (const vec3 none : {vec3(0), vec3(nan), vec3(0, 0, -infinity)}) {
-        scene.meshes[0].normals = {none, tilted, tilted, none};
-        const vec3 expected = normalize(2.0f * tilted + vec3(0, 1, 0));
-        expect_near(normal_at(scene, {-1 / 3.0f, 1 / 3.0f}), expected, 1e-5f);
-    }
-}
-
-// Lengths do not count.
+// Looks at the middle of the triangle with vertices 0, 1 and 2. Lengths do not count, and a corner without a direction
+// takes the triangle's.
 TEST_F(VertexAttributes, NormalsOfAnyLengthAreDirections) {
     const vec3 tilted(0.6f, 0.8f, 0), up(0, 1, 0);
     Scene scene = scene_of(floor_quad(), lambert(0.5f));
-    for (const float length : {1e-30f, 1e-3f, 1e20f, 3e38f}) {
-        scene.meshes[0].normals = {up * length, tilted, tilted * length, up};
+    const auto expect_normals = [&](const std::vector<vec3>& normals) {
+        scene.meshes[0].normals = normals;
         expect_near(normal_at(scene, {-1 / 3.0f, 1 / 3.0f}), normalize(2.0f * tilted + up), 1e-5f);
-    }
+    };
+    for (const vec3 none : {vec3(0), vec3(nan), vec3(0, 0, -infinity)}) expect_normals({none, tilted, tilted, none});
+    for (const float length : {1e-30f, 1e-3f, 1e20f, 3e38f}) expect_normals({up * length, tilted, tilted * length, up});
 }
 
 // Normals are against the winding, and one vertex has none: the surface is never black.
 TEST_F(VertexAttributes, NormalsAgainstTheWindingAreTurned) {
     Scene scene = scene_of(floor_quad(), lambert(0.5f));
     scene.meshes[0].normals = {vec3(nan), vec3(0, -1, 0), vec3(0, -1, 0), vec3(0, -1, 0)};
-    RenderSetup setup = from_above({0, 0}, 1, 16, 16);
-    setup.environment = sky(1);
-    setup.settings.strategy = STRATEGY_BSDF;  // without noise
-    for (const vec3& pixel : render(context(), scene, setup).rgb) expect_near(pixel, vec3(0.5f), 1e-5f);
+    expect_half_of_the_sky(scene);
 }
 
 // Makes a floor with a normal map of (0.6, 0, 0.8) along the texture's u.

@@ -2,11 +2,7 @@
 // Vertices moved on the device, compared with those moved on the host, and accelerators that take them over.
 #include "engine/scene/rig.h"
 
-#include <cmath>
-#include <random>
-
 #include "validation/reference/aimed_rays.h"
-#include <twinray/scene.h>
 #include "tests/accel/accel_fixture.h"
 
 namespace twinray {

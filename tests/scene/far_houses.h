@@ -3,13 +3,7 @@
 #pragma once
 
 #include <iomanip>
-#include <sstream>
-#include <string>
-#include <vector>
 
-#include <twinray/scene.h>
-
-#include <twinray/geometry.h>
 #include "tests/scene/gltf_builder.h"
 #include "twinray/glsl/vector_math.h"
 

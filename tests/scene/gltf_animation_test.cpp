@@ -254,49 +254,34 @@ json& skin(GltfBuilder& gltf) { return gltf.root["skins"][0]; }
 json& attribute(GltfBuilder& gltf, const char* name) { return gltf.primitive()["attributes"][name]; }
 
 const Fault shape_faults[] = {
-    {"NoSuchSkin", [](auto& g) { g.root["nodes"][0]["skin"] = 3; }, "node 0 'node': skin 3 does not exist"},
-    {"SkinIsNoIndex", [](auto& g) { g.root["nodes"][0]["skin"] = "fur"; }, "JSON /nodes/0/skin is \"fur\""},
-    {"NoJoints", [](auto& g) { skin(g)["joints"] = "none"; }, "skin 0: has no list of joints"},
-    {"NoSuchJoint",
-     [](auto& g) {
-         skin(g)["joints"] = {1, 7};
-     },
-     "skin 0: joint 7 does not exist; the file has 3 nodes"},
+    {"NoSuchSkin", set("/nodes/0/skin", 3), "node 0 'node': skin 3 does not exist"},
+    {"SkinIsNoIndex", set("/nodes/0/skin", "fur"), "JSON /nodes/0/skin is \"fur\""},
+    {"NoJoints", set("/skins/0/joints", "none"), "skin 0: has no list of joints"},
+    {"NoSuchJoint", set("/skins/0/joints", {1, 7}), "skin 0: joint 7 does not exist; the file has 3 nodes"},
     {"JointIsNotShown",
      [](auto& g) {
          skin(g)["joints"] = {1, g.append("nodes", json::object())};
      },
      "joint 3 is a node that is not in the shown scene"},
-    {"FewInverseBinds", [](auto& g) { skin(g)["inverseBindMatrices"] = g.add_floats("MAT4", std::vector<float>(16)); },
+    {"FewInverseBinds", set_floats("/skins/0/inverseBindMatrices", "MAT4", std::vector<float>(16)),
      "inverseBindMatrices has 1 matrices, but there are 2 joints"},
-    {"InverseBindIsNaN",
-     [](auto& g) { skin(g)["inverseBindMatrices"] = g.add_floats("MAT4", std::vector<float>(32, NAN)); },
+    {"InverseBindIsNaN", set_floats("/skins/0/inverseBindMatrices", "MAT4", std::vector<float>(32, NAN)),
      "inverseBindMatrices 0 has the entry nan"},
-    {"InverseBindProjects",
-     [](auto& g) { skin(g)["inverseBindMatrices"] = g.add_floats("MAT4", std::vector<float>(32, 1)); },
+    {"InverseBindProjects", set_floats("/skins/0/inverseBindMatrices", "MAT4", std::vector<float>(32, 1)),
      "inverseBindMatrices 0: the last row is 1 1 1 1, not 0 0 0 1"},
     {"NegativeWeight",
-     [](auto& g) {
-         attribute(g, "WEIGHTS_0") = g.add_floats("VEC4", {1, 0, 0, 0, -1, 2, 0, 0, 1, 0, 0, 0});
-     },
+     set_floats("/meshes/0/primitives/0/attributes/WEIGHTS_0", "VEC4", {1, 0, 0, 0, -1, 2, 0, 0, 1, 0, 0, 0}),
      "WEIGHTS_0 of vertex 1 is -1"},
-    {"TooFewWeights",
-     [](auto& g) {
-         attribute(g, "WEIGHTS_0") = g.add_floats("VEC4", {1, 0, 0, 0});
-     },
+    {"TooFewWeights", set_floats("/meshes/0/primitives/0/attributes/WEIGHTS_0", "VEC4", {1, 0, 0, 0}),
      "WEIGHTS_0 has 1 elements, but POSITION has 3"},
     {"JointBeyondTheSkin",
      [](auto& g) {
          attribute(g, "JOINTS_0") = g.template add<std::uint8_t>("VEC4", 5121, {0, 0, 0, 0, 2, 0, 0, 0, 0, 0, 0, 0});
      },
      "mesh 0 'tri': vertex 1 follows joint 2, but its skin has 2"},
-    {"JointIsNoInteger", [](auto& g) { attribute(g, "JOINTS_0") = g.add_floats("VEC4", std::vector<float>(12, 0.5f)); },
+    {"JointIsNoInteger", set_floats("/meshes/0/primitives/0/attributes/JOINTS_0", "VEC4", std::vector<float>(12, 0.5f)),
      "JOINTS_0 of vertex 0 is 0.5"},
-    {"TooManyMorphWeights",
-     [](auto& g) {
-         g.root["nodes"][0]["weights"] = {1, 2};
-     },
-     "there are 2 morph weights, but its mesh has 0 targets"},
+    {"TooManyMorphWeights", set("/nodes/0/weights", {1, 2}), "there are 2 morph weights, but its mesh has 0 targets"},
     {"UnequalTargets",
      [](auto& g) {
          g.root["meshes"][0]["primitives"].push_back(g.primitive());
@@ -309,10 +294,9 @@ const Fault shape_faults[] = {
      },
      "target 0: POSITION has 1 elements, but POSITION has 3"},
     {"NoSuchVariant",
-     [](auto& g) {
-         g.root["materials"] = json::array({json::object()});
-         g.primitive()["extensions"]["KHR_materials_variants"]["mappings"] = {{{"material", 0}, {"variants", {4}}}};
-     },
+     all_of({set("/materials", json::array({json::object()})),
+             set("/meshes/0/primitives/0/extensions/KHR_materials_variants/mappings",
+                 {{{"material", 0}, {"variants", {4}}}})}),
      "KHR_materials_variants names variant 4; the file has 0"},
 };
 INSTANTIATE_TEST_SUITE_P(All, GltfShapeFault, testing::ValuesIn(shape_faults), fault_name);
@@ -331,50 +315,34 @@ TEST_P(GltfAnimationFault, IsWarnedOf) {
     EXPECT_EQ(scene.rig->animations[1].channels.size(), 1u);
 }
 
-json& sampler(GltfBuilder& gltf) { return animation(gltf)["samplers"][0]; }
 json& channel(GltfBuilder& gltf) { return animation(gltf)["channels"][0]; }
 
 const Fault animation_faults[] = {
-    {"IsNoObject", [](auto& g) { animation(g) = 4; }, "is not an object"},
-    {"SamplersAreNoList", [](auto& g) { animation(g)["samplers"] = 5; }, "samplers is not a list"},
-    {"ChannelWithoutTarget", [](auto& g) { channel(g).erase("target"); }, "channel 0: has no target"},
-    {"NoSuchNode", [](auto& g) { channel(g)["target"]["node"] = 9; }, "channel 0: node 9 does not exist"},
-    {"NoSuchSampler", [](auto& g) { channel(g)["sampler"] = 1; }, "its sampler does not exist; there are 1"},
-    {"NoSuchPath", [](auto& g) { channel(g)["target"]["path"] = "colour"; }, "path is neither"},
-    {"NoSuchInterpolation", [](auto& g) { sampler(g)["interpolation"] = "BEZIER"; }, "interpolation is neither"},
-    {"NoInput", [](auto& g) { sampler(g).erase("input"); }, "sampler 0: input is missing"},
-    {"NoSuchAccessor", [](auto& g) { sampler(g)["output"] = 99; }, "sampler 0 output: accessor 99 does not exist"},
-    {"TimesGoBack",
-     [](auto& g) {
-         sampler(g)["input"] = g.add_floats("SCALAR", {1, 0});
-     },
+    {"IsNoObject", set("/animations/0", 4), "is not an object"},
+    {"SamplersAreNoList", set("/animations/0/samplers", 5), "samplers is not a list"},
+    {"ChannelWithoutTarget", without("/animations/0/channels/0/target"), "channel 0: has no target"},
+    {"NoSuchNode", set("/animations/0/channels/0/target/node", 9), "channel 0: node 9 does not exist"},
+    {"NoSuchSampler", set("/animations/0/channels/0/sampler", 1), "its sampler does not exist; there are 1"},
+    {"NoSuchPath", set("/animations/0/channels/0/target/path", "colour"), "path is neither"},
+    {"NoSuchInterpolation", set("/animations/0/samplers/0/interpolation", "BEZIER"), "interpolation is neither"},
+    {"NoInput", without("/animations/0/samplers/0/input"), "sampler 0: input is missing"},
+    {"NoSuchAccessor", set("/animations/0/samplers/0/output", 99), "sampler 0 output: accessor 99 does not exist"},
+    {"TimesGoBack", set_floats("/animations/0/samplers/0/input", "SCALAR", {1, 0}),
      "time 1 is 0, before the one before it, 1"},
-    {"TimeIsNaN",
-     [](auto& g) {
-         sampler(g)["input"] = g.add_floats("SCALAR", {0, NAN});
-     },
-     "time 1 is nan"},
-    {"NoTimes", [](auto& g) { sampler(g)["input"] = g.add_floats("SCALAR", {}); }, "has no times"},
-    {"TooFewValues", [](auto& g) { sampler(g)["interpolation"] = "CUBICSPLINE"; },
+    {"TimeIsNaN", set_floats("/animations/0/samplers/0/input", "SCALAR", {0, NAN}), "time 1 is nan"},
+    {"NoTimes", set_floats("/animations/0/samplers/0/input", "SCALAR", {}), "has no times"},
+    {"TooFewValues", set("/animations/0/samplers/0/interpolation", "CUBICSPLINE"),
      "output has 8 numbers, but 2 times need 24"},
-    {"ValueIsInfinite",
-     [](auto& g) {
-         sampler(g)["output"] = g.add_floats("VEC4", {0, 0, 0, 1, 0, INFINITY, 0, 1});
-     },
+    {"ValueIsInfinite", set_floats("/animations/0/samplers/0/output", "VEC4", {0, 0, 0, 1, 0, INFINITY, 0, 1}),
      "output has the number inf at time 1"},
-    {"RotationWithoutLength",
-     [](auto& g) {
-         sampler(g)["output"] = g.add_floats("VEC4", {0, 0, 0, 1, 0, 0, 0, 0});
-     },
+    {"RotationWithoutLength", set_floats("/animations/0/samplers/0/output", "VEC4", {0, 0, 0, 1, 0, 0, 0, 0}),
      "the rotation at time 1 has length 0"},
     {"DrivenTwice", [](auto& g) { animation(g)["channels"].push_back(channel(g)); },
      "channel 1: drives the same property as another"},
-    {"WeightsOfNoTargets", [](auto& g) { channel(g)["target"]["path"] = "weights"; }, "without morph targets"},
+    {"WeightsOfNoTargets", set("/animations/0/channels/0/target/path", "weights"), "without morph targets"},
     {"DrivesAMatrix",
-     [](auto& g) {
-         g.root["animations"][1]["channels"][0]["target"]["node"] = 0;
-         g.root["nodes"][2] = {{"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}};
-     },
+     all_of({set("/animations/1/channels/0/target/node", 0),
+             set("/nodes/2", {{"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}})}),
      "drives a node that has a matrix"},
 };
 INSTANTIATE_TEST_SUITE_P(All, GltfAnimationFault, testing::ValuesIn(animation_faults), fault_name);

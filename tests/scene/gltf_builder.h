@@ -2,10 +2,6 @@
 // Small glTF files for tests: they are valid by default, and `root` changes them.
 #pragma once
 
-#include <cstring>
-#include <string>
-#include <vector>
-
 #include <nlohmann/json.hpp>
 
 #include "tests/scene/load_text.h"
@@ -113,10 +109,30 @@ inline GltfBuilder one_triangle() {
     return gltf;
 }
 
+// Changes of a file: what a JSON pointer names becomes this, or an accessor of these numbers, or is gone.
+using Bend = std::function<void(GltfBuilder&)>;
+inline Bend set(const std::string& pointer, const json& value) {
+    return [=](GltfBuilder& gltf) { gltf.root[json::json_pointer(pointer)] = value; };
+}
+inline Bend set_floats(const std::string& pointer, const std::string& type, const std::vector<float>& values) {
+    return [=](GltfBuilder& gltf) { gltf.root[json::json_pointer(pointer)] = gltf.add_floats(type, values); };
+}
+inline Bend without(const std::string& pointer) {
+    return [=](GltfBuilder& gltf) {
+        const json::json_pointer gone(pointer);
+        gltf.root[gone.parent_pointer()].erase(gone.back());
+    };
+}
+inline Bend all_of(const std::vector<Bend>& bends) {
+    return [=](GltfBuilder& gltf) {
+        for (const Bend& bend : bends) bend(gltf);
+    };
+}
+
 // A change that makes a file wrong, and a part of the error's text.
 struct Fault {
     const char* name;
-    std::function<void(GltfBuilder&)> bend;
+    Bend bend;
     std::string message;
 };
 inline std::string fault_name(const testing::TestParamInfo<Fault>& fault) { return fault.param.name; }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // One file of more than 400 lines, since all tests of materials use the builders below.
 #include "tests/scene/gltf_builder.h"
-#include "tests/scene/packed_bytes.h"
 #include "twinray/glsl/vector_math.h"
 
 namespace twinray::test {

@@ -5,8 +5,6 @@
 #include "engine/scene/glb.h"
 #include "engine/scene/rig.h"
 #include "tests/scene/far_houses.h"
-#include "tests/scene/load_text.h"
-#include "twinray/glsl/vector_math.h"
 
 namespace twinray::test {
 namespace {

@@ -2,9 +2,6 @@
 // A set of three types: kernels read what the host wrote, and both find the same elements by the same keys.
 #include <twinray/sets.h>
 
-#include <algorithm>
-#include <random>
-
 #include "engine/core/kernel.h"
 #include "test_set.spv.h"
 #include "test_set_debug.spv.h"
@@ -32,14 +29,7 @@ struct ValueOf {
 class MultiTypeSetTest : public VulkanTest {
   protected:
     bool shares_context() const override { return false; }  // the tests count memory
-    void SetUp() override {
-        VulkanTest::SetUp();
-        if (!IsSkipped() && !HasFatalFailure()) set_ = std::make_unique<Materials>(context(), "materials");
-    }
-    void TearDown() override {
-        set_.reset();
-        VulkanTest::TearDown();
-    }
+    void prepare() override { set_ = &keep<Materials>(context(), "materials"); }
     Materials& set() { return *set_; }
 
     Kernel<SetTestArgs> kernel(bool is_debug = false) {
@@ -66,7 +56,7 @@ class MultiTypeSetTest : public VulkanTest {
     }
 
   private:
-    std::unique_ptr<Materials> set_;
+    Materials* set_ = nullptr;
 };
 
 TEST_F(MultiTypeSetTest, KeysCountTheElementsOfEachType) {
@@ -88,25 +78,21 @@ TEST_F(MultiTypeSetTest, KeysCountTheElementsOfEachType) {
 }
 
 TEST_F(MultiTypeSetTest, KeysThatNameNothingAreRefusedAndChangeNothing) {
-    const SetKey key = set().push(glass(2));
+    const SetKey key = set().push(glass(2)), more{2, 1}, most{2, 7};
     set().sync();
-    EXPECT_EQ(faults::what_is_thrown_by([&] { set().update(SetKey{}, glass(9)); }),
+    EXPECT_EQ(error_if_any([&] { set().update(SetKey{}, glass(9)); }),
               "materials: update: the key is (type 0, index 0), where types go from 1 to 3; wanted is type 2");
-    EXPECT_EQ(faults::what_is_thrown_by([&] {
-                  set().update(SetKey{2, 1}, glass(9));
-              }),
+    EXPECT_EQ(error_if_any([&] { set().update(more, glass(9)); }),
               "materials: update: the key is (type 2, index 1), where type 2 is glass, of which there are 1; wanted is "
               "type 2");
-    EXPECT_EQ(faults::what_is_thrown_by([&] { set().update(key, diffuse(9)); }),
+    EXPECT_EQ(error_if_any([&] { set().update(key, diffuse(9)); }),
               "materials: update: the key is (type 2, index 0), where type 2 is glass, of which there are 1; wanted is "
               "type 1");
-    EXPECT_NE(faults::what_is_thrown_by([&] { set().get<Glass>({4, 0}); }), "");
-    EXPECT_EQ(faults::what_is_thrown_by([&] {
-                  with_index(ValueOf{}, set(), SetKey{2, 7}, 1.0f);
-              }),
+    EXPECT_NE(error_if_any([&] { set().get<Glass>({4, 0}); }), "");
+    EXPECT_EQ(error_if_any([&] { with_index(ValueOf{}, set(), most, 1.0f); }),
               "with_index: the key is (type 2, index 7), where type 2 is glass, of which there are 1");
     EXPECT_EQ(set().get<Glass>(key).ior, 2.0f);
-    EXPECT_EQ(faults::what_is_thrown_by([&] { set().view(); }), "") << "an edit is pending";
+    EXPECT_EQ(error_if_any([&] { set().view(); }), "") << "an edit is pending";
 }
 
 // Compares values of all keys, of keys that name nothing, the sum over all elements and the unrolled loops.
@@ -156,7 +142,7 @@ TEST_F(MultiTypeSetTest, KernelsForDebuggingTellOfKeysThatNameNothing) {
     set().check_faults();
     EXPECT_EQ(run({{2, 8}}, true).front(), FALLBACK);
     run({key, {}, {2, 1}, {9, 0}}, true);
-    EXPECT_EQ(faults::what_is_thrown_by([&] { set().check_faults(); }),
+    EXPECT_EQ(error_if_any([&] { set().check_faults(); }),
               "materials: kernels met 4 keys that name nothing, the first is (type 2, index 8), where type 2 is glass, "
               "of which there are 1");
 }
@@ -171,8 +157,7 @@ TEST_F(MultiTypeSetTest, AnUpdateUploadsItsElementAloneAndViewsStay) {
     set().update(keys[7], glass(500));
     set().update(keys[7], glass(600));
     set().update(keys[8], glass(700));
-    EXPECT_EQ(faults::what_is_thrown_by([&] { set().view(); }),
-              "materials: view: edits are pending; call sync() first");
+    EXPECT_EQ(error_if_any([&] { set().view(); }), "materials: view: edits are pending; call sync() first");
     set().sync();
     const TestSet after = set().view();
     EXPECT_EQ(std::memcmp(&before, &after, sizeof before), 0);
@@ -263,14 +248,12 @@ TEST_F(MultiTypeSetTest, SyncsIntoTheCallersCommands) {
     EXPECT_EQ(run({key}).front(), -1.0f);
     for (int frame = 0; frame < 3; ++frame) {
         const SyncPoint last = context().last_submission();
-        const CallerCommands buffer = caller.begin();
-        {
-            Commands commands(context(), "frame", buffer);
+        const CallerCommands buffer = caller.record("frame", [&](Commands& commands) {
             set().update(key, glass(static_cast<float>(frame)));
             if (frame == 2)
                 for (int i = 0; i < 100; ++i) set().push(glass(1));  // the array grows
             set().sync(commands);
-        }
+        });
         EXPECT_EQ(context().last_submission().value, last.value) << "the set submitted something itself";
         caller.submit(buffer);
         context().wait(buffer.done);
@@ -296,10 +279,10 @@ TEST_F(MultiTypeSetFault, ASyncThatFailsChangesNothingAndTheNextOneWorks) {
             return last;
         }();
         injector_.inject({.function = function});
-        EXPECT_NE(faults::what_is_thrown_by([&] { set().sync(); }), "") << function;
+        EXPECT_NE(error_if_any([&] { set().sync(); }), "") << function;
         injector_.heal();
         EXPECT_EQ(set().revision(), revision);
-        EXPECT_NE(faults::what_is_thrown_by([&] { set().view(); }), "");
+        EXPECT_NE(error_if_any([&] { set().view(); }), "");
         set().sync();
         EXPECT_EQ(run({key, more})[0], -3.0f);
         EXPECT_EQ(run({key, more})[1], 1.0f - 4.0f);

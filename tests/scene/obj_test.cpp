@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Files of type .obj: shapes, and the materials of their .mtl files.
-#include <cmath>
-
-#include <twinray/scene.h>
-
 #include "tests/scene/load_text.h"
-#include "tests/scene/packed_bytes.h"
 #include "twinray/glsl/vector_math.h"
 
 namespace twinray::test {
 namespace {
 
-const std::string CORNERS = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
-const std::string OBJ_SQUARE = CORNERS + "f 1 2 3 4\n";
+const std::string OBJ_CORNERS = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+const std::string OBJ_SQUARE = OBJ_CORNERS + "f 1 2 3 4\n";
 
 Scene load_obj(const std::string& content, const std::string& name = "a.obj") { return load_text(content, name); }
 
@@ -55,30 +50,30 @@ TEST(Obj, BlanksAndLineEndsAreFree) {
 }
 
 TEST(Obj, ABackslashJoinsLinesAndACommentEndsThem) {
-    expect_obj_square(CORNERS + "f 1 2 \\\n3 4\n");
-    expect_obj_square(CORNERS + "f 1\\\r\n 2 \\ \r\n3 4");
-    expect_obj_square("# C:\\models\\\n" + CORNERS + "f 1 2 3 4 # the only one \\\n# end");
-    expect_obj_square(CORNERS + "f 1 2 3 4#4 5\n");
-    expect_obj_square(replaced(CORNERS, "\n", " # corner\n") + "f 1 2 3 4");
-    expect_obj_square(CORNERS + "f 1 2 3 4 \\");
-    expect_obj_square(CORNERS + "vn 1.#IND -1.#QNAN0 0 # \\\nf 1 2 3 4 \n");
-    expect_obj_square(replaced(CORNERS, "1 0\n", "1 0.#a comment\n") + "f 1 2 3 4\n");
+    expect_obj_square(OBJ_CORNERS + "f 1 2 \\\n3 4\n");
+    expect_obj_square(OBJ_CORNERS + "f 1\\\r\n 2 \\ \r\n3 4");
+    expect_obj_square("# C:\\models\\\n" + OBJ_CORNERS + "f 1 2 3 4 # the only one \\\n# end");
+    expect_obj_square(OBJ_CORNERS + "f 1 2 3 4#4 5\n");
+    expect_obj_square(replaced(OBJ_CORNERS, "\n", " # corner\n") + "f 1 2 3 4");
+    expect_obj_square(OBJ_CORNERS + "f 1 2 3 4 \\");
+    expect_obj_square(OBJ_CORNERS + "vn 1.#IND -1.#QNAN0 0 # \\\nf 1 2 3 4 \n");
+    expect_obj_square(replaced(OBJ_CORNERS, "1 0\n", "1 0.#a comment\n") + "f 1 2 3 4\n");
 }
 
 TEST(Obj, CornersAreWrittenInManyWays) {
-    expect_obj_square(CORNERS + "f -4 -3 -2 -1\n");
-    expect_obj_square(CORNERS + "f 1 -3 3 -1\n" + CORNERS);  // negative ones count from where they stand
-    expect_obj_square("f 1 2 3 4\n" + CORNERS);
-    expect_obj_square(CORNERS + "f 1// 2// 3/ 4\n");
-    expect_obj_square(CORNERS + "fo 1 2 3 4\n");
+    expect_obj_square(OBJ_CORNERS + "f -4 -3 -2 -1\n");
+    expect_obj_square(OBJ_CORNERS + "f 1 -3 3 -1\n" + OBJ_CORNERS);  // negative ones count from where they stand
+    expect_obj_square("f 1 2 3 4\n" + OBJ_CORNERS);
+    expect_obj_square(OBJ_CORNERS + "f 1// 2// 3/ 4\n");
+    expect_obj_square(OBJ_CORNERS + "fo 1 2 3 4\n");
     expect_obj_square(replaced(OBJ_SQUARE, " 0\n", " 0 1.0\n"));
 }
 
 TEST(Obj, FacesOfOtherThanThreeCorners) {
-    const Scene scene = load_obj(CORNERS + "f 1 2\nf 3\nf 1 2 3 4\nf\nl 1 2 3\np 1\n");
+    const Scene scene = load_obj(OBJ_CORNERS + "f 1 2\nf 3\nf 1 2 3 4\nf\nl 1 2 3\np 1\n");
     EXPECT_EQ(count_triangles(scene), 2u);
     expect_warnings(scene, {"skipped 2 points and lines", "skipped 3 faces of fewer than 3 vertices"});
-    expect_warnings(load_obj(CORNERS + "\nf 1 3 2 4\n"),
+    expect_warnings(load_obj(OBJ_CORNERS + "\nf 1 3 2 4\n"),
                     {"1 faces cross themselves, so that their triangles overlap (the first: line 6)"});
 }
 
@@ -113,13 +108,13 @@ TEST(Obj, DegenerateTrianglesStayAndKeepTheirIndex) {
 }
 
 TEST(Obj, TextureCoordinatesMayHaveOneNumberOrThree) {
-    const Mesh mesh = load_obj(CORNERS + "vt 0.5\nvt 0.25 0.75 0\nf 1/1 2/2 3/2\n").meshes[0];
+    const Mesh mesh = load_obj(OBJ_CORNERS + "vt 0.5\nvt 0.25 0.75 0\nf 1/1 2/2 3/2\n").meshes[0];
     EXPECT_EQ(mesh.uvs, (std::vector<vec2>{{0.5f, 1}, {0.25f, 0.25f}, {0.25f, 0.25f}}));  // v up there, down here
 }
 
 TEST(Obj, ANormalThatIsNoNumberIsNone) {
     const Scene scene =
-        load_obj(CORNERS + "vn 0 0 1\nvn nan nan nan\nvn -1.#IND 0 0\nf 1//1 2//2 3//3\nf 1//1 3 4//-1\n");
+        load_obj(OBJ_CORNERS + "vn 0 0 1\nvn nan nan nan\nvn -1.#IND 0 0\nf 1//1 2//2 3//3\nf 1//1 3 4//-1\n");
     const Mesh& mesh = scene.meshes[0];
     expect_warnings(scene, {"mesh 'a': 3 of 4 normals are 0, NaN or infinite; triangles show their own there"});
     EXPECT_EQ(mesh.normals, (std::vector<vec3>{{0, 0, 1}, vec3(0), vec3(0), vec3(0)}));
@@ -127,7 +122,7 @@ TEST(Obj, ANormalThatIsNoNumberIsNone) {
 }
 
 TEST(Obj, WhatIsNotThereIsToldAndTheShapeLoads) {
-    const Scene scene = load_obj(CORNERS + "vt 0 0\nf 1/1/1 2/2/1 3/3/1\n");
+    const Scene scene = load_obj(OBJ_CORNERS + "vt 0 0\nf 1/1/1 2/2/1 3/3/1\n");
     EXPECT_TRUE(scene.meshes[0].normals.empty());
     expect_warnings(scene,
                     {"faces use what the file does not have: 'normals' (line 6), 'texture coordinates' (line 6)"});
@@ -153,11 +148,11 @@ TEST(Obj, AMeshIsAnObjectOrElseAGroup) {
         for (const Mesh& mesh : scene.meshes) all.push_back(mesh.name);
         return joined(all);
     };
-    EXPECT_EQ(names(load_obj(CORNERS + "o\ng\n" + faces[0] + "g front side\n" + faces[1] + "g back\n")),
+    EXPECT_EQ(names(load_obj(OBJ_CORNERS + "o\ng\n" + faces[0] + "g front side\n" + faces[1] + "g back\n")),
               "a, front side");
-    EXPECT_EQ(names(load_obj(CORNERS + "o cube\ng front\n" + faces[0] + "g back\n" + faces[1])), "cube");
-    EXPECT_EQ(names(load_obj(CORNERS + "o one\n" + faces[0] + "o two words # so\n" + faces[1])), "one, two words");
-    const Scene again = load_obj(CORNERS + "g one\n" + faces[0] + "g two\n" + faces[1] + "g one\n" + faces[0]);
+    EXPECT_EQ(names(load_obj(OBJ_CORNERS + "o cube\ng front\n" + faces[0] + "g back\n" + faces[1])), "cube");
+    EXPECT_EQ(names(load_obj(OBJ_CORNERS + "o one\n" + faces[0] + "o two words # so\n" + faces[1])), "one, two words");
+    const Scene again = load_obj(OBJ_CORNERS + "g one\n" + faces[0] + "g two\n" + faces[1] + "g one\n" + faces[0]);
     EXPECT_EQ(names(again), "one, two");
     EXPECT_EQ(again.meshes[0].triangles.size(), 2u);
 }
@@ -172,14 +167,14 @@ TEST(Obj, GzipIsUnpacked) {
 }
 
 TEST(Obj, FaultsAreNamedWithTheirLines) {
-    expect_obj_error(CORNERS + "f 1 2 5\n", "line 5: vertex index 5 is out of range; there are 4 vertices");
-    expect_obj_error(CORNERS + "f 1 2 -5\n", "line 5: '-5' has index -5, but there are 4 so far");
-    expect_obj_error(CORNERS + "f 1 2 0\n", "line 5: '0' has index 0");
-    expect_obj_error(CORNERS + "f 1 2 3.5\n", "line 5: '3.5' is not a vertex");
-    expect_obj_error(CORNERS + "f 1 2 /3\n", "line 5: '/3' is not a vertex");
-    expect_obj_error(CORNERS + "f 1 2 3/1/1/1\n", "line 5: '3/1/1/1' is not a vertex");
-    expect_obj_error(CORNERS + "f 1 2 99999999999999999999\n", "is not a vertex");
-    expect_obj_error(CORNERS + "f 1 2 4294967296\n", "has index 4294967296");
+    expect_obj_error(OBJ_CORNERS + "f 1 2 5\n", "line 5: vertex index 5 is out of range; there are 4 vertices");
+    expect_obj_error(OBJ_CORNERS + "f 1 2 -5\n", "line 5: '-5' has index -5, but there are 4 so far");
+    expect_obj_error(OBJ_CORNERS + "f 1 2 0\n", "line 5: '0' has index 0");
+    expect_obj_error(OBJ_CORNERS + "f 1 2 3.5\n", "line 5: '3.5' is not a vertex");
+    expect_obj_error(OBJ_CORNERS + "f 1 2 /3\n", "line 5: '/3' is not a vertex");
+    expect_obj_error(OBJ_CORNERS + "f 1 2 3/1/1/1\n", "line 5: '3/1/1/1' is not a vertex");
+    expect_obj_error(OBJ_CORNERS + "f 1 2 99999999999999999999\n", "is not a vertex");
+    expect_obj_error(OBJ_CORNERS + "f 1 2 4294967296\n", "has index 4294967296");
     expect_obj_error("\n# x\nv 0 \\\n0\n", "line 3: 'v' has 2 numbers; it needs 3");
     expect_obj_error("v 0 zero 0\n", "line 1: 'zero' is not a number");
     expect_obj_error("v 0 1,5 0\n", "line 1: '1,5' is not a number");

@@ -1,13 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <map>
-
-#include <twinray/scene.h>
-
 #include "engine/scene/importers/ply_header.h"
-#include "tests/scene/packed_bytes.h"
 #include "tests/scene/load_text.h"
 #include "twinray/glsl/vector_math.h"
 

@@ -7,7 +7,6 @@
 #include "test_soa_debug.spv.h"
 #include "tests/scene/set_kernel_shared.h"
 #include "tests/support/device.h"
-#include "report/faults/fault_injection.h"
 
 namespace twinray {
 namespace {
@@ -38,9 +37,8 @@ TEST(HostSoa, GetsWhatWasSetAndRefusesOtherIndices) {
         EXPECT_EQ(soa_get(view, i, &TestQueue::pixel), i + 1);
         EXPECT_EQ(soa_get(view, i, &TestQueue::t), 0.0f);
     }
-    EXPECT_EQ(faults::what_is_thrown_by([&] { soa_get(view, 10, &TestQueue::t); }), "soa_get: index 10 of 10 items");
-    EXPECT_EQ(faults::what_is_thrown_by([&] { soa_set(view, ~0u, &TestQueue::t, 1); }),
-              "soa_set: index 4294967295 of 10 items");
+    EXPECT_EQ(error_if_any([&] { soa_get(view, 10, &TestQueue::t); }), "soa_get: index 10 of 10 items");
+    EXPECT_EQ(error_if_any([&] { soa_set(view, ~0u, &TestQueue::t, 1); }), "soa_set: index 4294967295 of 10 items");
     HostQueue longer = similar_soa(queue, 20);
     EXPECT_EQ(longer.count(), 20u);
     EXPECT_EQ(soa_get(longer.view(), 19, &TestQueue::pixel), 0u);
@@ -74,16 +72,13 @@ TEST_F(SoaTest, KernelsMoveItemsAndLeaveAloneWhatIsOutOfRange) {
         ts.push_back(0.5f * x);
         materials.push_back({vec3(x), 4 * x});
     }
-    Commands commands(context(), "upload");
-    {
-        const auto pass = commands.pass("upload");
+    submit_pass(context(), "upload", [&](Commands& commands) {
         from.upload(commands, &TestQueue::origin, std::span<const vec3>(origins));
         from.upload(commands, &TestQueue::pixel, std::span<const uint>(pixels).first(500));
         from.upload(commands, &TestQueue::pixel, std::span<const uint>(pixels).subspan(500), 500);
         from.upload(commands, &TestQueue::t, std::span<const float>(ts));
         from.upload(commands, &TestQueue::material, std::span<const Diffuse>(materials));
-    }
-    commands.submit();
+    });
     run(from, to, count, shift);
     const std::vector<vec3> moved_origins = to.download(&TestQueue::origin);
     const std::vector<uint> moved_pixels = to.download(&TestQueue::pixel);
@@ -108,11 +103,10 @@ TEST_F(SoaTest, KernelsForDebuggingTellOfIndicesOutOfRange) {
     from.check_faults();
     to.check_faults();
     run(from, to, 1, 150, true);
-    EXPECT_EQ(faults::what_is_thrown_by([&] { from.check_faults(); }),
+    EXPECT_EQ(error_if_any([&] { from.check_faults(); }),
               "from: kernels met 4 indices out of range, the first is 150 of 100 items");
     run(from, to, 100, 0, true);
-    EXPECT_NE(faults::what_is_thrown_by([&] { to.check_faults(); }).find("to: kernels met 40 indices out of range"),
-              std::string::npos);
+    expect_error("to: kernels met 40 indices out of range", [&] { to.check_faults(); });
 }
 
 TEST_F(SoaTest, UploadsBeyondTheLastItemAreRefused) {
@@ -120,12 +114,9 @@ TEST_F(SoaTest, UploadsBeyondTheLastItemAreRefused) {
     const std::vector<float> values(8);
     Commands commands(context(), "upload");
     const auto pass = commands.pass("upload");
-    EXPECT_EQ(
-        faults::what_is_thrown_by([&] { queue.upload(commands, &TestQueue::t, std::span<const float>(values), 3); }),
-        "queue: upload: 8 items from 3 exceed its 10");
-    EXPECT_NE(
-        faults::what_is_thrown_by([&] { queue.upload(commands, &TestQueue::t, std::span<const float>(values), ~0u); }),
-        "");
+    EXPECT_EQ(error_if_any([&] { queue.upload(commands, &TestQueue::t, std::span<const float>(values), 3); }),
+              "queue: upload: 8 items from 3 exceed its 10");
+    EXPECT_NE(error_if_any([&] { queue.upload(commands, &TestQueue::t, std::span<const float>(values), ~0u); }), "");
 }
 
 TEST_F(SoaTest, AnEmptyOneIsAllowed) {

@@ -4,8 +4,6 @@
 
 #include <filesystem>
 #include <fstream>
-#include <string>
-#include <string_view>
 
 #include "engine/core/platform.h"
 #include "tests/support/errors.h"

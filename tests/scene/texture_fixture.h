@@ -2,9 +2,6 @@
 // A store of textures, as images or in buffers, and a kernel that reads them.
 #pragma once
 
-#include <cmath>
-#include <string>
-
 #include <twinray/scene.h>
 
 #include "engine/core/kernel.h"
@@ -24,16 +21,10 @@ static_assert(sizeof(TextureQuestion) == 24 && sizeof(TextureAnswer) == 60);
 class Textures : public VulkanTest, public ::testing::WithParamInterface<TextureStorage> {
   protected:
     ContextDesc context_desc() const override { return {.get_instance_proc_addr = injector_.entry()}; }
-    void SetUp() override {
-        VulkanTest::SetUp();
-        if (IsSkipped() || HasFatalFailure()) return;
+    void prepare() override {
         if (GetParam() == TextureStorage::images && !context().properties().has_image_arrays())
             TWINRAY_LACKS("descriptor_indexing", "no descriptor indexing");
-        store_ = std::make_unique<TextureStore>(context(), "textures", GetParam());
-    }
-    void TearDown() override {
-        store_.reset();
-        VulkanTest::TearDown();
+        store_ = &keep<TextureStore>(context(), "textures", GetParam());
     }
     TextureStore& store() { return *store_; }
 
@@ -73,7 +64,7 @@ class Textures : public VulkanTest, public ::testing::WithParamInterface<Texture
     faults::FaultInjector injector_;
 
   private:
-    std::unique_ptr<TextureStore> store_;
+    TextureStore* store_ = nullptr;
 };
 inline std::string name_of_storage(const ::testing::TestParamInfo<TextureStorage>& which) {
     return which.param == TextureStorage::images ? "Images" : "Buffers";

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Texels of every format and number of channels, and their mipmaps, as kernels read them.
-#include <array>
-#include <cmath>
-#include <random>
-
-#include "engine/scene/texels.h"
+#include "engine/scene/images.h"
 #include "tests/scene/temp_dir.h"
 #include "tests/scene/texture_fixture.h"
 

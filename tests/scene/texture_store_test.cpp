@@ -2,13 +2,8 @@
 // Textures as images and in buffers: kernels read the same of both, and no update leaks.
 #include <twinray/scene.h>
 
-#include <algorithm>
-#include <cmath>
-#include <random>
-
 #include "tests/scene/texture_fixture.h"
 #include "tests/support/caller.h"
-#include "tests/support/errors.h"
 
 namespace twinray {
 namespace {
@@ -130,17 +125,16 @@ TEST_P(Textures, ReferencesThatNameNothingAreWhite) {
 
 TEST_P(Textures, WrongUseIsRefused) {
     const TextureRef texture = store().push(gray_image(3, 2, 9));
-    EXPECT_EQ(faults::what_is_thrown_by([&] { store().update({}, gray_image(3, 2, 9)); }),
+    EXPECT_EQ(test::error_if_any([&] { store().update({}, gray_image(3, 2, 9)); }),
               "textures: update: the texture has number 0; they go from 1 to 1");
-    EXPECT_EQ(faults::what_is_thrown_by([&] { store().update({2}, gray_image(3, 2, 9)); }),
+    EXPECT_EQ(test::error_if_any([&] { store().update({2}, gray_image(3, 2, 9)); }),
               "textures: update: the texture has number 2; they go from 1 to 1");
     Image broken = gray_image(3, 2, 9);
     broken.width = 4;
-    EXPECT_EQ(faults::what_is_thrown_by([&] { store().push(broken); }),
+    EXPECT_EQ(test::error_if_any([&] { store().push(broken); }),
               "textures: push: image 'gray' of 4 x 2 has 24 bytes in level 0; it needs 32");
-    EXPECT_NE(faults::what_is_thrown_by([&] { store().update(texture, gray_image(0, 0, 9)); }), "");
-    EXPECT_EQ(faults::what_is_thrown_by([&] { store().view(); }),
-              "textures: view: edits are pending; call sync() first");
+    EXPECT_NE(test::error_if_any([&] { store().update(texture, gray_image(0, 0, 9)); }), "");
+    EXPECT_EQ(test::error_if_any([&] { store().view(); }), "textures: view: edits are pending; call sync() first");
     EXPECT_EQ(store().size(), 1u);
     store().sync();
     EXPECT_EQ(red_of(texture), 9);
@@ -243,12 +237,10 @@ TEST_P(Textures, SyncsIntoTheCallersCommands) {
     const TextureRef texture = store().push(gray_image(4, 4, 0));
     for (uint frame = 1; frame < 4; ++frame) {
         const SyncPoint last = context().last_submission();
-        const CallerCommands buffer = caller.begin();
-        {
-            Commands commands(context(), "frame", buffer);
+        const CallerCommands buffer = caller.record("frame", [&](Commands& commands) {
             store().update(texture, gray_image(frame < 3 ? 4 : 9, 4, static_cast<std::uint8_t>(frame)));
             store().sync(commands);
-        }
+        });
         EXPECT_EQ(context().last_submission().value, last.value) << "the store submitted something itself";
         caller.submit(buffer);
         context().wait(buffer.done);
@@ -271,7 +263,7 @@ TEST_P(Textures, ASyncThatFailsChangesNothingAndTheNextOneWorks) {
         store().update(texture, gray_image(5 + static_cast<uint>(revision), 4, 6));
         const TextureRef more = store().push(gray_image(4, 4, 7));
         injector_.inject({.function = function});
-        EXPECT_NE(faults::what_is_thrown_by([&] { store().sync(); }), "") << function;
+        EXPECT_NE(test::error_if_any([&] { store().sync(); }), "") << function;
         EXPECT_EQ(injector_.injected(), 1u) << function;
         injector_.heal();
         EXPECT_EQ(store().revision(), revision);
@@ -292,10 +284,10 @@ TEST_P(Textures, KernelsAndStoresMustFit) {
     const Kernel<test::TextureTestArgs> without(context(),
                                                 {.name = "test_texture", .spirv = test_texture_buffers_spirv});
     Commands commands(context(), "unfit");
-    EXPECT_EQ(faults::what_is_thrown_by([&] { kernel.dispatch(commands, {}, 1); }),
+    EXPECT_EQ(test::error_if_any([&] { kernel.dispatch(commands, {}, 1); }),
               "kernel 'test_texture': dispatched without images");
     if (!store().has_images()) return;
-    EXPECT_EQ(faults::what_is_thrown_by([&] { without.dispatch(commands, {}, 1, store().images()); }),
+    EXPECT_EQ(test::error_if_any([&] { without.dispatch(commands, {}, 1, store().images()); }),
               "kernel 'test_texture': it takes no images");
 }
 

@@ -13,7 +13,7 @@
 #include "engine/accel/geometry.h"
 #include "swtlas/structures.h"
 #include "validation/cpu_reference/reference.h"
-#include "validation/reference/draws.h"
+#include "validation/reference/aimed_rays.h"
 
 namespace twinray {
 namespace {

@@ -48,6 +48,14 @@ class Caller {
         commands.done = {timeline_, ++value_};
         return commands;
     }
+    // Returns one that `record` has filled.
+    template <class Record>
+    CallerCommands record(const std::string& name, const Record& record) {
+        const CallerCommands buffer = begin();
+        Commands commands(context_, name, buffer);
+        record(commands);
+        return buffer;
+    }
     void submit(const CallerCommands& commands) {
         vk_check(vk_.vkEndCommandBuffer(commands.handle), "end");
         VkTimelineSemaphoreSubmitInfo timeline{};

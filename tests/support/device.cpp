@@ -3,9 +3,6 @@
 
 #include <cstdlib>
 #include <string_view>
-#include <utility>
-
-#include "engine/core/error.h"
 
 namespace twinray::test {
 
@@ -61,6 +58,11 @@ class LetsGoOfSharedContexts : public ::testing::Environment {
 }  // namespace
 
 void VulkanTest::SetUp() {
+    take_context();
+    if (context_ && !HasFatalFailure()) prepare();
+}
+
+void VulkanTest::take_context() {
     ContextDesc desc = context_desc();
     // A test with a driver of its own, or with submissions cut short, shares no context.
     shares_ = shares_context() && !desc.get_instance_proc_addr && !desc.most_submission_seconds;
@@ -85,6 +87,7 @@ bool VulkanTest::was_logged(const std::string& part) const {
 }
 
 void VulkanTest::TearDown() {
+    while (!kept_.empty()) kept_.pop_back();
     if (!context_) return;
     const std::size_t logged = log_->size();
     for (const std::string& message : context_->validation_messages()) ADD_FAILURE() << message;

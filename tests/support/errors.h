@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Errors that a test expects, and what they say.
+// Errors that a test expects, and what they say; with the headers that nearly all tests use.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstring>
 #include <functional>
+#include <memory>
+#include <random>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -35,6 +41,11 @@ inline void expect_contains(const std::string& all, const std::string& part) {
 // Expects an Error that says `part`.
 inline void expect_error(const std::string& part, const std::function<void()>& action) {
     expect_contains(error_of(action), part);
+}
+
+template <class Array>
+bool same_bytes(const Array& a, const Array& b) {
+    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0);
 }
 
 }  // namespace twinray::test

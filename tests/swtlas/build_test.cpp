@@ -1,10 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Trees that SwTlas builds: they are sound, equal to those of the CPU reference, and within the height limit.
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <random>
-
 #include "swtlas/plan.h"
 #include "tests/support/sw_build.h"
 

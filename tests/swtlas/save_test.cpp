@@ -1,20 +1,10 @@
 // SPDX-License-Identifier: MIT
 // A built SwTlas that is saved and loaded again; and files with trees of the largest depth, which no builder makes.
-#include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <string>
-
-#include <twinray/geometry.h>
-#include <twinray/tlas.h>
-#include "engine/core/error.h"
-#include "engine/scene/bytes.h"
+#include "engine/core/files.h"
 #include "swtlas/saved.h"
 #include "test_program.trace_program.h"
 #include "tests/scene/temp_dir.h"
-#include "tests/support/device.h"
-#include "tests/support/seam.h"
-#include "tests/support/tall_tree.h"
+#include "tests/support/sw_build.h"
 #include "validation/reference/aimed_rays.h"
 
 namespace twinray {

@@ -2,19 +2,7 @@
 // Pairs of triangles: which ones share a leaf, and what its record says of them.
 #include "swtlas/triangle_pairs.h"
 
-#include <gtest/gtest.h>
-
-#include <array>
-#include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <random>
-#include <set>
-
-#include <twinray/geometry.h>
-
-#include "swtlas/weld.h"
-#include "tests/support/seam.h"
+#include "tests/support/sw_build.h"
 
 namespace twinray {
 namespace {

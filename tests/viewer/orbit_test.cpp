@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Parts of the viewer that need no device: cameras that turn, keys and events.
-#include "viewer/orbit.h"
+#include "viewer/state.h"
 
 #include <cmath>
 #include <filesystem>
@@ -13,19 +13,12 @@
 #include "tests/scene/temp_dir.h"
 
 #include "viewer/events.h"
-#include "viewer/keys.h"
 #include "twinray/glsl/vector_math.h"
 #include "viewer/layers.h"
-#include "viewer/recent_files.h"
+#include "viewer/files.h"
 
 namespace twinray::viewer {
 namespace {
-
-Bounds box_of(vec3 lo, vec3 hi) {
-    Bounds box;
-    box.lo = lo, box.hi = hi;
-    return box;
-}
 
 TEST(Orbit, TurnsAboutItsCentre) {
     for (const UpAxis up : {UpAxis::y, UpAxis::z}) {
@@ -52,7 +45,7 @@ TEST(Orbit, LooksFromWhereAxisViewsSay) {
 }
 
 TEST(Orbit, FramesAllOfABox) {
-    const Bounds box = box_of(vec3(-3, 10, 4), vec3(5, 12, 5));
+    const Bounds box = Bounds{vec3(-3, 10, 4), vec3(5, 12, 5)};
     for (const double aspect : {0.4, 1.0, 2.5})
         for (const bool is_orthographic : {false, true}) {
             Orbit orbit = framed(turned({}, 0.2, 0.1), box, aspect);
@@ -82,15 +75,11 @@ TEST(Orbit, PansWithThePointer) {
 
 TEST(Orbit, KeepsACamerasView) {
     const Camera camera = look_camera(vec3(3, 2, 8), vec3(1, 1, 1), vec3(0, 1, 0), 35);
-    const Orbit orbit = orbit_of(camera, box_of(vec3(-1), vec3(2)), UpAxis::y);
+    const Orbit orbit = orbit_of(camera, Bounds{vec3(-1), vec3(2)}, UpAxis::y);
     const Camera again = camera_of(orbit);
-    for (std::size_t i = 0; i < 3; ++i) {
-        const vec4 a = camera.camera_to_world.rows[i], b = again.camera_to_world.rows[i];
-        EXPECT_NEAR(a.x, b.x, 1e-5);
-        EXPECT_NEAR(a.y, b.y, 1e-5);
-        EXPECT_NEAR(a.z, b.z, 1e-5);
-        EXPECT_NEAR(a.w, b.w, 1e-5);
-    }
+    for (std::size_t row = 0; row < 3; ++row)
+        for (int i = 0; i < 4; ++i)
+            EXPECT_NEAR(camera.camera_to_world.rows[row][i], again.camera_to_world.rows[row][i], 1e-5);
     EXPECT_THROW(looking(dvec3(1), dvec3(1), UpAxis::y, 0.7), Error);
 }
 
@@ -198,7 +187,7 @@ TEST(Bookmarks, LeaveOutWhatIsUsual) {
     state.picked = uvec2(4, 5);
     const std::string options = options_of(state, dvec3(0));
     for (const char* part : {"--show wipe", "--wipe 0.5", "--tree-depth 3", "--pick 4 5", "--layer eyelight"})
-        EXPECT_NE(options.find(part), std::string::npos) << part << " in " << options;
+        test::expect_contains(options, part);
     EXPECT_EQ(options.find("--size"), std::string::npos);
 }
 

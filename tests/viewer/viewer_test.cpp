@@ -7,8 +7,9 @@
 #include <fstream>
 
 #include "tests/accel/accel_fixture.h"
+#include "tests/scene/temp_dir.h"
 #include "twinray/glsl/vector_math.h"
-#include "viewer/tree_lines.h"
+#include "viewer/layers.h"
 
 namespace twinray::viewer {
 namespace {
@@ -21,14 +22,7 @@ class ViewerTest : public test::VulkanTest {
     void SetUp() override {
         VulkanTest::SetUp();
         if (IsSkipped() || HasFatalFailure()) return;
-        folder_ = std::filesystem::temp_directory_path() /
-                  ("twinray_viewer_" + std::to_string(reinterpret_cast<std::uintptr_t>(this)));
-        std::filesystem::create_directories(folder_);
         write_boxes(2);
-    }
-    void TearDown() override {
-        if (!folder_.empty()) std::filesystem::remove_all(folder_);
-        VulkanTest::TearDown();
     }
     void write_boxes(int count) {
         std::ofstream out(file());
@@ -45,7 +39,6 @@ class ViewerTest : public test::VulkanTest {
         }
     }
     std::filesystem::path file() const { return folder_ / "boxes.obj"; }
-    std::filesystem::path folder() const { return folder_; }
 
     // Looks from the front, with the first box on the left.
     ViewerDesc desc(Layer layer = Layer::eyelight) {
@@ -59,14 +52,30 @@ class ViewerTest : public test::VulkanTest {
                 .version = "test"};
     }
     std::vector<std::string> said;
-
-  private:
-    std::filesystem::path folder_;
+    const test::TempDir folder_;
 };
+
+void drag(Viewer& viewer, double from_x, double from_y, double to_x, double to_y, bool with_shift = false) {
+    viewer.handle(ButtonDown{Button::left, from_x, from_y, with_shift});
+    viewer.handle(Moved{to_x, to_y});
+    viewer.handle(ButtonUp{Button::left});
+}
+void click(Viewer& viewer, uvec2 pixel) {
+    viewer.handle(ButtonDown{Button::left, pixel.x + 0.5, pixel.y + 0.5});
+    viewer.handle(ButtonUp{Button::left});
+}
 
 constexpr uvec2 on_first{20, 24}, on_second{44, 24}, on_nothing{32, 2};
 
 Rgb at(const Raster& raster, uvec2 pixel) { return raster.at(pixel.x, pixel.y); }
+double number_at(const Viewer& viewer, uvec2 pixel) {
+    return viewer.values().numbers[std::size_t{pixel.y} * width + pixel.x];
+}
+std::size_t count_unlike(const Raster& a, const Raster& b) {
+    std::size_t unlike = 0;
+    for (std::size_t i = 0; i < a.pixels.size(); ++i) unlike += a.pixels[i] != b.pixels[i];
+    return unlike;
+}
 
 TEST_F(ViewerTest, LayersTellMeshesNormalsAndMisses) {
     Viewer viewer(context(), desc());
@@ -103,15 +112,12 @@ TEST_F(ViewerTest, BothAcceleratorsAreSeen) {
     }
     viewer.handle(KeyDown{"D"});
     (void)viewer.frame(false);
-    std::uint64_t unlike = 0;
-    for (std::size_t i = 0; i < software.pixels.size(); ++i) unlike += software.pixels[i] != hardware.pixels[i];
-    EXPECT_EQ(viewer.disagreements(), unlike);
+    EXPECT_EQ(viewer.disagreements(), count_unlike(software, hardware));
 }
 
 TEST_F(ViewerTest, ClicksExplainRays) {
     Viewer viewer(context(), desc());
-    viewer.handle(ButtonDown{Button::left, on_second.x + 0.5, on_second.y + 0.5});
-    viewer.handle(ButtonUp{Button::left});
+    click(viewer, on_second);
     ASSERT_TRUE(viewer.picked());
     EXPECT_EQ(viewer.picked()->software.hit, 1u);
     EXPECT_EQ(viewer.picked()->software_class, HitClass::agree);
@@ -119,23 +125,17 @@ TEST_F(ViewerTest, ClicksExplainRays) {
     EXPECT_NEAR(viewer.picked()->point->z, 1, 1e-6);
     EXPECT_NE(viewer.explanation().find("exactly: hit"), std::string::npos) << viewer.explanation();
     EXPECT_EQ(viewer.state().picked, on_second);
-    viewer.handle(ButtonDown{Button::left, 10, 10});  // a drag is no click
-    viewer.handle(Moved{20, 10});
-    viewer.handle(ButtonUp{Button::left});
+    drag(viewer, 10, 10, 20, 10);  // is no click
     EXPECT_EQ(viewer.state().picked, on_second);
 }
 
 TEST_F(ViewerTest, DragsWheelAndKeysMoveTheCamera) {
     Viewer viewer(context(), desc());
     const Orbit before = viewer.state().orbit;
-    viewer.handle(ButtonDown{Button::left, 10, 10});
-    viewer.handle(Moved{34, 10});
-    viewer.handle(ButtonUp{Button::left});
+    drag(viewer, 10, 10, 34, 10);
     EXPECT_NEAR(viewer.state().orbit.azimuth, before.azimuth - std::acos(-1.0) * 0.5, 1e-9);
     EXPECT_EQ(viewer.state().orbit.center, before.center);
-    viewer.handle(ButtonDown{Button::left, 10, 10, true});
-    viewer.handle(Moved{34, 10});
-    viewer.handle(ButtonUp{Button::left});
+    drag(viewer, 10, 10, 34, 10, true);
     EXPECT_NE(viewer.state().orbit.center, before.center);
     viewer.handle(Scrolled{2});
     EXPECT_LT(viewer.state().orbit.distance, before.distance);
@@ -231,9 +231,8 @@ TEST_F(ViewerTest, StepsAreMoreWhereThereIsSomethingToFind) {
     Viewer viewer(context(), desc(Layer::steps));
     (void)viewer.frame(false);
     ASSERT_TRUE(viewer.values().scale);
-    const auto steps = [&](uvec2 pixel) { return viewer.values().numbers[std::size_t{pixel.y} * width + pixel.x]; };
-    EXPECT_GT(steps(on_first), steps(uvec2(0, 0)));
-    EXPECT_GE(viewer.values().scale->hi(), steps(on_first));
+    EXPECT_GT(number_at(viewer, on_first), number_at(viewer, uvec2(0, 0)));
+    EXPECT_GE(viewer.values().scale->hi(), number_at(viewer, on_first));
 }
 
 TEST_F(ViewerTest, OrthographicEyesStandOutside) {
@@ -241,23 +240,17 @@ TEST_F(ViewerTest, OrthographicEyesStandOutside) {
     viewer.handle(KeyDown{"5"});
     for (int i = 0; i < 12; ++i) viewer.handle(Scrolled{1});
     EXPECT_EQ(at(viewer.frame(false), uvec2(width / 2, height / 2)), background) << "between the boxes";
-    viewer.handle(ButtonDown{Button::left, 10, 10, true});
-    viewer.handle(Moved{10.0 + width, 10});
-    viewer.handle(ButtonUp{Button::left});
+    drag(viewer, 10, 10, 10.0 + width, 10, true);
     EXPECT_EQ(at(viewer.frame(false), uvec2(width / 2, height / 2)), (Rgb{128, 128, 255}))
         << "the front, not the inside";
 }
 
 TEST_F(ViewerTest, ADoubleClickIsNoClick) {
     Viewer viewer(context(), desc());
-    const auto click = [&] {
-        viewer.handle(ButtonDown{Button::left, on_first.x + 0.5, on_first.y + 0.5});
-        viewer.handle(ButtonUp{Button::left});
-    };
-    click();
+    click(viewer, on_first);
     const std::optional<Pick> first = viewer.picked();
     viewer.handle(DoubleClick{on_first.x + 0.5, on_first.y + 0.5});
-    click();
+    click(viewer, on_first);
     EXPECT_EQ(viewer.picked()->ray.direction, first->ray.direction);
     viewer.handle(KeyDown{"B"});
     EXPECT_EQ(said.back().find("--pick"), std::string::npos) << "the pixel was another camera's: " << said.back();
@@ -278,10 +271,7 @@ TEST_F(ViewerTest, LevelsAndCamerasAreOneAfterTheOther) {
     for (const Level level : {Level::refined, Level::certified}) {
         viewer.handle(KeyDown{"L"});
         EXPECT_EQ(viewer.state().level, level);
-        const Raster& raster = viewer.frame(false);
-        std::size_t unlike = 0;  // rays that meet an edge differ
-        for (std::size_t i = 0; i < raster.pixels.size(); ++i) unlike += raster.pixels[i] != watertight.pixels[i];
-        EXPECT_LT(unlike, 100u);
+        EXPECT_LT(count_unlike(viewer.frame(false), watertight), 100u) << "rays that meet an edge differ";
     }
     viewer.handle(KeyDown{"L"});
     EXPECT_EQ(viewer.state().level, Level::fast);
@@ -292,10 +282,9 @@ TEST_F(ViewerTest, LevelsAndCamerasAreOneAfterTheOther) {
 TEST_F(ViewerTest, DistancesAreThoseOfThePlane) {
     Viewer viewer(context(), desc(Layer::distance));
     (void)viewer.frame(false);
-    const auto distance = [&](uvec2 pixel) { return viewer.values().numbers[std::size_t{pixel.y} * width + pixel.x]; };
-    EXPECT_NEAR(distance(uvec2(width / 2, height / 2)), 0.5, 0.1) << "between the boxes";
-    EXPECT_NEAR(distance(on_first), 0, 1e-12) << "the plane z = 0 is the backs of both";
-    EXPECT_GT(distance(uvec2(0, 0)), 0.5);
+    EXPECT_NEAR(number_at(viewer, uvec2(width / 2, height / 2)), 0.5, 0.1) << "between the boxes";
+    EXPECT_NEAR(number_at(viewer, on_first), 0, 1e-12) << "the plane z = 0 is the backs of both";
+    EXPECT_GT(number_at(viewer, uvec2(0, 0)), 0.5);
 }
 
 TEST_F(ViewerTest, AnalysesAreLayers) {
@@ -305,8 +294,7 @@ TEST_F(ViewerTest, AnalysesAreLayers) {
     viewer.handle(KeyDown{"F11"});
     (void)viewer.frame(false);
     EXPECT_NE(viewer.message().find("click a face"), std::string::npos);
-    viewer.handle(ButtonDown{Button::left, on_first.x + 0.5, on_first.y + 0.5});
-    viewer.handle(ButtonUp{Button::left});
+    click(viewer, on_first);
     (void)viewer.frame(false);
     EXPECT_EQ(viewer.values().numbers.size(), 24u);
     viewer.handle(KeyDown{"F12"});
@@ -317,8 +305,7 @@ TEST_F(ViewerTest, AnalysesAreLayers) {
 TEST_F(ViewerTest, BadFilesAndNoPixelsLeaveItAsItIs) {
     Viewer viewer(context(), desc());
     const std::vector<Rgb> before = viewer.frame(false).pixels;
-    std::ofstream(folder() / "garbage.glb") << "no scene";
-    viewer.handle(Dropped{folder() / "garbage.glb"});
+    viewer.handle(Dropped{folder_.write("garbage.glb", "no scene")});
     EXPECT_NE(viewer.message().find("garbage.glb"), std::string::npos) << viewer.message();
     EXPECT_EQ(viewer.frame(false).pixels, before);
     viewer.handle(Resized{0, 0});

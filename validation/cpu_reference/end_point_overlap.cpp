@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "validation/cpu_reference/end_point_overlap.h"
+#include "validation/cpu_reference/reference.h"
 
 #include <numeric>
 
@@ -71,11 +71,6 @@ std::vector<LeafTriangle> leaves_of(const BuiltTree& tree) {
     return leaves;
 }
 
-struct Visit {
-    uint node;
-    uint depth;
-};
-
 // Returns the area of a triangle within boxes that are not above its leaf. Boxes above it hold all of the triangle:
 // they are counted with the others, and subtracted once their number is known.
 double overlap_of(const SwGeometry& geometry, const LeafTriangle& leaf) {
@@ -83,19 +78,19 @@ double overlap_of(const SwGeometry& geometry, const LeafTriangle& leaf) {
     if (!is_active(around) || geometry.bvh.root == leaf.reference) return 0;
     double overlap = 0;
     uint above = 0;
-    std::vector<Visit> waiting = {{geometry.bvh.root, 0}};
+    std::vector<std::pair<uint, uint>> waiting = {{geometry.bvh.root, 0}};  // nodes and their depths
     while (!waiting.empty()) {
-        const Visit here = waiting.back();
+        const auto [index, depth] = waiting.back();
         waiting.pop_back();
-        const AnyNode node = node_of(geometry, here.node);
+        const AnyNode node = node_of(geometry, index);
         for (uint slot = 0; slot < slots_of(geometry); ++slot) {
             if (!has_child(node.slots, slot)) continue;
             const LeafBox box = box_in(geometry, node, slot);
             if (is_apart(around, box)) continue;
             overlap += area_within(leaf.triangle, box);
             const uint child = child_in(geometry, node, slot);
-            if (child == leaf.reference) above = here.depth + 1;
-            if (is_inner_child(geometry, child)) waiting.push_back({child, here.depth + 1});
+            if (child == leaf.reference) above = depth + 1;
+            if (is_inner_child(geometry, child)) waiting.emplace_back(child, depth + 1);
         }
     }
     return std::max(overlap - above * area_within(leaf.triangle, around), 0.0);

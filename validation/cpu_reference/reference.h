@@ -9,6 +9,7 @@
 #include "engine/accel/trace_desc.h"
 #include "engine/scene/mesh.h"
 #include "swtlas/structures.h"
+#include "swtlas/tree.h"
 
 namespace twinray::reference {
 
@@ -34,12 +35,9 @@ struct Hierarchy {
     uint root = NOTHING;
     LeafBox box = empty_box();
 };
-// Builds top-down: a range is cut at its highest split.
+// Builds top-down: a range is cut at its highest split. With quality ploc it has the clusters of both parts to join.
 Hierarchy hierarchy(std::span<const LeafBox> boxes, const Codes& codes, std::span<const uint> order,
                     bool leaves_are_sorted, BuildQuality quality = BuildQuality::fast);
-
-// Builds the tree of quality ploc: a range is cut at its highest split, and has the clusters of both parts to join.
-Hierarchy ploc(std::span<const LeafBox> boxes, const Codes& codes, std::span<const uint> order, bool leaves_are_sorted);
 
 // Returns a tree of layout bvh2, whose nodes know their edges.
 Hierarchy linked(Hierarchy tree);
@@ -53,5 +51,11 @@ std::vector<CompressedRecord> records_of_triangles(const Hierarchy& tree, std::s
                                                    std::span<const uvec3> triangles, uint width,
                                                    std::span<const Leaf> leaves = {});
 std::vector<CompressedRecord> records_of_instances(const Hierarchy& tree, uint leaf_count, uint width);
+
+// A measure that distinguishes trees of equal surface-area cost: how many boxes a ray enters in vain near where it ends
+// (Aila, Karras, Laine, "On Quality Metrics of Bounding Volume Hierarchies", 2013; all costs are 1).
+// Returns, over all boxes but the root's, the area of the triangles within that do not lie below the box, over the area
+// of all; 0 if no box holds a part of such a triangle. `tree` is that of a geometry of triangles, in any layout.
+double end_point_overlap(const BuiltTree& tree);
 
 }  // namespace twinray::reference

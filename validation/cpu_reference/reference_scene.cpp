@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "validation/cpu_reference/reference_scene.h"
 
-#include <utility>
-
-#include "engine/accel/features_of.h"
+#include "engine/accel/trace_desc.h"
 #include "swtlas/plan.h"
 #include "swtlas/triangle_pairs.h"
 
@@ -74,7 +72,7 @@ void Scene::build() {
     build_refinement(records);
 }
 
-// The references of engine/world_bound.comp and engine/refine_gather.comp.
+// The references of engine/world_bound.comp and engine/refine.comp.
 void Scene::build_refinement(std::span<const InstanceRecord> records) {
     bound_ = {empty_box().lo, empty_box().hi};
     refined_.clear();

@@ -2,13 +2,10 @@
 // The software accelerator on the host: built and traversed serially, to compare kernels with and to step through.
 #pragma once
 
-#include <memory>
-
 #include <twinray/scene.h>
 
 #include "engine/accel/geometry.h"
 #include "engine/accel/refinement.h"
-#include "engine/accel/trace_desc.h"
 #include "validation/cpu_reference/reference.h"
 
 namespace twinray::reference {

@@ -1,13 +1,61 @@
 // SPDX-License-Identifier: MIT
-// The closest hit of a scene in rational arithmetic: the last word where float64 cannot tell.
+// Rational arithmetic, in which sums, products and quotients of floats are exact: a line against a triangle, and the
+// closest hit of a scene, the last word where float64 cannot tell.
 #pragma once
 
+#include <gmpxx.h>
+
+#include <optional>
 #include <vector>
 
-#include "validation/exact/triangle.h"
 #include "validation/reference/reference_scene.h"
 
 namespace twinray::exact {
+
+using Rational = mpq_class;
+
+// A vector of rational numbers.
+struct Vector {
+    Rational x, y, z;
+
+    const Rational& operator[](int axis) const { return axis == 0 ? x : axis == 1 ? y : z; }
+};
+
+// Takes finite numbers.
+inline Vector vector_of(const dvec3& v) { return {v.x, v.y, v.z}; }
+
+inline Vector operator+(const Vector& a, const Vector& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline Vector operator-(const Vector& a, const Vector& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline Rational dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline Vector cross(const Vector& a, const Vector& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+// Returns the nearest double; ties go to the even one.
+double rounded(const Rational& value);
+
+// The points origin + t direction.
+struct Line {
+    Vector origin, direction;
+};
+
+// The part of a closed triangle that a line meets: its inside, an edge but no vertex, or a vertex.
+enum class Incidence : std::uint8_t { interior, edge, vertex };
+
+struct Crossing {
+    Rational t;     // in units of the line's direction
+    Rational u, v;  // the point is (1-u-v) v0 + u v1 + v v2
+    Incidence incidence = Incidence::interior;
+    bool along = false;  // the normal (v1 - v0) x (v2 - v0) points along the line
+};
+
+// Returns six times the signed volumes of (direction, b, c), (direction, c, a) and (direction, a, b), vertices a, b, c
+// seen from the origin: the weights of the vertices, times a common factor. The line meets the triangle where they have
+// one sign; one that is 0 puts the line on the edge across from its vertex; all 0: the plane contains the line.
+std::array<Rational, 3> edge_values(const Line& line, const Triangle64& triangle);
+
+// Returns nothing if the line passes the triangle or lies in its plane. t may be negative.
+std::optional<Crossing> crossing(const Line& line, const Triangle64& triangle);
 
 struct TriangleId {
     uint instance = 0;

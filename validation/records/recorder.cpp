@@ -5,10 +5,10 @@
 #include <chrono>
 #include <cstdio>
 #include <nlohmann/json.hpp>
-#include <string>
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
+#include "validation/reference/float_probe.h"
 
 namespace twinray {
 namespace {
@@ -37,11 +37,31 @@ std::vector<std::string> columns_of(const std::vector<Row>& rows) {
     for (const Row& row : rows) {
         auto after = columns.begin();
         for (const auto& [column, cell] : row) {
-            const auto found = std::find(columns.begin(), columns.end(), column);
+            const auto found = std::ranges::find(columns, column);
             after = std::next(found == columns.end() ? columns.insert(after, column) : found);
         }
     }
     return columns;
+}
+
+Values probe_of(Context& context) {
+    const FloatFacts& properties = probe_floats(context);
+    const std::vector<std::string> faults = robust_faults(properties);
+    return {{"product_ulp", properties.product_ulp},
+            {"sum_ulp", properties.sum_ulp},
+            {"quotient_ulp", properties.quotient_ulp},
+            {"square_root_ulp", properties.square_root_ulp},
+            {"inverse_square_root_ulp", properties.inverse_square_root_ulp},
+            {"contracts_precise", properties.contracts_precise},
+            {"contracts_plain", properties.contracts_plain},
+            {"fuses_fma", properties.fuses_fma},
+            {"error_free_products", properties.error_free_products},
+            {"keeps_denormals", properties.keeps_denormals},
+            {"compares_nan", properties.compares_nan},
+            {"min_max_drop_nan", properties.min_max_drop_nan},
+            {"has_float64", properties.has_float64},
+            {"has_exact_float64", properties.has_exact_float64},
+            {"watertightness", faults.empty() ? "can be claimed" : "cannot be claimed: " + joined(faults)}};
 }
 
 }  // namespace
@@ -101,7 +121,7 @@ void write_csv(const std::filesystem::path& file, std::span<const Record> record
     write_line([](const std::string& column) { return column; });
     for (const Row& row : rows)
         write_line([&](const std::string& column) {
-            const auto found = std::find_if(row.begin(), row.end(), [&](const auto& at) { return at.first == column; });
+            const auto found = std::ranges::find_if(row, [&](const auto& at) { return at.first == column; });
             return found == row.end() ? std::string() : found->second;
         });
     if (!out.flush()) fail("table '", file.string(), "' cannot be written");
@@ -138,6 +158,20 @@ std::string utc_now() {
                                    unsigned{date.month()}, unsigned{date.day()}, static_cast<int>(time.hours().count()),
                                    static_cast<int>(time.minutes().count()), static_cast<int>(time.seconds().count()));
     return {text, static_cast<std::size_t>(size)};
+}
+
+std::string api_version(const Context& context) {
+    const std::uint32_t api = context.properties().api_version;
+    return text(VK_API_VERSION_MAJOR(api), ".", VK_API_VERSION_MINOR(api), ".", VK_API_VERSION_PATCH(api));
+}
+
+nlohmann::json describe(const Context& context) {
+    return {
+        {"name", context.properties().name}, {"driver", context.properties().driver}, {"api", api_version(context)}};
+}
+
+RecordedDevice probed_device(Context& context) {
+    return {context.properties().name, context.properties().driver, api_version(context), probe_of(context)};
 }
 
 }  // namespace twinray

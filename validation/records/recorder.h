@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Writes the records of one run, and tells how busy the machine was meanwhile.
+// Writes the records of one run, and describes the device and how busy the machine was meanwhile.
 #pragma once
+
+#include <nlohmann/json_fwd.hpp>
 
 #include <filesystem>
 #include <fstream>
-#include <map>
-#include <optional>
-#include <span>
-#include <vector>
 
+#include "engine/core/context.h"
 #include "engine/core/platform.h"
 #include "validation/records/record.h"
 
@@ -74,5 +73,11 @@ JsonLines read_json_lines(const std::filesystem::path& file);
 
 // Returns the time now, as in Recorder::Run::started.
 std::string utc_now();
+
+std::string api_version(const Context& context);  // "1.4.305"
+nlohmann::json describe(const Context& context);  // {"name", "driver", "api"}
+
+// Returns the device with its arithmetic, measured on it, and whether watertightness can be claimed there.
+RecordedDevice probed_device(Context& context);
 
 }  // namespace twinray

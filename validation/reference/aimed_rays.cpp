@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "validation/reference/aimed_rays.h"
 
-#include <cmath>
-#include <limits>
-
 #include "engine/core/interruption.h"
-#include "validation/reference/draws.h"
 
 namespace twinray {
 namespace {

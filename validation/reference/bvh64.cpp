@@ -2,7 +2,6 @@
 #include "validation/reference/bvh64.h"
 
 #include <algorithm>
-#include <cassert>
 #include <numeric>
 
 #include "engine/core/interruption.h"

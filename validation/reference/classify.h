@@ -4,13 +4,6 @@
 // such ray exists (see Coverage), so a miss at a shared edge of a closed mesh is a leak and not an excuse.
 #pragma once
 
-#include <functional>
-#include <optional>
-#include <span>
-#include <vector>
-
-#include "engine/core/ray.h"
-#include <twinray/validation.h>
 #include "validation/reference/reference_scene.h"
 
 namespace twinray {
@@ -44,5 +37,10 @@ RayResult classify_any(const ReferenceScene& reference, const Ray& ray, const st
 std::vector<RayResult> classify_all(const ReferenceScene& reference, std::span<const Ray> rays,
                                     std::span<const Hit> software, std::span<const Hit> hardware,
                                     const Arbiter& arbiter = {});
+
+// Returns whether `closest`, the reference's closest hit of the ray, names for certain the triangle that exact
+// arithmetic names, or a miss where that misses: no triangle's outline, no other triangle's t and no end of the
+// interval is nearer to the decision than the rounding of float64 (see ErrorBounds).
+bool is_certain(const ReferenceScene& reference, const Ray& ray, const ReferenceHit& closest);
 
 }  // namespace twinray

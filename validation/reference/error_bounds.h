@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Bounds of what a kernel of given precision can tell about one ray and one triangle.
+// Bounds of what a kernel of given precision can tell about one ray and one triangle, and whether rounding can let a
+// ray slip between the triangles of one instance.
 #pragma once
 
-#include "engine/core/ray.h"
 #include "validation/reference/reference_scene.h"
 
 namespace twinray {
@@ -61,5 +61,25 @@ class ErrorBounds {
     double origin_error_ = 0;     // in units of rounding_
     double direction_error_ = 0;  // relative, in units of rounding_
 };
+
+struct PatchTriangle {
+    std::array<vec3, 3> vertices;  // shared vertices are recognised by equal positions, as Vulkan does
+    TriangleBound bound;
+};
+
+enum class Coverage {
+    certain,     // however the vertices are displaced, the ray hits one of the triangles
+    open,        // some ray within the radius misses them all: a silhouette or the rim of an open mesh
+    unresolved,  // neither: only edges that meet without sharing their vertices close the way (T-junction,
+                 // non-manifold edge)
+};
+
+// The patch must hold every triangle of one instance, in the wanted depth range, that comes within the
+// largest radius of the ray. A triangle that contains the ray by more than its radius is certain. Otherwise:
+// a kernel that treats a shared vertex alike in all its triangles sees a map of displaced vertices, each off by up
+// to the radius. Take triangles that are joined along all edges near the ray, oriented alike. Their common boundary
+// stays away from the ray under every such displacement, so the number of times they wind around the ray - the
+// degree of the map - cannot change; if it is not 0, one of them contains the ray always.
+Coverage coverage(std::span<const PatchTriangle> patch);
 
 }  // namespace twinray

@@ -2,7 +2,6 @@
 #include "validation/reference/float_probe.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <map>
 #include <mutex>
@@ -10,6 +9,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/kernel.h"
+#include "engine/core/commands.h"
 #include "verify_float_probe.spv.h"
 #include "verify_float_probe64.spv.h"
 
@@ -95,13 +95,9 @@ bool has_exact_float64(Context& context, const Buffer& source, std::span<const F
 FloatFacts probe(Context& context) {
     const std::vector<FloatCase> cases = probe_cases();
     const Kernel<FloatProbeArgs> kernel(context, {.name = "verify_float_probe", .spirv = verify_float_probe_spirv});
-    const Buffer source = make_buffer(context, "float cases", cases.size() * sizeof(FloatCase)),
+    const Buffer source = uploaded(context, "float cases", std::span<const FloatCase>(cases)),
                  answers = make_buffer(context, "float answers", cases.size() * sizeof(FloatAnswer));
     Commands commands(context, "float probe");
-    {
-        const auto pass = commands.pass("float cases");
-        commands.upload(source, std::span(cases));
-    }
     kernel.dispatch(commands, {source.ref<FloatCase>(), answers.ref<FloatAnswer>(), static_cast<uint>(cases.size()), 0},
                     cases.size());
     commands.submit();

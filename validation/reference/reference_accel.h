@@ -2,8 +2,6 @@
 // The reference behind AbstractAccel.
 #pragma once
 
-#include <optional>
-
 #include <twinray/abstract_accel.h>
 
 #include "validation/reference/reference_scene.h"

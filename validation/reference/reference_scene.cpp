@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "validation/reference/reference_scene.h"
 
-#include <algorithm>
 #include <tuple>
 
 #include "engine/core/error.h"
@@ -191,7 +190,7 @@ std::vector<uint> ReferenceScene::instances_hit(const Ray& ray, double t_limit) 
         }
         return true;
     });
-    std::sort(found.begin(), found.end());
+    std::ranges::sort(found);
     return found;
 }
 
@@ -203,7 +202,7 @@ std::vector<uint> ReferenceScene::instances_near(const Ray& ray) const {
         for (uint i = first; i < last; ++i) found.push_back(placed_[bvh_.order()[i]]);
         return true;
     });
-    std::sort(found.begin(), found.end());
+    std::ranges::sort(found);
     return found;
 }
 

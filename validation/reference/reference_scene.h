@@ -2,15 +2,10 @@
 // The reference: closest and any hits of a scene in float64 on the CPU, independent of both accelerators.
 #pragma once
 
-#include <memory>
-#include <span>
-#include <vector>
-
 #include <twinray/scene.h>
 
 #include "engine/accel/geometry.h"
 #include "engine/core/ray.h"
-#include <twinray/geometry.h>
 #include "validation/reference/geometry64.h"
 #include <twinray/validation.h>
 
@@ -36,6 +31,11 @@ struct Placement64 {
     dvec3 point_to_object(const dvec3& p) const { return is_identity ? p : to_object * (p - offset); }
     dvec3 vector_to_object(const dvec3& v) const { return is_identity ? v : to_object * v; }
 };
+
+// Returns |m| |v|.
+inline dvec3 absolute_product(const glm::dmat3& m, const dvec3& v) {
+    return abs(m[0]) * std::abs(v.x) + abs(m[1]) * std::abs(v.y) + abs(m[2]) * std::abs(v.z);
+}
 
 // Answers by the rules of twinray/glsl/ray.h and docs/architecture.md, "Rules of a hit": t_min < t < t_max, both
 // exclusive; a negative t_min counts as 0; rays that are not is_traceable() miss; triangles that are not finite or have

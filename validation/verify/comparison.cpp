@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "validation/verify/comparison.h"
 
-#include <algorithm>
 #include <iomanip>
 #include <nlohmann/json.hpp>
 

@@ -10,51 +10,30 @@
 namespace twinray {
 namespace {
 
-// Every 17th of the 256 published colours of viridis; those in between are within 7 of 255 of a straight line.
-constexpr std::array<Rgb, 16> viridis = {{{68, 1, 84},
-                                          {72, 26, 108},
-                                          {71, 47, 125},
-                                          {65, 68, 135},
-                                          {57, 86, 140},
-                                          {49, 104, 142},
-                                          {42, 120, 142},
-                                          {35, 136, 142},
-                                          {31, 152, 139},
-                                          {34, 168, 132},
-                                          {53, 183, 121},
-                                          {84, 197, 104},
-                                          {122, 209, 81},
-                                          {165, 219, 54},
-                                          {210, 226, 27},
-                                          {253, 231, 37}}};
+// Every 17th of the 256 published colours of viridis, 0xRRGGBB; those in between are within 7 of 255 of a straight
+// line.
+constexpr std::array<uint, 16> viridis = {0x440154, 0x481a6c, 0x472f7d, 0x414487, 0x39568c, 0x31688e,
+                                          0x2a788e, 0x23888e, 0x1f988b, 0x22a884, 0x35b779, 0x54c568,
+                                          0x7ad151, 0xa5db36, 0xd2e21b, 0xfde725};
 
 // Sixteenths of the published map of Moreland; those in between are as near.
-constexpr std::array<Rgb, 17> cool_to_warm = {{{59, 76, 192},
-                                               {78, 104, 216},
-                                               {98, 130, 234},
-                                               {119, 154, 247},
-                                               {141, 176, 254},
-                                               {163, 194, 254},
-                                               {185, 208, 249},
-                                               {204, 217, 237},
-                                               {221, 220, 220},
-                                               {235, 211, 198},
-                                               {244, 197, 173},
-                                               {247, 177, 148},
-                                               {244, 154, 123},
-                                               {236, 127, 99},
-                                               {222, 97, 77},
-                                               {203, 62, 56},
-                                               {180, 4, 38}}};
+constexpr std::array<uint, 17> cool_to_warm = {0x3b4cc0, 0x4e68d8, 0x6282ea, 0x779af7, 0x8db0fe, 0xa3c2fe,
+                                               0xb9d0f9, 0xccd9ed, 0xdddcdc, 0xebd3c6, 0xf4c5ad, 0xf7b194,
+                                               0xf49a7b, 0xec7f63, 0xde614d, 0xcb3e38, 0xb40426};
 
 std::uint8_t mixed(std::uint8_t a, std::uint8_t b, double weight) {
     return static_cast<std::uint8_t>(std::lround(a + (b - a) * weight));
 }
 
-Rgb interpolated(std::span<const Rgb> colors, double position) {
+Rgb rgb_of(uint color) {
+    return {static_cast<std::uint8_t>(color >> 16), static_cast<std::uint8_t>(color >> 8),
+            static_cast<std::uint8_t>(color)};
+}
+
+Rgb interpolated(std::span<const uint> colors, double position) {
     const double place = std::clamp(position, 0.0, 1.0) * static_cast<double>(colors.size() - 1);
     const auto below = std::min(static_cast<std::size_t>(place), colors.size() - 2);
-    const Rgb a = colors[below], b = colors[below + 1];
+    const Rgb a = rgb_of(colors[below]), b = rgb_of(colors[below + 1]);
     const double weight = place - static_cast<double>(below);
     return {mixed(a.r, b.r, weight), mixed(a.g, b.g, weight), mixed(a.b, b.b, weight)};
 }

@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import logging
+import threading
+from contextlib import nullcontext
 from typing import Any, Literal
 
 import numpy as np
@@ -12,30 +14,58 @@ from numpy.typing import ArrayLike, NDArray
 from . import _core
 from ._arrays import Array, array_of, count_of, number_of, rows_of
 from ._frame import rounding_of
-from ._progress import in_blocks, watched
 from .scene import Scene
 
-HIT_CLASSES = (
-    "AGREE",
-    "TIE",
-    "BOUNDARY",
-    "BOUNDARY_HW_MISS",
-    "UNSPECIFIED",
-    "INVALID_INPUT",
-    "SW_LEAK",
-    "SW_FALSE",
-    "T_ERR",
-    "HW_LEAK",
-    "HW_FALSE",
-    "HW_T_ERR",
-    "HW_RANGE",
-)
-PAIR_CLASSES = ("separate", "vertex_touch", "edge_touch", "coplanar_touch", "coplanar_overlap", "crossing")
-
+HIT_CLASSES: tuple[str, ...] = _core.HIT_CLASSES
+PAIR_CLASSES: tuple[str, ...] = _core.PAIR_CLASSES
 
 _log = logging.getLogger("twinray")
 _RAYS_OF_BLOCK = 1 << 22  # at least
 _RAYS_OF_WARNING = 1 << 16  # about, to look for points on surfaces
+_MOST_STEPS = 100  # of a progress bar
+_SECONDS = 0.1  # from one look at progress to the next
+
+
+class _NoBar:
+    @staticmethod
+    def update(count):
+        pass
+
+
+def _bar(total, name):
+    try:
+        from tqdm.auto import tqdm
+    except ImportError:
+        raise ImportError("progress: requires tqdm, which is not installed") from None
+    return tqdm(total=total, desc=name, leave=False)
+
+
+def _in_blocks(count, least, name, work):
+    """Call work(first, last) for blocks of at least `least` of `count` items. Without a name there is no bar."""
+    step = max(least, -(-count // _MOST_STEPS))
+    with nullcontext(_NoBar) if name is None else _bar(count, name) as bar:
+        for first in range(0, count, step):
+            work(first, min(first + step, count))
+            bar.update(min(step, count - first))
+
+
+def _watched(scene, name, work):
+    """Return the result of work() while another thread counts its rows. Only this thread receives Ctrl-C."""
+    has_ended = threading.Event()
+
+    def count(bar):
+        while not has_ended.wait(_SECONDS):
+            done, bar.total = scene._core.progress()
+            bar.update(done - bar.n)
+
+    with _bar(None, name) as bar:
+        counting = threading.Thread(target=count, args=(bar,))
+        counting.start()
+        try:
+            return work()
+        finally:
+            has_ended.set()
+            counting.join()
 
 
 def _scene_of(mesh):
@@ -135,7 +165,7 @@ def visible(
         found = _core.visible(scene._core, rows[part], across, sides[part], near, far)
         seen[part] = found.reshape(seen[part].shape)
 
-    in_blocks(len(rows), 1 + _RAYS_OF_BLOCK // max(1, len(across)), "visible" if progress else None, fill)
+    _in_blocks(len(rows), 1 + _RAYS_OF_BLOCK // max(1, len(across)), "visible" if progress else None, fill)
     if normals is None and near == 0:
         _tell_of_own_surfaces(scene, rows[~seen.all(axis=1)], across)
     return seen
@@ -193,7 +223,7 @@ def view_factors(
         factors = _core.ViewFactors(scene._core, *options)
         return factors.rows(0, factors.count())
 
-    found = watched(scene, "view factors", all_rows) if progress else all_rows()
+    found = _watched(scene, "view factors", all_rows) if progress else all_rows()
     return matrices_of(found, len(found["first"]) - 1, sparse)
 
 

@@ -170,9 +170,7 @@ class Scene:
         FileNotFoundError
             If the command is not found. It is built from the same sources, but is not part of this package.
         """
-        from . import viewing
-
-        return viewing.view(self, *options)
+        return picture.view(self, *options)
 
     def bounds(self) -> NDArray[np.float64]:
         """Return the lowest and highest corner of the box around all triangles: (2, 3) float64.

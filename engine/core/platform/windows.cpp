@@ -198,8 +198,8 @@ std::vector<std::string> arguments_of(int count, char**) {
 }
 
 fs::path cache_folder() {
-    const auto folder = variable(L"LOCALAPPDATA");
-    return folder ? fs::path(*folder) / "twinray" / "cache" : fs::path();
+    const fs::path folder = state_folder();
+    return folder.empty() ? folder : folder / "cache";
 }
 
 fs::path state_folder() {

@@ -1,17 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Turns a glTF file into a Scene: here its meshes by the shape that skins and morph targets give them; each other step
 // has a file of its own.
-#include <algorithm>
-#include <array>
-#include <map>
 #include <set>
 
-#include "engine/scene/flat.h"
-#include "engine/scene/importers/gltf_file.h"
-#include "engine/scene/importers/gltf_mesh.h"
-#include "engine/scene/importers/gltf_nodes.h"
+#include "engine/scene/importers/gltf_parts.h"
 #include "engine/scene/importers/importers.h"
-#include "engine/scene/rig.h"
 
 namespace twinray {
 namespace {
@@ -80,9 +73,7 @@ class ShapeReader {
 
     static GltfMesh flattened(GltfMesh mesh, const std::array<double, 3>& direction) {
         const dvec3 lost(direction[0], direction[1], direction[2]);
-        flatten_positions(mesh.mesh.positions, lost);
-        flatten_normals(mesh.mesh.normals, lost);
-        flatten_tangents(mesh.mesh.tangents, lost);
+        flatten(mesh.mesh, lost);
         for (MorphTarget& target : mesh.motion.targets) {
             flatten_positions(target.positions, lost);
             target.normals.clear(), target.tangents.clear();
@@ -98,10 +89,7 @@ class ShapeReader {
         if (shape.skin >= 0)
             check_joints(file_, moving.motion, rig_.skins[std::size_t(shape.skin)].joints.size(),
                          gltf_name("mesh", shape.mesh, file_.model.meshes[shape.mesh].name));
-        MeshVertices at_rest = deformed(rig_, moving, rest_);
-        shown.positions = std::move(at_rest.positions);
-        shown.normals = std::move(at_rest.normals);
-        shown.tangents = std::move(at_rest.tangents);
+        set_vertices(shown, deformed(rig_, moving, rest_));
         scene_.meshes.push_back(std::move(shown));
         rig_.meshes.push_back(std::move(moving));
     }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "engine/scene/importers/gltf_accessor.h"
+#include "engine/scene/importers/gltf_file.h"
 
-#include <cmath>
-#include <cstdint>
 #include <cstring>
 
 namespace twinray {
@@ -67,6 +65,12 @@ std::size_t stride_of(const GltfFile& file, const tinygltf::Accessor& accessor, 
     return stride == 0 ? element_size : stride;
 }
 
+bool is_unsigned(int component_type) {
+    return component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
+           component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
+           component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+}
+
 std::uint32_t unsigned_at(const Bytes& bytes, std::size_t i, std::size_t size) {
     std::uint32_t value = 0;
     std::memcpy(&value, bytes.data() + i * size, size);  // little endian
@@ -78,10 +82,8 @@ void apply_sparse(const GltfFile& file, const tinygltf::Accessor& accessor, std:
                   const std::string& object) {
     const auto& sparse = accessor.sparse;
     const std::size_t index_size = component_size(sparse.indices.componentType);
-    const bool is_unsigned = sparse.indices.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
-                             sparse.indices.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
-                             sparse.indices.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
-    if (!is_unsigned) file.fail(object, " sparse: indices have component type ", sparse.indices.componentType);
+    if (!is_unsigned(sparse.indices.componentType))
+        file.fail(object, " sparse: indices have component type ", sparse.indices.componentType);
     if (sparse.count < 0 || std::size_t(sparse.count) > accessor.count)
         file.fail(object, " sparse: count ", sparse.count, " is not within 0 and the accessor's ", accessor.count);
     // The offsets are int in tinygltf 2.5, unsigned in later versions.
@@ -90,12 +92,12 @@ void apply_sparse(const GltfFile& file, const tinygltf::Accessor& accessor, std:
 
     const std::size_t count = std::size_t(sparse.count);
     Bytes indices(count * index_size), values(count * element_size);
-    copy_elements(file,
-                  {sparse.indices.bufferView, std::size_t(sparse.indices.byteOffset), index_size, index_size, count},
-                  indices.data(), object + " sparse indices");
-    copy_elements(file,
-                  {sparse.values.bufferView, std::size_t(sparse.values.byteOffset), element_size, element_size, count},
-                  values.data(), object + " sparse values");
+    const auto read = [&](const auto& part, std::size_t size, Bytes& elements, const char* name) {
+        copy_elements(file, {part.bufferView, std::size_t(part.byteOffset), size, size, count}, elements.data(),
+                      object + name);
+    };
+    read(sparse.indices, index_size, indices, " sparse indices");
+    read(sparse.values, element_size, values, " sparse values");
     for (std::size_t i = 0; i < count; ++i) {
         const std::size_t index = unsigned_at(indices, i, index_size);
         if (index >= accessor.count)
@@ -115,10 +117,7 @@ ElementType type_of(int components) {
 }
 
 Elements gather(const GltfFile& file, int index, int components, const std::string& object) {
-    const auto& accessors = file.model.accessors;
-    if (index < 0 || std::size_t(index) >= accessors.size())
-        file.fail(object, ": accessor ", index, " does not exist; the file has ", accessors.size());
-    const tinygltf::Accessor& accessor = accessors[std::size_t(index)];
+    const tinygltf::Accessor& accessor = file.entry(file.model.accessors, index, object, "accessor");
     if (const ElementType type = type_of(components); accessor.type != type.id)
         file.fail(object, ": accessor ", index, " is not of type ", type.name);
     const std::size_t size = component_size(accessor.componentType) * std::size_t(components);
@@ -163,23 +162,17 @@ std::vector<float> converted(const Elements& elements) {
 
 std::vector<float> read_floats(const GltfFile& file, int accessor, int components, const std::string& object) {
     const Elements elements = gather(file, accessor, components, object);
-    switch (elements.component_type) {
-        case TINYGLTF_COMPONENT_TYPE_FLOAT: return converted<float>(elements);
-        case TINYGLTF_COMPONENT_TYPE_BYTE: return converted<std::int8_t>(elements);
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return converted<std::uint8_t>(elements);
-        case TINYGLTF_COMPONENT_TYPE_SHORT: return converted<std::int16_t>(elements);
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return converted<std::uint16_t>(elements);
-        default:
-            file.fail(object, ": component type ", elements.component_type,
-                      " is neither float nor an integer of 8 or 16 bits");
-    }
+    std::vector<float> floats;
+    const auto convert = [&](auto number) { floats = converted<decltype(number)>(elements); };
+    if (!visit_component(std::uint64_t(elements.component_type), convert))
+        file.fail(object, ": component type ", elements.component_type,
+                  " is neither float nor an integer of 8 or 16 bits");
+    return floats;
 }
 
 std::vector<uint> read_indices(const GltfFile& file, int accessor, const std::string& object) {
     const Elements elements = gather(file, accessor, 1, object);
-    if (elements.component_type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE &&
-        elements.component_type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
-        elements.component_type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)
+    if (!is_unsigned(elements.component_type))
         file.fail(object, ": component type ", elements.component_type, " is not an unsigned integer");
     const std::size_t size = component_size(elements.component_type);
     std::vector<uint> indices(elements.bytes.size() / size);

@@ -122,10 +122,7 @@ std::span<const std::uint8_t> stream_bytes(const GltfFile& file, const json& ran
 }
 
 std::span<const std::uint8_t> view_bytes(const GltfFile& file, int view, const std::string& object) {
-    const auto& views = file.model.bufferViews;
-    if (view < 0 || std::size_t(view) >= views.size())
-        file.fail(object, ": bufferView ", view, " does not exist; the file has ", views.size());
-    const tinygltf::BufferView& v = views[std::size_t(view)];
+    const tinygltf::BufferView& v = file.entry(file.model.bufferViews, view, object, "bufferView");
     if (v.buffer < 0 || std::size_t(v.buffer) >= file.model.buffers.size())
         file.fail(object, ": bufferView ", view, " names buffer ", v.buffer, "; the file has ",
                   file.model.buffers.size());
@@ -153,6 +150,39 @@ GltfFile open_gltf(const std::filesystem::path& path) {
     file.model.buffers = std::move(buffers);
     file.model.images = std::move(images);
     return file;
+}
+
+std::string gltf_name(const char* kind, std::size_t index, const std::string& name) {
+    return name.empty() ? text(kind, " ", index) : text(kind, " ", index, " '", name, "'");
+}
+
+const tinygltf::Value* find_member(const tinygltf::Value& object, const std::string& key) {
+    return object.Has(key) ? &object.Get(key) : nullptr;
+}
+
+const tinygltf::Value* find_extension(const tinygltf::ExtensionMap& extensions, const std::string& name) {
+    const auto found = extensions.find(name);
+    return found == extensions.end() ? nullptr : &found->second;
+}
+
+double number_or(const tinygltf::Value& object, const std::string& key, double fallback) {
+    const tinygltf::Value* member = find_member(object, key);
+    return member && member->IsNumber() ? member->GetNumberAsDouble() : fallback;
+}
+
+int index_of(const tinygltf::Value& object, const std::string& key) {
+    const double number = number_or(object, key, -1);
+    return number >= 0 && number <= INT32_MAX ? static_cast<int>(number) : -1;
+}
+
+std::vector<double> numbers_of(const tinygltf::Value& object, const std::string& key) {
+    std::vector<double> numbers;
+    const tinygltf::Value* member = find_member(object, key);
+    if (!member || !member->IsArray()) return numbers;
+    for (int i = 0; i < static_cast<int>(member->ArrayLen()); ++i)
+        if (const tinygltf::Value& entry = member->Get(i); entry.IsNumber())
+            numbers.push_back(entry.GetNumberAsDouble());
+    return numbers;
 }
 
 }  // namespace twinray

@@ -6,18 +6,13 @@
 #pragma once
 
 #include <algorithm>
-#include <filesystem>
-#include <memory>
-#include <optional>
-#include <span>
-#include <string>
-#include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 #include <tiny_gltf.h>
 
 #include "engine/core/error.h"
-#include "engine/scene/bytes.h"
+#include "engine/core/files.h"
+#include "twinray/glsl/cpp.h"
 
 namespace twinray {
 
@@ -33,6 +28,14 @@ struct GltfFile {
     template <class... Parts>
     [[noreturn]] void fail(const Parts&... parts) const {
         throw Error(text("'", path.string(), "': ", parts...));
+    }
+
+    // Returns an entry of a list. Throws Error naming `object` where an index of the file is beyond it.
+    template <class List>
+    auto& entry(List& list, int index, const std::string& object, const char* kind) const {
+        if (index < 0 || std::size_t(index) >= list.size())
+            fail(object, ": ", kind, " ", index, " does not exist; the file has ", list.size());
+        return list[std::size_t(index)];
     }
 
     // Returns the text of an error of fail(), without the file's name, which begins it.
@@ -66,5 +69,37 @@ const tinygltf::Value* find_extension(const tinygltf::ExtensionMap& extensions, 
 double number_or(const tinygltf::Value& object, const std::string& key, double fallback);
 int index_of(const tinygltf::Value& object, const std::string& key);  // -1 when absent
 std::vector<double> numbers_of(const tinygltf::Value& object, const std::string& key);
+
+// Read accessors, with every byte range, type and sparse index checked before memory is touched.
+
+// Calls visit(T{}) with the type T of a component. Returns false unless that is float or an integer of 8 or 16 bits.
+template <class Visit>
+bool visit_component(std::uint64_t type, const Visit& visit) {
+    switch (type) {
+        case TINYGLTF_COMPONENT_TYPE_FLOAT: return visit(float{}), true;
+        case TINYGLTF_COMPONENT_TYPE_BYTE: return visit(std::int8_t{}), true;
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return visit(std::uint8_t{}), true;
+        case TINYGLTF_COMPONENT_TYPE_SHORT: return visit(std::int16_t{}), true;
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return visit(std::uint16_t{}), true;
+        default: return false;
+    }
+}
+
+// Reads all elements as floats, `components` per element. Normalised integers become [-1, 1] or [0, 1], others keep
+// their value (KHR_mesh_quantization). 16 components are a matrix, column by column. `object` names the reader in
+// errors: "mesh 2 'wheel' primitive 0 POSITION".
+std::vector<float> read_floats(const GltfFile& file, int accessor, int components, const std::string& object);
+
+// The same as vectors of N floats.
+template <int N>
+std::vector<Vec<N, float>> read_vectors(const GltfFile& file, int accessor, const std::string& object) {
+    const std::vector<float> floats = read_floats(file, accessor, N, object);
+    std::vector<Vec<N, float>> vectors(floats.size() / N);
+    for (std::size_t i = 0; i < floats.size(); ++i) vectors[i / N][static_cast<int>(i % N)] = floats[i];
+    return vectors;
+}
+
+// Reads unsigned scalars of 8, 16 or 32 bits.
+std::vector<uint> read_indices(const GltfFile& file, int accessor, const std::string& object);
 
 }  // namespace twinray

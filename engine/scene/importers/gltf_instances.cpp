@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include <cmath>
+// Reads the objects that nodes carry: instances of meshes, cameras and lights.
+#include <numbers>
 
-#include "engine/scene/flat.h"
-#include "engine/scene/importers/gltf_accessor.h"
-#include "engine/scene/importers/gltf_nodes.h"
+#include "engine/scene/importers/gltf_parts.h"
 
 namespace twinray {
 namespace {
@@ -84,8 +83,7 @@ void add_instances(GltfFile& file, const std::vector<GltfNode>& nodes, std::size
                    std::vector<GltfInstance>& instances) {
     const GltfNode& node = nodes[index];
     const tinygltf::Node& source = file.model.nodes[node.index];
-    if (source.mesh < 0 || std::size_t(source.mesh) >= file.model.meshes.size())
-        file.fail(node.name, ": mesh ", source.mesh, " does not exist; the file has ", file.model.meshes.size());
+    file.entry(file.model.meshes, source.mesh, node.name, "mesh");
     const Placements placements(file, node);
     std::size_t singular = 0;
     for (std::size_t i = 0; i < placements.count(); ++i) {
@@ -120,6 +118,51 @@ void add_instances(GltfFile& file, const std::vector<GltfNode>& nodes, std::size
                        " placements, whose transform leaves the mesh no area"));
 }
 
+std::string name_or(const std::string& name, const std::string& fallback) { return name.empty() ? fallback : name; }
+
+// Returns false if the lens cannot form an image.
+bool set_lens(const tinygltf::Camera& source, Camera& camera) {
+    if (source.type == "orthographic") {
+        camera.orthographic_half_height = static_cast<float>(std::abs(source.orthographic.ymag));
+        if (!(*camera.orthographic_half_height > 0)) return false;
+        const double aspect = std::abs(source.orthographic.xmag / source.orthographic.ymag);
+        if (aspect > 0) camera.aspect = static_cast<float>(aspect);
+        return true;
+    }
+    camera.vertical_fov = static_cast<float>(source.perspective.yfov);
+    if (source.perspective.aspectRatio > 0) camera.aspect = static_cast<float>(source.perspective.aspectRatio);
+    return camera.vertical_fov > 0 && camera.vertical_fov < std::numbers::pi_v<float>;
+}
+
+std::optional<Light::Kind> light_kind_of(const std::string& type) {
+    if (type == "directional") return Light::Kind::directional;
+    if (type == "point") return Light::Kind::point;
+    if (type == "spot") return Light::Kind::spot;
+    return std::nullopt;
+}
+
+// Returns false if it was skipped.
+bool add_light(GltfFile& file, const GltfNode& node, const tinygltf::Light& source, Scene& scene) {
+    const std::optional<Light::Kind> kind = light_kind_of(source.type);
+    const std::optional<glm::dmat4> frame = unscaled(node.frame);
+    if (!kind || !frame) {
+        file.warn(text(node.name, ": skipped its light, ",
+                       kind ? "whose frame has no extent" : "of unknown type '" + source.type + "'"));
+        return false;
+    }
+    Light light;
+    light.name = name_or(source.name, node.name);
+    light.kind = *kind;
+    if (source.color.size() == 3) light.color = vec3(source.color[0], source.color[1], source.color[2]);
+    light.color *= static_cast<float>(source.intensity);
+    place_light(light, *frame);
+    if (source.range > 0) light.range = static_cast<float>(source.range);
+    light.inner_cone = static_cast<float>(source.spot.innerConeAngle);
+    light.outer_cone = static_cast<float>(source.spot.outerConeAngle);
+    scene.lights.push_back(std::move(light));
+    return true;
+}
+
 }  // namespace
 
 std::vector<GltfInstance> read_gltf_instances(GltfFile& file, const std::vector<GltfNode>& nodes, const Rig& rig) {
@@ -129,6 +172,41 @@ std::vector<GltfInstance> read_gltf_instances(GltfFile& file, const std::vector<
         if (file.model.nodes[nodes[i].index].mesh != -1 && nodes[i].is_visible)
             add_instances(file, nodes, i, driven[i], instances);
     return instances;
+}
+
+std::vector<Rig::Attachment> read_gltf_cameras(GltfFile& file, const std::vector<GltfNode>& nodes, Scene& scene) {
+    std::vector<Rig::Attachment> attachments;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const GltfNode& node = nodes[i];
+        const int index = file.model.nodes[node.index].camera;
+        if (index == -1) continue;
+        const tinygltf::Camera& source = file.entry(file.model.cameras, index, node.name, "camera");
+        Camera camera;
+        camera.name = name_or(source.name, node.name);
+        const std::optional<glm::dmat4> frame = unscaled(node.frame);
+        if (!frame || !set_lens(source, camera)) {
+            file.warn(node.name + ": skipped its camera, whose frame or field of view is empty");
+            continue;
+        }
+        camera.camera_to_world = rounded_transform(file, *frame, node.name);
+        scene.cameras.push_back(std::move(camera));
+        attachments.push_back({.node = static_cast<std::int32_t>(i)});
+    }
+    return attachments;
+}
+
+std::vector<Rig::Attachment> read_gltf_lights(GltfFile& file, const std::vector<GltfNode>& nodes, Scene& scene) {
+    std::vector<Rig::Attachment> attachments;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const GltfNode& node = nodes[i];
+        const auto& extensions = file.model.nodes[node.index].extensions;
+        const tinygltf::Value* extension = find_extension(extensions, "KHR_lights_punctual");
+        if (!extension || !find_member(*extension, "light") || !node.is_visible) continue;
+        const int index = index_of(*extension, "light");
+        if (add_light(file, node, file.entry(file.model.lights, index, node.name, "light"), scene))
+            attachments.push_back({.node = static_cast<std::int32_t>(i)});
+    }
+    return attachments;
 }
 
 }  // namespace twinray

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "engine/scene/importers/gltf_json.h"
 
-#include <bit>
 #include <cstring>
 
 #include "engine/core/json_input.h"
@@ -20,21 +19,17 @@ std::uint32_t word_at(const Bytes& bytes, std::size_t offset) {
     return word;
 }
 
-struct Container {
-    std::string_view json;
-    Bytes binary;
-};
-
 constexpr const char* old_version_remedy = "convert it with `gltf-pipeline -i in.gltf -o out.gltf`";
 
-Container split_glb(const GltfFile& file, const Bytes& bytes) {
+// Returns the JSON.
+std::string_view split_glb(const GltfFile& file, const Bytes& bytes, Bytes& binary) {
     if (bytes.size() < 20) file.fail("the GLB header is truncated (", bytes.size(), " of 20 bytes)");
     if (const std::uint32_t version = word_at(bytes, 4); version != 2)
         file.fail("is GLB version ", version, "; only glTF 2.0 is supported, ", old_version_remedy);
     const std::size_t length = word_at(bytes, 8);
     if (length > bytes.size()) file.fail("the GLB is truncated: ", bytes.size(), " of ", length, " bytes");
 
-    Container container;
+    std::string_view source;
     for (std::size_t offset = 12; offset + 8 <= length;) {
         const std::size_t size = word_at(bytes, offset), type = word_at(bytes, offset + 4);
         offset += 8;
@@ -42,19 +37,14 @@ Container split_glb(const GltfFile& file, const Bytes& bytes) {
             file.fail("the GLB chunk at byte ", offset - 8, " has ", size, " bytes, but only ", length - offset,
                       " follow");
         const auto first = bytes.begin() + static_cast<std::ptrdiff_t>(offset);
-        if (type == CHUNK_JSON && container.json.empty())
-            container.json = {reinterpret_cast<const char*>(bytes.data()) + offset, size};
-        else if (type == CHUNK_BIN && container.binary.empty())
-            container.binary.assign(first, first + static_cast<std::ptrdiff_t>(size));
+        if (type == CHUNK_JSON && source.empty())
+            source = {reinterpret_cast<const char*>(bytes.data()) + offset, size};
+        else if (type == CHUNK_BIN && binary.empty())
+            binary.assign(first, first + static_cast<std::ptrdiff_t>(size));
         offset += size;
     }
-    if (container.json.empty()) file.fail("the GLB has no JSON chunk");
-    return container;
-}
-
-Container split(const GltfFile& file, const Bytes& bytes) {
-    const std::string_view all(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    return all.starts_with("glTF") ? split_glb(file, bytes) : Container{all, {}};
+    if (source.empty()) file.fail("the GLB has no JSON chunk");
+    return source;
 }
 
 json parse(const GltfFile& file, std::string_view source) {
@@ -102,8 +92,9 @@ std::optional<std::uint64_t> json_count(const json& object, const char* key) {
 
 GltfJson read_gltf_json(const GltfFile& file) {
     const Bytes bytes = read_file(file.path);
-    Container container = split(file, bytes);
-    GltfJson result{parse(file, container.json), std::move(container.binary)};
+    const std::string_view all(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    GltfJson result;
+    result.root = parse(file, all.starts_with("glTF") ? split_glb(file, bytes, result.binary) : all);
     if (!result.root.is_object()) file.fail("the JSON is not an object");
     check_version(file, result.root);
     check_lists(file, result.root);

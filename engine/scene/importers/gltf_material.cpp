@@ -1,18 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "engine/scene/importers/gltf_mesh.h"
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <map>
-#include <vector>
+#include "engine/scene/importers/gltf_parts.h"
 
 #include "engine/scene/images.h"
 #include "twinray/glsl/vector_math.h"
 
 namespace twinray {
 namespace {
-
 // Keeps factors of glTF materials within what glTF allows: outside of it, surfaces would emit by reflecting.
 float clamped_factor(double factor, double lo, double hi) {
     return static_cast<float>(factor >= lo ? std::min(factor, hi) : lo);  // NaN becomes lo
@@ -53,108 +46,6 @@ tinygltf::ExtensionMap extensions_of(const tinygltf::Value& reference) {
     return extensions;
 }
 
-// Turns glTF texture references into Textures, decoding each image on its first use.
-class GltfTextures {
-  public:
-    GltfTextures(GltfFile& file, std::vector<Image>& images);
-
-    // `object` names the user in errors and warnings: "material 3 'wood' baseColorTexture".
-    Texture read(int texture, int texcoord, const tinygltf::ExtensionMap& extensions, const std::string& object);
-
-    // Reads a reference inside an extension: member `key` of `parent`; no texture if it is absent.
-    Texture read(const tinygltf::Value& parent, const std::string& key, const std::string& object);
-
-    // Returns a picture of roughness, from the glossiness in the alpha of a picture, for metallic_roughness_texture,
-    // whose factors are 1; nothing if all alpha is 1.
-    std::optional<Texture> roughness_of(const Texture& glossiness, float factor);
-
-    // Returns whether the texture's image could not be decoded.
-    bool is_placeholder(const Texture& texture) const {
-        return texture.image >= 0 && images_[std::size_t(texture.image)].is_placeholder;
-    }
-
-  private:
-    std::int32_t image_of(const tinygltf::Texture& texture, const std::string& object);
-    Image decode(std::size_t image) const;
-    void set_sampler(Texture& result, int sampler, const std::string& object) const;
-
-    GltfFile& file_;
-    std::vector<Image>& images_;
-    std::vector<std::int32_t> decoded_;  // glTF image -> index into images_, -1 = not yet
-    std::map<std::pair<std::int32_t, float>, std::int32_t> roughness_;  // image and factor -> index into images_
-};
-
-GltfTextures::GltfTextures(GltfFile& file, std::vector<Image>& images)
-    : file_(file), images_(images), decoded_(file.model.images.size(), -1) {}
-
-Texture GltfTextures::read(int texture, int texcoord, const tinygltf::ExtensionMap& extensions,
-                           const std::string& object) {
-    if (texture == -1) return {};
-    const auto& textures = file_.model.textures;
-    if (texture < 0 || std::size_t(texture) >= textures.size())
-        file_.fail(object, ": texture ", texture, " does not exist; the file has ", textures.size());
-    Texture result;
-    result.image = image_of(textures[std::size_t(texture)], object);
-    set_sampler(result, textures[std::size_t(texture)].sampler, object);
-    if (const tinygltf::Value* transform = find_extension(extensions, "KHR_texture_transform")) {
-        set_transform(result, *transform);
-        if (const int own = index_of(*transform, "texCoord"); own >= 0) texcoord = own;
-    }
-    if (texcoord != 0 && texcoord != 1)
-        file_.warn(text(object, ": asks for TEXCOORD_", texcoord, ", shown with TEXCOORD_0"));
-    result.uv_set = texcoord == 1 ? 1 : 0;
-    return result;
-}
-
-Texture GltfTextures::read(const tinygltf::Value& parent, const std::string& key, const std::string& object) {
-    const tinygltf::Value* reference = find_member(parent, key);
-    if (!reference) return {};
-    const int texcoord = std::max(index_of(*reference, "texCoord"), 0);
-    return read(index_of(*reference, "index"), texcoord, extensions_of(*reference), text(object, " ", key));
-}
-
-std::int32_t GltfTextures::image_of(const tinygltf::Texture& texture, const std::string& object) {
-    int source = texture.source;
-    for (const char* name : {"KHR_texture_basisu", "EXT_texture_webp", "EXT_texture_avif", "MSFT_texture_dds"})
-        if (const tinygltf::Value* extension = find_extension(texture.extensions, name); extension && source < 0)
-            source = index_of(*extension, "source");
-    if (source == -1) return -1;
-    if (source < 0 || std::size_t(source) >= file_.model.images.size())
-        file_.fail(object, ": image ", source, " does not exist; the file has ", file_.model.images.size());
-    std::int32_t& index = decoded_[std::size_t(source)];
-    if (index < 0) {
-        index = static_cast<std::int32_t>(images_.size());
-        try {
-            images_.push_back(decode(std::size_t(source)));
-        } catch (const Error& e) {
-            const std::string name =
-                gltf_name("image", std::size_t(source), file_.model.images[std::size_t(source)].name);
-            file_.warn(text(e.what(), "; ", name, " is shown as a checkerboard"));
-            images_.push_back(checkerboard_image(name));
-        }
-    }
-    return index;
-}
-
-Image GltfTextures::decode(std::size_t index) const {
-    const tinygltf::Image& image = file_.model.images[index];
-    const std::string name = gltf_name("image", index, image.name.empty() ? image.uri.substr(0, 40) : image.name);
-    if (!image.uri.empty()) return decode_image(read_uri(file_, image.uri), name);
-    if (image.bufferView < 0) fail(name, " has neither a uri nor a bufferView");
-    return decode_image(view_bytes(file_, image.bufferView, name), name);
-}
-
-// A picture has one level, so that minFilter has no effect.
-void GltfTextures::set_sampler(Texture& result, int sampler, const std::string& object) const {
-    if (sampler == -1) return;
-    const auto& samplers = file_.model.samplers;
-    if (sampler < 0 || std::size_t(sampler) >= samplers.size())
-        file_.fail(object, ": sampler ", sampler, " does not exist; the file has ", samplers.size());
-    result.wrap_u = wrap_of(samplers[std::size_t(sampler)].wrapS);
-    result.wrap_v = wrap_of(samplers[std::size_t(sampler)].wrapT);
-    if (samplers[std::size_t(sampler)].magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST) result.filter = Filter::nearest;
-}
-
 // Roughness is 1 - factor * alpha, in the green channel.
 template <class T>
 std::vector<T> roughness_texels(const std::vector<T>& rgba, float factor) {
@@ -173,21 +64,105 @@ bool uses_alpha(const std::vector<T>& rgba) {
     return false;
 }
 
-std::optional<Texture> GltfTextures::roughness_of(const Texture& glossiness, float factor) {
-    if (glossiness.image < 0) return std::nullopt;
-    const Image& source = images_[std::size_t(glossiness.image)];
-    if (!uses_alpha(source.rgba) && !uses_alpha(source.rgba16)) return std::nullopt;
-    const auto [known, is_new] =
-        roughness_.try_emplace({glossiness.image, factor}, static_cast<std::int32_t>(images_.size()));
-    if (is_new) {
-        Image image{source.name + " (roughness)", source.width, source.height, roughness_texels(source.rgba, factor)};
-        image.rgba16 = roughness_texels(source.rgba16, factor);
-        images_.push_back(std::move(image));
+// Turns glTF texture references into Textures, decoding each image on its first use.
+class GltfTextures {
+  public:
+    GltfTextures(GltfFile& file, std::vector<Image>& images)
+        : file_(file), images_(images), decoded_(file.model.images.size(), -1) {}
+
+    // `object` names the user in errors and warnings: "material 3 'wood' baseColorTexture".
+    Texture read(int texture, int texcoord, const tinygltf::ExtensionMap& extensions, const std::string& object) {
+        if (texture == -1) return {};
+        const tinygltf::Texture& source = file_.entry(file_.model.textures, texture, object, "texture");
+        Texture result;
+        result.image = image_of(source, object);
+        set_sampler(result, source.sampler, object);
+        if (const tinygltf::Value* transform = find_extension(extensions, "KHR_texture_transform")) {
+            set_transform(result, *transform);
+            if (const int own = index_of(*transform, "texCoord"); own >= 0) texcoord = own;
+        }
+        if (texcoord != 0 && texcoord != 1)
+            file_.warn(text(object, ": asks for TEXCOORD_", texcoord, ", shown with TEXCOORD_0"));
+        result.uv_set = texcoord == 1 ? 1 : 0;
+        return result;
     }
-    Texture roughness = glossiness;
-    roughness.image = known->second;
-    return roughness;
-}
+
+    // Reads a reference inside an extension: member `key` of `parent`; no texture if it is absent.
+    Texture read(const tinygltf::Value& parent, const std::string& key, const std::string& object) {
+        const tinygltf::Value* reference = find_member(parent, key);
+        if (!reference) return {};
+        const int texcoord = std::max(index_of(*reference, "texCoord"), 0);
+        return read(index_of(*reference, "index"), texcoord, extensions_of(*reference), text(object, " ", key));
+    }
+
+    // Returns a picture of roughness, from the glossiness in the alpha of a picture, for metallic_roughness_texture,
+    // whose factors are 1; nothing if all alpha is 1.
+    std::optional<Texture> roughness_of(const Texture& glossiness, float factor) {
+        if (glossiness.image < 0) return std::nullopt;
+        const Image& source = images_[std::size_t(glossiness.image)];
+        if (!uses_alpha(source.rgba) && !uses_alpha(source.rgba16)) return std::nullopt;
+        const auto [known, is_new] =
+            roughness_.try_emplace({glossiness.image, factor}, static_cast<std::int32_t>(images_.size()));
+        if (is_new) {
+            Image image{source.name + " (roughness)", source.width, source.height,
+                        roughness_texels(source.rgba, factor)};
+            image.rgba16 = roughness_texels(source.rgba16, factor);
+            images_.push_back(std::move(image));
+        }
+        Texture roughness = glossiness;
+        roughness.image = known->second;
+        return roughness;
+    }
+
+    // Returns whether the texture's image could not be decoded.
+    bool is_placeholder(const Texture& texture) const {
+        return texture.image >= 0 && images_[std::size_t(texture.image)].is_placeholder;
+    }
+
+  private:
+    std::int32_t image_of(const tinygltf::Texture& texture, const std::string& object) {
+        int source = texture.source;
+        for (const char* name : {"KHR_texture_basisu", "EXT_texture_webp", "EXT_texture_avif", "MSFT_texture_dds"})
+            if (const tinygltf::Value* extension = find_extension(texture.extensions, name); extension && source < 0)
+                source = index_of(*extension, "source");
+        if (source == -1) return -1;
+        const tinygltf::Image& image = file_.entry(file_.model.images, source, object, "image");
+        std::int32_t& index = decoded_[std::size_t(source)];
+        if (index < 0) {
+            index = static_cast<std::int32_t>(images_.size());
+            try {
+                images_.push_back(decode(std::size_t(source)));
+            } catch (const Error& e) {
+                const std::string name = gltf_name("image", std::size_t(source), image.name);
+                file_.warn(text(e.what(), "; ", name, " is shown as a checkerboard"));
+                images_.push_back(checkerboard_image(name));
+            }
+        }
+        return index;
+    }
+
+    Image decode(std::size_t index) const {
+        const tinygltf::Image& image = file_.model.images[index];
+        const std::string name = gltf_name("image", index, image.name.empty() ? image.uri.substr(0, 40) : image.name);
+        if (!image.uri.empty()) return decode_image(read_uri(file_, image.uri), name);
+        if (image.bufferView < 0) fail(name, " has neither a uri nor a bufferView");
+        return decode_image(view_bytes(file_, image.bufferView, name), name);
+    }
+
+    // A picture has one level, so that minFilter has no effect.
+    void set_sampler(Texture& result, int sampler, const std::string& object) const {
+        if (sampler == -1) return;
+        const tinygltf::Sampler& source = file_.entry(file_.model.samplers, sampler, object, "sampler");
+        result.wrap_u = wrap_of(source.wrapS);
+        result.wrap_v = wrap_of(source.wrapT);
+        if (source.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST) result.filter = Filter::nearest;
+    }
+
+    GltfFile& file_;
+    std::vector<Image>& images_;
+    std::vector<std::int32_t> decoded_;  // glTF image -> index into images_, -1 = not yet
+    std::map<std::pair<std::int32_t, float>, std::int32_t> roughness_;  // image and factor -> index into images_
+};
 
 constexpr double no_limit = 1e30;
 
@@ -289,57 +264,46 @@ AlphaMode alpha_mode_of(const std::string& mode) {
     return mode == "BLEND" ? AlphaMode::blend : AlphaMode::opaque;
 }
 
-class MaterialReader {
-  public:
-    MaterialReader(GltfFile& file, std::vector<Image>& images) : file_(file), textures_(file, images) {}
+void read_surface(const tinygltf::Material& source, Material& material) {
+    const auto& pbr = source.pbrMetallicRoughness;
+    material.base_color = color_factor<4>(pbr.baseColorFactor, vec4(1));
+    material.metallic = unit_factor(pbr.metallicFactor);
+    material.roughness = unit_factor(pbr.roughnessFactor);
+    material.emission = color_factor<3>(source.emissiveFactor, vec3(0));
+    material.alpha_mode = alpha_mode_of(source.alphaMode);
+    material.alpha_cutoff = clamped_factor(source.alphaCutoff, 0, no_limit);
+    material.double_sided = source.doubleSided;
+    material.normal_scale = clamped_factor(source.normalTexture.scale, -no_limit, no_limit);
+}
 
-    Material read(std::size_t index) {
-        const tinygltf::Material& source = file_.model.materials[index];
-        const std::string object = gltf_name("material", index, source.name);
-        Material material;
-        material.name = source.name.empty() ? text("material ", index) : source.name;
-        read_surface(source, material);
-        read_texture_slots(source, object, material);
-        for (const auto& [name, extension] : source.extensions)
-            read_extension(name, {extension, object, textures_}, material);
-        return material;
-    }
-
-  private:
-    static void read_surface(const tinygltf::Material& source, Material& material) {
-        const auto& pbr = source.pbrMetallicRoughness;
-        material.base_color = color_factor<4>(pbr.baseColorFactor, vec4(1));
-        material.metallic = unit_factor(pbr.metallicFactor);
-        material.roughness = unit_factor(pbr.roughnessFactor);
-        material.emission = color_factor<3>(source.emissiveFactor, vec3(0));
-        material.alpha_mode = alpha_mode_of(source.alphaMode);
-        material.alpha_cutoff = clamped_factor(source.alphaCutoff, 0, 1e30);
-        material.double_sided = source.doubleSided;
-        material.normal_scale = clamped_factor(source.normalTexture.scale, -1e30, 1e30);
-    }
-
-    void read_texture_slots(const tinygltf::Material& source, const std::string& object, Material& material) {
-        const auto& pbr = source.pbrMetallicRoughness;
-        const auto slot = [&](const auto& info, const char* name) {
-            return textures_.read(info.index, info.texCoord, info.extensions, text(object, " ", name));
-        };
-        material.base_color_texture = slot(pbr.baseColorTexture, "baseColorTexture");
-        material.metallic_roughness_texture = slot(pbr.metallicRoughnessTexture, "metallicRoughnessTexture");
-        material.emission_texture = slot(source.emissiveTexture, "emissiveTexture");
-        material.normal_texture = slot(source.normalTexture, "normalTexture");
-        // A checkerboard of colours is a warning; read as normals it would only spoil the shape.
-        if (textures_.is_placeholder(material.normal_texture)) material.normal_texture = {};
-    }
-
-    GltfFile& file_;
-    GltfTextures textures_;
-};
+void read_texture_slots(const tinygltf::Material& source, GltfTextures& textures, const std::string& object,
+                        Material& material) {
+    const auto& pbr = source.pbrMetallicRoughness;
+    const auto slot = [&](const auto& info, const char* name) {
+        return textures.read(info.index, info.texCoord, info.extensions, text(object, " ", name));
+    };
+    material.base_color_texture = slot(pbr.baseColorTexture, "baseColorTexture");
+    material.metallic_roughness_texture = slot(pbr.metallicRoughnessTexture, "metallicRoughnessTexture");
+    material.emission_texture = slot(source.emissiveTexture, "emissiveTexture");
+    material.normal_texture = slot(source.normalTexture, "normalTexture");
+    // A checkerboard of colours is a warning; read as normals it would only spoil the shape.
+    if (textures.is_placeholder(material.normal_texture)) material.normal_texture = {};
+}
 
 }  // namespace
 
 void read_gltf_materials(GltfFile& file, Scene& scene) {
-    MaterialReader reader(file, scene.images);
-    for (std::size_t i = 0; i < file.model.materials.size(); ++i) scene.materials.push_back(reader.read(i));
+    GltfTextures textures(file, scene.images);
+    for (std::size_t i = 0; i < file.model.materials.size(); ++i) {
+        const tinygltf::Material& source = file.model.materials[i];
+        const std::string object = gltf_name("material", i, source.name);
+        Material& material = scene.materials.emplace_back();
+        material.name = source.name.empty() ? text("material ", i) : source.name;
+        read_surface(source, material);
+        read_texture_slots(source, textures, object, material);
+        for (const auto& [name, extension] : source.extensions)
+            read_extension(name, {extension, object, textures}, material);
+    }
 }
 
 }  // namespace twinray

@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/scene/importers/gltf_mesh.h"
-
-#include <algorithm>
-#include <cmath>
-#include <map>
+#include "engine/scene/importers/gltf_parts.h"
 
 #include "engine/scene/mesh.h"
 
@@ -16,15 +12,6 @@ using tinygltf::Primitive;
 struct VertexLayout {
     bool normals = false, tangents = false, uvs = false, second_uvs = false, colors = false;
     MotionLayout motion;
-};
-
-// The same arrays as in Mesh.
-struct GltfVertices {
-    std::vector<vec3> positions, normals;
-    std::vector<vec4> tangents;
-    std::vector<vec2> uvs, second_uvs;
-    std::vector<vec4> colors;
-    VertexMotion motion;
 };
 
 bool has_alpha(const GltfFile& file, int accessor) {
@@ -85,9 +72,10 @@ VertexLayout vertex_layout(const GltfFile& file, const std::vector<const Primiti
 
 // Returns the vertices of one primitive: their attributes and motion data. Missing parts of the layout are 0, missing
 // colours white, and missing second texture coordinates equal the first.
-GltfVertices read_gltf_vertices(GltfFile& file, const Primitive& primitive, const VertexLayout& layout,
-                                const std::string& object) {
-    GltfVertices v;
+GltfMesh read_gltf_vertices(GltfFile& file, const Primitive& primitive, const VertexLayout& layout,
+                            const std::string& object) {
+    GltfMesh vertices;
+    Mesh& v = vertices.mesh;
     v.positions = read_vectors<3>(file, attribute_of(primitive.attributes, "POSITION"), object + " POSITION");
     const std::size_t count = v.positions.size();
     const char* second = attribute_of(primitive.attributes, "TEXCOORD_1") < 0 ? "TEXCOORD_0" : "TEXCOORD_1";
@@ -96,25 +84,15 @@ GltfVertices read_gltf_vertices(GltfFile& file, const Primitive& primitive, cons
     if (layout.uvs) v.uvs = read_attribute<2>(file, primitive.attributes, "TEXCOORD_0", count, object);
     if (layout.second_uvs) v.second_uvs = read_attribute<2>(file, primitive.attributes, second, count, object);
     if (layout.colors) v.colors = read_colors(file, primitive, count, object);
-    v.motion = read_gltf_motion(file, primitive, layout.motion, count, object);
-    return v;
+    vertices.motion = read_gltf_motion(file, primitive, layout.motion, count, object);
+    return vertices;
 }
 
-GltfVertices picked_vertices(const GltfVertices& all, const std::vector<uint>& vertices) {
-    return {picked(all.positions, 1, vertices), picked(all.normals, 1, vertices),    picked(all.tangents, 1, vertices),
-            picked(all.uvs, 1, vertices),       picked(all.second_uvs, 1, vertices), picked(all.colors, 1, vertices),
-            picked(all.motion, vertices)};
-}
-
-// Appends to the arrays of a mesh and its motion.
-void append_to(Mesh& mesh, VertexMotion& motion, const GltfVertices& vertices) {
-    append(mesh.positions, vertices.positions);
-    append(mesh.normals, vertices.normals);
-    append(mesh.tangents, vertices.tangents);
-    append(mesh.uvs, vertices.uvs);
-    append(mesh.second_uvs, vertices.second_uvs);
-    append(mesh.colors, vertices.colors);
-    append(motion, vertices.motion);
+GltfMesh picked_vertices(const GltfMesh& all, const std::vector<uint>& vertices) {
+    GltfMesh result{{}, picked(all.motion, vertices), {}};
+    for_each_vertex_array([&](auto& some, const auto& values) { some = picked(values, 1, vertices); }, result.mesh,
+                          all.mesh);
+    return result;
 }
 
 bool makes_triangles(const Primitive& primitive) {
@@ -175,10 +153,11 @@ class MeshReader {
         std::size_t count = 0;
     };
 
-    uint append_vertices(const GltfVertices& vertices) {
+    uint append_vertices(const GltfMesh& vertices) {
         const std::size_t base = mesh_.positions.size();
-        if (base + vertices.positions.size() > UINT32_MAX) file_.fail(name_, ": has over 2^32 vertices");
-        append_to(mesh_, motion_, vertices);
+        if (base + vertices.mesh.positions.size() > UINT32_MAX) file_.fail(name_, ": has over 2^32 vertices");
+        for_each_vertex_array([](auto& all, const auto& part) { append(all, part); }, mesh_, vertices.mesh);
+        append(motion_, vertices.motion);
         return static_cast<uint>(base);
     }
 
@@ -208,22 +187,23 @@ class MeshReader {
     Part shared_part(const Primitive& primitive, const std::string& object) {
         const std::vector<int> key = accessors_of(primitive);
         if (const auto found = parts_.find(key); found != parts_.end()) return found->second;
-        const GltfVertices vertices = read_gltf_vertices(file_, primitive, layout_, object);
-        return parts_[key] = {append_vertices(vertices), vertices.positions.size()};
+        const GltfMesh vertices = read_gltf_vertices(file_, primitive, layout_, object);
+        return parts_[key] = {append_vertices(vertices), vertices.mesh.positions.size()};
     }
 
     // A flat face needs vertices of its own.
     void add_flat(const Primitive& primitive, const std::string& object) {
-        const GltfVertices shared = read_gltf_vertices(file_, primitive, layout_, object);
+        const GltfMesh shared = read_gltf_vertices(file_, primitive, layout_, object);
         std::vector<uint> indices;
-        for (const uvec3& t : read_triangles(primitive, shared.positions.size(), object))
+        for (const uvec3& t : read_triangles(primitive, shared.mesh.positions.size(), object))
             indices.insert(indices.end(), {t.x, t.y, t.z});
-        GltfVertices own = picked_vertices(shared, indices);
+        GltfMesh own = picked_vertices(shared, indices);
         std::vector<uvec3> own_triangles;
-        for (uint i = 0; i + 2 < own.positions.size(); i += 3) {
-            const dvec3 a(own.positions[i]), b(own.positions[i + 1]), c(own.positions[i + 2]);
+        const std::vector<vec3>& positions = own.mesh.positions;
+        for (uint i = 0; i + 2 < positions.size(); i += 3) {
+            const dvec3 a(positions[i]), b(positions[i + 1]), c(positions[i + 2]);
             const dvec3 normal = unit_or_zero(cross(b - a, c - a));
-            std::fill_n(&own.normals[i], 3, normal == dvec3(0) ? vec3(0, 0, 1) : vec3(normal));
+            std::fill_n(&own.mesh.normals[i], 3, normal == dvec3(0) ? vec3(0, 0, 1) : vec3(normal));
             own_triangles.emplace_back(i, i + 1, i + 2);
         }
         add_triangles(own_triangles, append_vertices(own), primitive, object);
@@ -231,8 +211,7 @@ class MeshReader {
 
     void add_triangles(const std::vector<uvec3>& triangles, uint base, const Primitive& primitive,
                        const std::string& object) {
-        if (primitive.material >= 0 && std::size_t(primitive.material) >= materials_.size())
-            file_.fail(name_, ": material ", primitive.material, " does not exist; the file has ", materials_.size());
+        if (primitive.material >= 0) file_.entry(materials_, primitive.material, name_, "material");
         for (const uvec3& triangle : triangles) mesh_.triangles.push_back(triangle + base);
         const std::size_t before = mesh_.materials.size();
         const uint material = static_cast<uint>(primitive.material < 0 ? materials_.size() : primitive.material);
@@ -285,6 +264,15 @@ class MeshReader {
     std::vector<std::vector<uint>> variants_;
 };
 
+constexpr const char* variants_extension = "KHR_materials_variants";
+
+// Returns the entries of a list in the extension; none if there is no such list.
+std::vector<tinygltf::Value> entries_of(const tinygltf::ExtensionMap& extensions, const char* list) {
+    const tinygltf::Value* extension = find_extension(extensions, variants_extension);
+    const tinygltf::Value* member = extension ? find_member(*extension, list) : nullptr;
+    return member && member->IsArray() ? member->Get<tinygltf::Value::Array>() : std::vector<tinygltf::Value>();
+}
+
 }  // namespace
 
 int attribute_of(const GltfAttributes& attributes, const std::string& name) {
@@ -300,6 +288,35 @@ void check_element_count(const GltfFile& file, std::size_t count, std::size_t ve
 
 GltfMesh read_gltf_mesh(GltfFile& file, std::size_t index, const std::vector<Material>& materials, bool is_skinned) {
     return MeshReader(file, index, materials, is_skinned).read();
+}
+
+std::vector<std::string> read_variant_names(const GltfFile& file) {
+    std::vector<std::string> names;
+    for (const tinygltf::Value& variant : entries_of(file.model.extensions, "variants")) {
+        const tinygltf::Value* name = find_member(variant, "name");
+        names.push_back(name && name->IsString() ? name->Get<std::string>() : text("variant ", names.size()));
+    }
+    return names;
+}
+
+std::vector<int> read_variant_materials(const GltfFile& file, const tinygltf::Primitive& primitive,
+                                        const std::string& object) {
+    const std::vector<tinygltf::Value> mappings = entries_of(primitive.extensions, "mappings");
+    if (mappings.empty()) return {};
+    const std::size_t count = entries_of(file.model.extensions, "variants").size();
+    std::vector<int> materials(count, -1);
+    for (const tinygltf::Value& mapping : mappings) {
+        const int material = index_of(mapping, "material");
+        if (material < 0 || std::size_t(material) >= file.model.materials.size())
+            file.fail(object, ": ", variants_extension, " names material ", material, "; the file has ",
+                      file.model.materials.size());
+        for (const double variant : numbers_of(mapping, "variants")) {
+            if (!(variant >= 0) || !(variant < static_cast<double>(count)))
+                file.fail(object, ": ", variants_extension, " names variant ", variant, "; the file has ", count);
+            materials[static_cast<std::size_t>(variant)] = material;
+        }
+    }
+    return materials;
 }
 
 }  // namespace twinray

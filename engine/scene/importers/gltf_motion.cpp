@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/scene/importers/gltf_mesh.h"
-
-#include <cmath>
+#include "engine/scene/importers/gltf_parts.h"
 
 namespace twinray {
 namespace {

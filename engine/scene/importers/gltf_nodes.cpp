@@ -1,10 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/scene/importers/gltf_nodes.h"
-
-#include <algorithm>
-#include <cmath>
-
-#include "twinray/glsl/cpp.h"
+#include "engine/scene/importers/gltf_parts.h"
 
 namespace twinray {
 namespace {
@@ -87,11 +82,6 @@ std::vector<int> shown_roots(GltfFile& file, const std::vector<int>& parents) {
     return roots;
 }
 
-glm::dmat4 read_matrix(const GltfFile& file, const std::vector<double>& numbers, const std::string& object) {
-    if (numbers.size() != 16) file.fail(object, ": matrix has ", numbers.size(), " numbers instead of 16");
-    return affine_matrix(file, std::span<const double, 16>(numbers), object + ": matrix");
-}
-
 bool is_visible(const GltfFile& file, std::size_t index, const std::string& object) {
     const tinygltf::Value* extension = find_extension(file.model.nodes[index].extensions, "KHR_node_visibility");
     const tinygltf::Value* visible = extension ? find_member(*extension, "visible") : nullptr;
@@ -105,10 +95,12 @@ Rig::Node read_local(const GltfFile& file, std::size_t index, std::int32_t paren
     node.name = source.name;
     node.parent = parent;
     node.is_fixed = !source.matrix.empty();
-    if (node.is_fixed)
-        node.matrix = read_matrix(file, source.matrix, object);
-    else
+    if (!node.is_fixed)
         node.rest = read_trs(file, source.translation, source.rotation, source.scale, object);
+    else if (source.matrix.size() == 16)
+        node.matrix = affine_matrix(file, std::span<const double, 16>(source.matrix), object + ": matrix");
+    else
+        file.fail(object, ": matrix has ", source.matrix.size(), " numbers instead of 16");
     return node;
 }
 

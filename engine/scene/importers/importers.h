@@ -3,8 +3,6 @@
 // after the last one. `origin`: the argument of load_scene().
 #pragma once
 
-#include <filesystem>
-
 #include <twinray/scene.h>
 
 namespace twinray {

@@ -1,26 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Reads .obj files.
-#include <twinray/scene.h>
-
 #include <algorithm>
-#include <array>
 #include <charconv>
-#include <limits>
-#include <map>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "engine/core/error.h"
-#include "engine/scene/bytes.h"
 #include "engine/scene/importers/importers.h"
 #include "engine/scene/importers/mtl.h"
-#include "engine/scene/importers/obj_lines.h"
-#include "engine/scene/importers/polygon.h"
-#include "engine/scene/importers/weld.h"
-#include "engine/scene/importers/words.h"
+#include "engine/scene/importers/faces.h"
 #include "engine/scene/local_origin.h"
-#include "engine/scene/mesh.h"
 #include "twinray/glsl/cpp.h"
 
 namespace twinray {
@@ -55,6 +42,7 @@ struct ObjFile {
     std::vector<std::string> warnings;
 };
 
+// Throws Error naming `object` and the line with the fault.
 class ObjParser {
   public:
     ObjParser(std::string_view text, std::string object) : lines_(text), object_(std::move(object)) {}
@@ -231,9 +219,6 @@ class ObjParser {
     PassedOver missing_, passed_over_;
 };
 
-// Throws Error naming `object` and the line with the fault.
-ObjFile parse_obj(std::string_view text, const std::string& object) { return ObjParser(text, object).parse(); }
-
 // Turns a parsed file into a Scene.
 class ObjReader {
   public:
@@ -336,7 +321,7 @@ class ObjReader {
 
 Scene import_obj(const std::filesystem::path& path, const std::optional<dvec3>& origin) {
     const Bytes bytes = read_packed_file(path);
-    const ObjFile file = parse_obj(text_of(bytes, path.string()), path.string());
+    const ObjFile file = ObjParser(text_of(bytes, path.string()), path.string()).parse();
     return ObjReader(file, path, origin).read();
 }
 

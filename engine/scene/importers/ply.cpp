@@ -1,32 +1,20 @@
 // SPDX-License-Identifier: MIT
-// Reads .ply files, text and binary, with faces or strips of triangles. One file of more than 400 lines, since it is
-// one reader whose steps all use the header.
+// Reads .ply files, text and binary, with faces or strips of triangles.
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstring>
-#include <map>
-#include <optional>
-#include <string>
 #include <tuple>
 #include <type_traits>
-#include <vector>
 
 #include <glm/gtc/packing.hpp>
-
-#include <twinray/scene.h>
 
 #include "engine/core/error.h"
 #include "engine/core/platform.h"
 #include "engine/core/interruption.h"
-#include "engine/scene/bytes.h"
 #include "engine/scene/images.h"
 #include "engine/scene/importers/importers.h"
 #include "engine/scene/importers/ply_header.h"
-#include "engine/scene/importers/polygon.h"
+#include "engine/scene/importers/faces.h"
 #include "engine/scene/importers/words.h"
 #include "engine/scene/local_origin.h"
-#include "engine/scene/mesh.h"
 
 namespace twinray {
 namespace {
@@ -107,22 +95,19 @@ bool is_any_of(const std::string& name, std::initializer_list<const char*> names
 constexpr std::size_t nowhere = 12;
 
 std::size_t slot_of(const PlyProperty& property) {
-    if (property.count_type) return nowhere;
-    const std::array<std::initializer_list<const char*>, nowhere> names = {{{"x"},
-                                                                            {"y"},
-                                                                            {"z"},
-                                                                            {"nx"},
-                                                                            {"ny"},
-                                                                            {"nz"},
-                                                                            {"u", "s", "texture_u"},
-                                                                            {"v", "t", "texture_v"},
-                                                                            {"red", "diffuse_red"},
-                                                                            {"green", "diffuse_green"},
-                                                                            {"blue", "diffuse_blue"},
-                                                                            {"alpha", "diffuse_alpha"}}};
-    for (std::size_t i = 0; i < nowhere; ++i)
-        if (is_any_of(property.name, names[i])) return i;
-    return nowhere;
+    using Slots = std::map<std::string_view, std::size_t>;
+    static const Slots slots = {{"x", 0},         {"y", 1},
+                                {"z", 2},         {"nx", 3},
+                                {"ny", 4},        {"nz", 5},
+                                {"u", 6},         {"s", 6},
+                                {"texture_u", 6}, {"v", 7},
+                                {"t", 7},         {"texture_v", 7},
+                                {"red", 8},       {"diffuse_red", 8},
+                                {"green", 9},     {"diffuse_green", 9},
+                                {"blue", 10},     {"diffuse_blue", 10},
+                                {"alpha", 11},    {"diffuse_alpha", 11}};
+    const auto found = slots.find(property.name);
+    return property.count_type || found == slots.end() ? nowhere : found->second;
 }
 
 bool holds_faces(const PlyElement& element) { return is_any_of(element.name, {"face", "tristrips"}); }
@@ -271,8 +256,7 @@ class PlyReader {
     // Reads strips; -1 begins a new one. Every second triangle of a strip is turned, so that all face one way.
     void read_strips(const PlyProperty& property) {
         std::vector<double> strip;
-        for (std::size_t left = values_.next_count(*property.count_type); left > 0; --left) {
-            const double index = values_.next(property.type);
+        for (const double index : read_list(property)) {
             if (index == -1) {
                 strip.clear();
                 continue;

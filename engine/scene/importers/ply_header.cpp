@@ -2,9 +2,6 @@
 #include "engine/scene/importers/ply_header.h"
 
 #include <algorithm>
-#include <array>
-#include <map>
-#include <sstream>
 
 #include "engine/core/error.h"
 #include "engine/scene/importers/words.h"
@@ -12,32 +9,30 @@
 namespace twinray {
 namespace {
 
-bool read_format(std::istringstream& words, PlyHeader& header) {
-    std::string format;
-    words >> format;
+bool read_format(std::string_view words, PlyHeader& header) {
+    const std::string_view format = cut_word(words);
     if (format == "binary_little_endian") header.format = PlyHeader::Format::little_endian;
     if (format == "binary_big_endian") header.format = PlyHeader::Format::big_endian;
     return format == "ascii" || header.format != PlyHeader::Format::ascii;
 }
 
-bool read_element(std::istringstream& words, std::size_t line, PlyHeader& header) {
+bool read_element(std::string_view words, std::size_t line, PlyHeader& header) {
     PlyElement element;
     element.line = line;
-    std::string count;
-    words >> element.name >> count;
+    element.name = cut_word(words);
+    const std::string count(cut_word(words));
     if (count.empty() || count.size() > 12 || count.find_first_not_of("0123456789") != std::string::npos) return false;
     element.count = std::stoull(count);
     header.elements.push_back(std::move(element));
     return true;
 }
 
-bool read_property(std::istringstream& words, std::size_t line, PlyHeader& header) {
+bool read_property(std::string_view words, std::size_t line, PlyHeader& header) {
     PlyProperty property;
     property.line = line;
-    std::string type, count_type;
-    words >> type;
-    if (type == "list") words >> count_type >> type;
-    words >> property.name;
+    std::string_view type = cut_word(words), count_type;
+    if (type == "list") count_type = cut_word(words), type = cut_word(words);
+    property.name = cut_word(words);
     if (header.elements.empty() || property.name.empty() || !ply_type_of(type)) return false;
     property.type = *ply_type_of(type);
     if (!count_type.empty()) {
@@ -48,22 +43,14 @@ bool read_property(std::istringstream& words, std::size_t line, PlyHeader& heade
     return true;
 }
 
-// Reads comments that have a meaning: `comment TextureFile wall.png`.
-void note_texture(std::istringstream& words, PlyHeader& header) {
-    std::string keyword, name;
-    words >> keyword;
-    std::getline(words, name);
-    if (keyword == "TextureFile" && !trimmed(name).empty()) header.textures.emplace_back(trimmed(name));
-}
-
-bool read_line(const std::string& line, std::size_t number, PlyHeader& header) {
-    std::istringstream words(line);
-    std::string keyword;
-    words >> keyword;
-    if (keyword == "format") return read_format(words, header);
-    if (keyword == "element") return read_element(words, number, header);
-    if (keyword == "property") return read_property(words, number, header);
-    if (keyword == "comment") note_texture(words, header);
+bool read_line(std::string_view line, std::size_t number, PlyHeader& header) {
+    const std::string_view keyword = cut_word(line);
+    if (keyword == "format") return read_format(line, header);
+    if (keyword == "element") return read_element(line, number, header);
+    if (keyword == "property") return read_property(line, number, header);
+    // A comment with a meaning: `comment TextureFile wall.png`.
+    if (keyword == "comment" && cut_word(line) == "TextureFile" && !trimmed(line).empty())
+        header.textures.emplace_back(trimmed(line));
     // Blender 2.47 forgot the word "comment"; from the first element on, a line must be understood.
     return header.elements.empty() || keyword == "comment" || keyword == "obj_info";
 }
@@ -111,7 +98,7 @@ PlyHeader parse_ply_header(const Bytes& bytes, const std::string& object) {
     PlyHeader header;
     for (std::size_t line_number = 1; header.size < text.size(); ++line_number) {
         const std::size_t end = std::min(text.find(line_end, header.size), text.size());
-        const std::string line(trimmed(text.substr(header.size, end - header.size)));
+        const std::string_view line = trimmed(text.substr(header.size, end - header.size));
         header.size = std::min(end + 1, text.size());
         if (line == "end_header") {
             check_counts(header, text.size() - header.size, object);

@@ -2,13 +2,7 @@
 // The declarations in the header of a .ply file.
 #pragma once
 
-#include <cstddef>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
-
-#include "engine/scene/bytes.h"
+#include "engine/core/files.h"
 
 namespace twinray {
 

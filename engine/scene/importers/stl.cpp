@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Reads .stl files, binary and text. A facet's normal follows from its vertices and is not read, whatever it is.
 #include <algorithm>
-#include <cstring>
-
-#include <twinray/scene.h>
 
 #include "engine/core/error.h"
-#include "engine/scene/bytes.h"
 #include "engine/scene/importers/importers.h"
 #include "engine/scene/importers/mtl.h"
-#include "engine/scene/importers/polygon.h"
-#include "engine/scene/importers/weld.h"
-#include "engine/scene/importers/words.h"
+#include "engine/scene/importers/faces.h"
 #include "engine/scene/local_origin.h"
 
 namespace twinray {
@@ -131,13 +125,6 @@ StlFile parse_stl(const Bytes& bytes, const std::string& object) {
     return StlTextParser(text, object).parse();
 }
 
-Bounds64 bounds_of(const StlFile& file) {
-    Bounds64 bounds;
-    for (const StlSolid& solid : file.solids)
-        for (const dvec3& vertex : solid.vertices) bounds.include(vertex);
-    return bounds;
-}
-
 }  // namespace
 
 Scene import_stl(const std::filesystem::path& path, const std::optional<dvec3>& origin) {
@@ -145,7 +132,10 @@ Scene import_stl(const std::filesystem::path& path, const std::optional<dvec3>& 
     StlFile file = parse_stl(bytes, path.string());
     Scene scene;
     scene.warnings = std::move(file.warnings);
-    scene.origin = origin.value_or(choose_local_origin(bounds_of(file)));
+    Bounds64 bounds;
+    for (const StlSolid& solid : file.solids)
+        for (const dvec3& vertex : solid.vertices) bounds.include(vertex);
+    scene.origin = origin.value_or(choose_local_origin(bounds));
     scene.materials.push_back(plain_material("default"));
     for (const StlSolid& solid : file.solids) {
         if (solid.vertices.empty()) continue;

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Lines, words and numbers of text formats, and the parts of files that readers ignore.
+// Lines, words and numbers of text formats, files of nothing but numbers, and the parts of files that readers ignore.
 #pragma once
 
-#include <cstddef>
 #include <map>
-#include <optional>
-#include <string>
-#include <string_view>
 
+#include "engine/core/error.h"
 #include "engine/core/files.h"
 
 namespace twinray {
@@ -21,7 +18,6 @@ std::string_view cut_line(std::string_view& rest);
 std::string_view cut_word(std::string_view& rest);
 
 std::string_view trimmed(std::string_view text);
-std::string lowered(std::string_view text);
 
 // Parses the whole word as a number, rounded once; beyond the range of double it is infinite or 0. Accepts nan, inf,
 // and those of Microsoft's C library until 2015 (-1.#IND, 1.#QNAN, 1.#INF). Returns nothing for other words.
@@ -38,5 +34,12 @@ class PassedOver {
   private:
     std::map<std::string, std::size_t, std::less<>> first_lines_;
 };
+
+// Calls back for each line that holds the numbers of `fields` ("x,y,z"), between commas, semicolons or blanks, with its
+// number, from 1. Left out are empty lines, text after a #, and a heading: the first line with contents, if no word of
+// it is a number and the first does not begin as one. Throws Error that names `what` and the file if it cannot be read
+// or has no such line, and the line if that is anything else; numbers are finite.
+void read_number_lines(const std::filesystem::path& file, const std::string& what, const std::string& fields,
+                       const std::function<void(std::span<const double>, std::size_t)>& take);
 
 }  // namespace twinray

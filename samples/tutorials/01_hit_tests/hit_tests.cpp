@@ -10,7 +10,6 @@
 #include <twinray/tlas.h>   // the accelerators
 
 using namespace twinray;
-// [/headers]
 
 // [window]
 // Rays straight down on a window of the plane z = 0, one through the middle of each pixel, row 0 on top.
@@ -28,7 +27,6 @@ std::vector<Ray> rays_of_window() {
                             .t_max = INFINITY});
     return rays;
 }
-// [/window]
 
 // [color]
 // The weights of the three corners as red, green and blue; instance 1 paler.
@@ -58,7 +56,6 @@ int main(int argc, char** argv) try {
     Context context;
     SwTlas accel(context);
     accel.push(triangle, {}, {.custom_index = 10, .mask = 0b01});
-    // [/triangle]
 
     // [ray]
     const Ray ray{.origin = vec3(0.25f, 0.5f, 2), .t_min = 0, .direction = vec3(0, 0, -1), .t_max = INFINITY};
@@ -66,17 +63,14 @@ int main(int argc, char** argv) try {
     std::cout << "the ray meets instance " << hit.instance_index << ", triangle " << hit.primitive_index
               << " at t = " << hit.t << ", u = " << hit.u << ", v = " << hit.v << ", custom index " << hit.custom_index
               << '\n';
-    // [/ray]
 
     // [miss]
     const Ray short_ray{.origin = ray.origin, .t_min = 0, .direction = ray.direction, .t_max = 1.5f};
     const Hit none = accel.closest_hits({&short_ray, 1}).front();
     std::cout << "the same ray up to t = 1.5 " << (none.hit ? "hits" : "misses") << ", t = " << none.t << '\n';
-    // [/miss]
 
     // [second]
     accel.push(triangle, Transform::translation({0.2f, 0.3f, -1}), {.custom_index = 20, .mask = 0b10});
-    // [/second]
 
     // [batch]
     const std::vector<Ray> rays = rays_of_window();
@@ -86,12 +80,10 @@ int main(int argc, char** argv) try {
     std::vector<Rgb> pixels;
     for (const Hit& of_ray : hits) pixels.push_back(color_of(of_ray));
     write_png(folder / "01_hit_tests.png", width, height, pixels);
-    // [/batch]
 
     // [any]
     const std::vector<Hit> blocked = accel.any_hits(rays, {.occlusion_only = true});
     std::cout << "blocked, by any hits: " << count(blocked) << '\n';
-    // [/any]
 
     // [masks]
     constexpr std::uint8_t masks[] = {0b01, 0b10, 0b11};

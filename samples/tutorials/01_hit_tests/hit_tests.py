@@ -15,7 +15,6 @@ folder = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".")
 scene = twinray.Scene(accel="sw")
 corners, triangles = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]
 near = scene.add_triangles(corners, triangles)
-# [/triangle]
 
 # [ray]
 ray = [0.25, 0.5, 2, 0, 0, -1]  # origin, direction
@@ -25,16 +24,13 @@ print(
     f"the ray meets geometry {found['geometry_ids']}, triangle {found['primitive_ids']}"
     f" at t = {found['t_hit']:g}, u = {u:g}, v = {v:g}"
 )
-# [/ray]
 
 # [miss]
 t = scene.cast_rays(ray, tfar=1.5)["t_hit"]
 print(f"the same ray up to t = 1.5 {'hits' if np.isfinite(t) else 'misses'}, t = {t:g}")
-# [/miss]
 
 # [second]
 far = scene.add_triangles(corners, triangles, transform=[[1, 0, 0, 0.2], [0, 1, 0, 0.3], [0, 0, 1, -1], [0, 0, 0, 1]])
-# [/second]
 
 # [batch]
 width, height = 640, 480
@@ -46,7 +42,6 @@ rays[..., 2], rays[..., 5] = 2, -1
 found = scene.cast_rays(rays)
 is_hit = found["geometry_ids"] != twinray.INVALID_ID
 print(f"{is_hit.sum()} of {is_hit.size} rays hit: an area of {is_hit.mean() * 3:.6g}, by geometry 0.875")
-# [/batch]
 
 # [picture]
 u, v = found["primitive_uvs"][..., 0], found["primitive_uvs"][..., 1]
@@ -54,13 +49,10 @@ weights = np.stack([1 - u - v, u, v], axis=-1)
 white = np.where(found["geometry_ids"] == far, 0.6, 0.1)[..., None]
 colors = np.where(is_hit[..., None], white + (1 - white) * weights, 1)
 twinray.Picture((255 * colors**0.45).astype(np.uint8)).save(folder / "01_hit_tests_python.png")
-# [/picture]
 
 # [any]
 print(f"blocked, by any hits: {scene.test_occlusions(rays).sum()}")
-# [/any]
 
 # [behind]
 behind = scene.cast_rays(ray, tnear=2.5)
 print(f"behind t = 2.5 it meets geometry {behind['geometry_ids']} at t = {behind['t_hit']:g}")
-# [/behind]

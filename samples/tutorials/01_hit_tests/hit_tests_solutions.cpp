@@ -24,7 +24,6 @@ int fronts_hit(Context& context) {
     for (const Hit& hit : accel.closest_hits(rays, {.cull = Cull::back})) found += int(hit.hit);
     return found;
 }
-// [/culling]
 
 // [area]
 // The area of a sphere's outline: the part of parallel rays on a square of side 2 r that hit, times its area.
@@ -44,7 +43,6 @@ double outline_of_sphere(Context& context, float radius) {
     for (const Hit& hit : accel.any_hits(rays, {.occlusion_only = true})) found += hit.hit;
     return found / (side * side) * 4 * radius * radius;
 }
-// [/area]
 
 // [all]
 // Returns the distances at which a ray enters and leaves spheres in a row.

@@ -11,7 +11,6 @@ int main(int argc, char** argv) try {
     Context context;
     SwTlas accel(context, {.keeps_surfaces = true});
     push_balls(accel);
-    // [/accel]
 
     // [loop]
     const uint width = 640, height = 480;
@@ -25,12 +24,10 @@ int main(int argc, char** argv) try {
     write_picture(folder / "02_ray_tracer.png", width, height, picture);
     // [/loop]
 
-    // [check]
     // From a point above the floor towards the sun: the middle of the red sphere is in the way.
     const Ray down{
         .origin = vec3(-2.625f, 0.125f, -0.4375f), .t_min = 0, .direction = vec3(0.6f, 1, 0.5f), .t_max = INFINITY};
     std::cout << "the shadow is dark: " << (accel.any_hits({&down, 1}).front().hit ? "yes" : "no") << '\n';
-    // [/check]
 } catch (const std::exception& error) {
     std::cerr << error.what() << '\n';
     return 1;

@@ -29,7 +29,6 @@ def make_scene():
     scene.add_instance(ball, places[2])
     scene.add_instance(ball, places[3])
     return scene
-    # [/scene]
 
 # [materials]
 colors = np.array([[0.8, 0.8, 0.75], [0.9, 0.2, 0.1], [0.95, 0.95, 0.95], [0.1, 0.3, 0.8]])
@@ -43,7 +42,6 @@ def sky(directions):
     # [/materials]
 
 
-# [camera]
 def camera_rays(width, height):
     """(n, 6): a ray for each pixel, with a direction of length 1."""
     fov = 2 * np.rad2deg(np.arctan(np.tan(np.deg2rad(24)) * width / height))  # from left to right
@@ -52,7 +50,7 @@ def camera_rays(width, height):
     rays = np.array(rays).reshape(-1, 6)
     rays[:, 3:] /= np.linalg.norm(rays[:, 3:], axis=1, keepdims=True)
     return rays
-    # [/camera]
+
 
 # [leave]
 NEAR = 0.001  # hits below it are of the surface that a ray has left
@@ -70,7 +68,6 @@ def reflected(directions, normals):
     # [/leave]
 
 
-# [bounce]
 def bounce(scene, to_sun, rays, pixels, weights, picture):
     """Adds to the picture what the rays bring, and gives the rays that are left, their pixels and their weights."""
     found = scene.cast_rays(rays, tnear=NEAR, normals=False)
@@ -89,7 +86,6 @@ def bounce(scene, to_sun, rays, pixels, weights, picture):
     mirror = mirrors[geometries]
     picture[pixels] += (weights * (1 - mirror) * light)[:, None] * colors[geometries]
     return np.concatenate([positions, reflected(directions, normals)], axis=1), pixels, weights * mirror
-    # [/bounce]
 
 
 def save(light, width, height, file):

@@ -31,7 +31,6 @@ void pass_through_glass(AbstractAccel& accel, std::vector<Ray>& rays) {
         }
     }
 }
-// [/glass]
 
 // [light]
 enum class Middle { mirror, glass };
@@ -46,7 +45,6 @@ std::vector<vec3> light_of(AbstractAccel& accel, std::vector<Ray> rays, vec3 to_
     }
     return picture;
 }
-// [/light]
 
 // [several]
 // Returns the mean of side x side pictures, each with rays through another place of the pixels.
@@ -75,7 +73,6 @@ vec3 point_of_sun(uint i, uint n) {
     const float from_middle = radius * std::sqrt((float(i) + 0.5f) / float(n)), turn = 2.399963f * float(i);
     return normalize(sun + from_middle * (std::cos(turn) * right + std::sin(turn) * up));
 }
-// [/sun]
 
 // [hidden]
 // Returns the fraction of the sun that the red ball hides from a place on the floor, where the ray to the middle of the
@@ -90,7 +87,6 @@ double hidden_part(AbstractAccel& accel, float distance) {
     for (const Hit& hit : accel.any_hits(rays, {.occlusion_only = true})) hidden += hit.hit;
     return hidden / n;
 }
-// [/hidden]
 
 // [focus]
 // Returns the distance from the middle of the glass ball at which rays along its axis cross it behind the ball. A ball
@@ -112,7 +108,6 @@ double focus_of_glass(AbstractAccel& accel) {
     }
     return sum / static_cast<double>(rays.size());
 }
-// [/focus]
 
 // [picture]
 // All three: pass i has its place in the pixels and its point of the sun.

@@ -17,12 +17,12 @@ def light_of(rays):
     return picture
 
 
-# [several]
 def several_rays(width, height, side):
     """Means over squares of side x side pixels of a picture that is so many times larger."""
     light = light_of(camera_rays(side * width, side * height))
     return light.reshape(height, side, width, side, 3).mean(axis=(1, 3))
-    # [/several]
+
+
 converged = several_rays(120, 90, 8)
 errors = [np.sqrt(np.mean((several_rays(120, 90, side) - converged) ** 2)) for side in (1, 2, 4)]
 for side, error in zip((1, 2, 4), errors):
@@ -42,19 +42,18 @@ def points_of_sun(n, radius=0.08):
     # [/sun]
 
 
-# [hidden]
 def hidden_part(distance):
     """How much of the sun the red ball hides from where the ray to the sun's middle passes it at a distance."""
     place = middles[1] - sun * (middles[1][1] / sun[1]) + aside * distance
     directions = points_of_sun(1000)
     rays = np.concatenate([np.broadcast_to(place, directions.shape), directions], axis=1)
     return float(np.mean(scene.test_occlusions(rays, tnear=0.125)))
-    # [/hidden]
+
+
 hidden = [hidden_part(distance) for distance in (0.75, 1, 1.25)]
 print("2: hidden within the shadow {:g}, at its edge {:g}, outside {:g}".format(*hidden))
 
 
-# [glass]
 def pass_through_glass(rays, index=1.5):
     """Rays that meet the ball in the middle pass through it and go on where they leave it."""
     for _ in range(2):  # into the ball, out of the ball
@@ -74,9 +73,8 @@ def pass_through_glass(rays, index=1.5):
         onward = np.where(through > 0, refracted, reflected(directions, normals))
         rays[met] = np.concatenate([positions, onward], axis=1)
     return rays
-    # [/glass]
 
-# [focus]
+
 turn = 2 * np.pi * np.arange(64) / 64
 rays = np.zeros((64, 6))
 rays[:, :3] = middles[2] + np.stack([0.0625 * np.cos(turn), 0.0625 * np.sin(turn), np.full(64, 3)], axis=1)
@@ -85,7 +83,6 @@ rays = pass_through_glass(rays)
 from_axis, slope = rays[:, :2] - middles[2][:2], rays[:, 3:5]
 t = -np.sum(from_axis * slope, axis=1) / np.sum(slope**2, axis=1)
 focus = float(np.mean(middles[2][2] - (rays[:, 2] + t * rays[:, 5])))
-# [/focus]
 print(f"3: the glass ball has its focus at {focus:.5f}, by the formula 1.5")
 
 is_smoother = errors[1] < 0.6 * errors[0] and errors[2] < 0.6 * errors[1]

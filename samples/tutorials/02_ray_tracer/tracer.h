@@ -22,7 +22,6 @@ inline void push_balls(AbstractAccel& accel) {
     const InstanceOptions options[] = {{.custom_index = 1}, {.custom_index = 2}, {.custom_index = 3}};
     accel.push(make_icosphere(5), places, options);
 }
-// [/scene]
 
 // [materials]
 struct Look {
@@ -35,7 +34,6 @@ const Look looks[] = {{vec3(0.8f, 0.8f, 0.75f), 0.1f},
                       {vec3(0.1f, 0.3f, 0.8f), 0.15f}};
 const vec3 sun = normalize(vec3(0.6f, 1, 0.5f));  // the direction to it
 inline vec3 sky(vec3 direction) { return mix(vec3(0.9f), vec3(0.35f, 0.55f, 0.9f), std::max(0.0f, direction.y)); }
-// [/materials]
 
 // [camera]
 // A ray for each pixel, through a place in it: (0.5, 0.5) is its middle.
@@ -49,7 +47,6 @@ inline std::vector<Ray> camera_rays(uint width, uint height, vec2 in_pixel = vec
                                                1 - 2 * (float(y) + in_pixel.y) / float(height)}));
     return rays;
 }
-// [/camera]
 
 // [paths]
 // A ray on its way: the pixel that it belongs to, and how much of its light gets there.
@@ -63,7 +60,6 @@ inline std::vector<Path> paths_of(const std::vector<Ray>& camera_rays) {
     for (uint pixel = 0; pixel < camera_rays.size(); ++pixel) paths.push_back({pixel, 1});
     return paths;
 }
-// [/paths]
 
 // [leave]
 // A ray that leaves a surface without meeting it again: it starts beside it by a bound of all rounding errors.
@@ -71,7 +67,6 @@ inline Ray leave(const Surface& surface, vec3 direction) {
     const float side = dot(direction, surface.point.normal) > 0 ? 1.0f : -1.0f;
     return {surface.point.position + surface.point.normal * (side * surface.point.offset), 0, direction, INFINITY};
 }
-// [/leave]
 
 // [bounce]
 // Adds the light of the rays to the picture, and returns the rays and paths that continue: those off mirrors.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Each invocation traces one path from the camera to its end.
+// [kernel]
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/query.glsl"

@@ -42,7 +42,6 @@ struct Room {
     Eye eye;
 };
 BUFFER_OF(Room, 4);
-// [/room]
 
 // [path]
 struct Path {
@@ -61,7 +60,6 @@ FUNC vec4 random_of(Path path, uint use) {
 const uint FOR_PIXEL = 0u;
 const uint FOR_DIRECTIONS = 1u;
 const uint FOR_ROULETTE = 2u;
-// [/path]
 
 // [begin]
 FUNC Path begin_path(uint pixel, uint sample_index) {
@@ -88,7 +86,6 @@ FUNC Ray camera_ray(Eye eye, Path path, uint width, uint height) {
     ray.t_max = EVERYWHERE;
     return ray;
 }
-// [/begin]
 
 // [lamp]
 // The lamp's light that a diffuse surface reflects if nothing is between them, and the ray to find out: from the
@@ -119,7 +116,6 @@ FUNC LampLight lamp_light(Lamp lamp, SurfacePoint point, vec3 normal, vec2 rando
     found.shadow = leave(point, to_lamp, 1.0f);
     return found;
 }
-// [/lamp]
 
 // [roulette]
 // From the third surface on, a path that carries little ends, by chance. Those that go on stand for those that do not.
@@ -130,7 +126,6 @@ FUNC bool survives(INOUT(Path) path) {
     path.weight = path.weight / chance;
     return true;
 }
-// [/roulette]
 
 // [scatter]
 // The results of a path at a surface.
@@ -169,7 +164,6 @@ FUNC Scattering scatter(INOUT(Path) path, Ray ray, SurfacePoint point, Look look
     found.goes_on = survives(path) ? 1u : 0u;
     return found;
 }
-// [/scatter]
 
 // [args]
 // The paths to trace: for each pixel first_sample, first_sample + 1, ...
@@ -188,4 +182,29 @@ struct PathArgs {
     Job job;
 };
 // [/args]
+
+// The queues of a wave in device memory.
+BUFFER_OF(Path, 4);
+
+struct DeviceQueue {
+    REF(Ray) rays;
+    REF(Path) paths;
+    Uints count;
+};
+
+struct WaveArgs {
+    Address accel;
+    REF(Room) room;
+    REF(Hit) hits;      // of the queue, then of the shadow rays
+    Vec3s radiances;    // of each path, all of a sample in a row
+    DeviceQueue queue;  // what is traced
+    DeviceQueue next;
+    DeviceQueue shadows;  // the weight of their paths is the light that they ask for
+    uint pixels;
+    uint first_sample;
+};
+
+FUNC uint place_of(WaveArgs args, Path path) {
+    return (path.sample_index - args.first_sample) * args.pixels + path.pixel;
+}
 #endif

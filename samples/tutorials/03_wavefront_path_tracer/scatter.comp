@@ -4,7 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/surface.glsl"
 #include "twinray/glsl/spawn.glsl"
-#include "wave.h"
+#include "path.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { WaveArgs args; };
 
@@ -32,4 +32,3 @@ void main()
     path.weight = found.lamp.light;
     push(args.shadows, found.lamp.shadow, path);
 }
-// [/scatter]

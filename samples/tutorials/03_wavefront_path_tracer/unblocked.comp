@@ -3,10 +3,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"
-#include "wave.h"
+#include "path.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { WaveArgs args; };
 
+// [main]
 void main()
 {
     uint i = global_index();

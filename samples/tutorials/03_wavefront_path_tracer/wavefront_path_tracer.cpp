@@ -7,7 +7,7 @@
 #include <optional>
 #include <span>
 
-#include "estimate.h"
+#include "tracers.h"
 
 using namespace twinray;
 
@@ -39,7 +39,6 @@ void check_means(std::span<AbstractAccel* const> accels, const Room& room) {
         add(accel->name() + " by kernel", [&](const Job& job) { return kernel.trace(job); });
     }
 }
-// [/agree]
 
 // [same_paths]
 void check_same_paths(AbstractAccel& accel, const Room& room, PathKernel& kernel) {
@@ -48,7 +47,6 @@ void check_same_paths(AbstractAccel& accel, const Room& room, PathKernel& kernel
     std::cout << "with the same random numbers " << differing << " of 65536 pixels differ\n";
     if (differing > 100) throw Error("batches and kernel do not trace the same paths");
 }
-// [/same_paths]
 
 // [error]
 // Returns the root mean square error of a pixel of pictures with so many samples, from the difference of two of them.
@@ -69,7 +67,6 @@ void check_errors(PathKernel& kernel) {
     std::cout << "64 times the samples halve it " << halvings << " times\n";
     if (!(std::abs(halvings - 3) <= 0.3)) throw Error("the error does not halve with 4 times the samples");
 }
-// [/error]
 
 // [lanes]
 // Returns how many rays each path of a picture takes, without shadow rays.

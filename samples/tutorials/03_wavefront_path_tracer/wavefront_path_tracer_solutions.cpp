@@ -8,7 +8,7 @@
 #include <numbers>
 #include <string_view>
 
-#include "estimate.h"
+#include "tracers.h"
 
 using namespace twinray;
 

@@ -21,4 +21,3 @@ bool accept_hit(Candidate candidate, float t, vec2 uv)
 {
     return min(min(uv.x, uv.y), 1.0 - uv.x - uv.y) < WIRE_WIDTH;
 }
-// [/program]

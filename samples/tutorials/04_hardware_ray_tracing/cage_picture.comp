@@ -20,4 +20,3 @@ void main()
     uvec3 bytes = uvec3(255.0 * sqrt(min(color_of(ray, hit, is_lit), 1.0)) + 0.5);
     AT(args.pixels, pixel) = bytes.r | (bytes.g << 8) | (bytes.b << 16);
 }
-// [/kernel]

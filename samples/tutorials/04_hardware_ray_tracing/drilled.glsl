@@ -10,4 +10,3 @@ bool accept_hit(Candidate candidate, float t, vec2 uv)
     vec3 from_middle = vec3(1.0 - uv.x - uv.y, uv) - 1.0 / 3.0;
     return length(from_middle) > 0.3;
 }
-// [/drilled]

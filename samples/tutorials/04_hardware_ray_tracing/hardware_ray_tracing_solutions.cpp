@@ -27,7 +27,6 @@ double light_through(const Way& way) {
     for (const Hit& hit : accel->any_hits(rays, {.program = program.get()})) passed += hit.hit == 0;
     return passed / (side * side);
 }
-// [/exercise1]
 
 // [exercise2]
 // The remaining differences from software if float64 recomputes t.
@@ -51,7 +50,6 @@ Left left_at(Level level, const Way& software, const Way& hardware, const Mesh& 
     left.lost = count(reference.classify(rays, hits[1], TracedBy::hardware))[HitClass::hw_leak];
     return left;
 }
-// [/exercise2]
 
 // [exercise3]
 // In a closed room every ray hits. Those that the driver loses are traced again by software.

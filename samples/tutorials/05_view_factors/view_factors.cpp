@@ -9,6 +9,7 @@
 #include <twinray/analysis.h>
 #include <twinray/scene.h>
 #include <twinray/tlas.h>
+#include "twinray/glsl/vector_math.h"
 
 using namespace twinray;
 
@@ -46,8 +47,7 @@ Mesh make_panel(vec3 corner, vec3 u, vec3 v, uint n) {
     for (uint j = 0; j <= n; ++j)
         for (uint i = 0; i <= n; ++i) {
             const float a = float(i) / float(n), b = float(j) / float(n);
-            mesh.positions.push_back(
-                {corner.x + a * u.x + b * v.x, corner.y + a * u.y + b * v.y, corner.z + a * u.z + b * v.z});
+            mesh.positions.push_back(corner + a * u + b * v);
         }
     for (uint j = 0; j < n; ++j)
         for (uint i = 0; i < n; ++i) {
@@ -62,12 +62,9 @@ Mesh make_panel(vec3 corner, vec3 u, vec3 v, uint n) {
 // The top and the four sides of a box on the floor, from (x, 0, z), turned by an angle whose cosine and sine are given.
 void add_box(std::vector<Panel>& panels, vec3 from, float side, float height, vec2 turn) {
     const vec3 u(side * turn.x, 0, -side * turn.y), w(side * turn.y, 0, side * turn.x), up(0, height, 0);
-    const auto sum = [](vec3 a, vec3 b) { return vec3(a.x + b.x, a.y + b.y, a.z + b.z); };
-    const auto minus = [](vec3 a) { return vec3(-a.x, -a.y, -a.z); };
-    const vec3 grey(0.7f), dark(0), far = sum(from, sum(u, w));
-    for (const Mesh& mesh :
-         {make_panel(sum(from, up), w, u, 6), make_panel(sum(from, w), u, up, 6), make_panel(from, w, up, 6),
-          make_panel(far, minus(w), up, 6), make_panel(sum(from, u), minus(u), up, 6)})
+    const vec3 grey(0.7f), dark(0);
+    for (const Mesh& mesh : {make_panel(from + up, w, u, 6), make_panel(from + w, u, up, 6), make_panel(from, w, up, 6),
+                             make_panel(from + (u + w), -w, up, 6), make_panel(from + u, -u, up, 6)})
         panels.push_back({mesh, grey, dark});
 }
 
@@ -110,7 +107,6 @@ std::vector<double> light_in_cube(Context& context) {
 }
 // [/cube]
 
-// [scene]
 Scene scene_of_panels(const std::vector<Panel>& panels) {
     Scene scene;
     scene.materials.resize(1);
@@ -120,7 +116,6 @@ Scene scene_of_panels(const std::vector<Panel>& panels) {
     }
     return scene;
 }
-// [/scene]
 
 // [light]
 // Returns the light that each face sends out in red, green and blue.
@@ -144,7 +139,6 @@ std::vector<vec3> light_of_faces(Context& context, const std::vector<Panel>& pan
     }
     return light;
 }
-// [/light]
 
 // [smooth]
 // Returns the light at the vertices of each panel, the mean of the faces around it, so that a picture shows no facets.
@@ -156,18 +150,16 @@ std::vector<std::vector<vec3>> light_of_vertices(const Scene& scene, const std::
         std::vector<float> counts(mesh.positions.size());
         for (const uvec3& triangle : mesh.triangles) {
             for (const uint vertex : {triangle.x, triangle.y, triangle.z}) {
-                for (std::size_t c = 0; c < 3; ++c) sums[vertex][c] += light[face][c];
+                sums[vertex] += light[face];
                 ++counts[vertex];
             }
             ++face;
         }
-        for (std::size_t vertex = 0; vertex < sums.size(); ++vertex)
-            for (std::size_t c = 0; c < 3; ++c) sums[vertex][c] /= counts[vertex];
+        for (std::size_t vertex = 0; vertex < sums.size(); ++vertex) sums[vertex] /= counts[vertex];
         result.push_back(std::move(sums));
     }
     return result;
 }
-// [/smooth]
 
 // [picture]
 void draw(const std::filesystem::path& file, Context& context, const Scene& scene, const std::vector<vec3>& light) {
@@ -188,9 +180,7 @@ void draw(const std::filesystem::path& file, Context& context, const Scene& scen
         if (hit.hit) {
             const uvec3 corners = scene.meshes[hit.instance_index].triangles[hit.primitive_index];
             const std::vector<vec3>& values = at_vertices[hit.instance_index];
-            for (std::size_t c = 0; c < 3; ++c)
-                color[c] = (1 - hit.u - hit.v) * values[corners.x][c] + hit.u * values[corners.y][c] +
-                           hit.v * values[corners.z][c];
+            color = (1 - hit.u - hit.v) * values[corners.x] + hit.u * values[corners.y] + hit.v * values[corners.z];
         }
         pixels.push_back(rgb_of_linear(color));
     }
@@ -216,7 +206,6 @@ int main(int argc, char** argv) try {
     std::cout << "by rays F = " << sampled.value << " from " << sampled.low << " to " << sampled.high
               << "; the formula says " << facing_squares_known() << '\n'
               << row.open.value << " of the light meets nothing\n";
-    // [/first]
 
     // [contour]
     const PairExchanges pairs = exchanges_of_pairs(accel, faces, options, PairEstimator::automatic);
@@ -224,7 +213,6 @@ int main(int argc, char** argv) try {
     const ViewFactor exact = better.rows(0, 1).front().factors.front();
     std::cout << "by " << name_of(exact.by) << "s F = " << exact.value << ", off by "
               << std::abs(exact.value - facing_squares_known()) << '\n';
-    // [/contour]
 
     // [coverage]
     int held = 0;
@@ -238,13 +226,11 @@ int main(int argc, char** argv) try {
     const std::vector<double> cube = light_in_cube(context);
     std::cout << "each wall of the cube sends " << cube.front() << ", by the series 2\n";
 
-    // [room]
     const std::vector<Panel> panels = room();
     const Scene furnished = scene_of_panels(panels);
     const std::vector<vec3> light = light_of_faces(context, panels, furnished);
     draw(folder / "05_view_factors.png", context, furnished, light);
     std::cout << "the room has " << light.size() << " faces\n";
-    // [/room]
 
     const bool is_exact =
         std::abs(exact.value / facing_squares_known() - 1) < 1e-6 && holds(exact, facing_squares_known());

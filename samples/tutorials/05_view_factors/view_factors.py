@@ -35,12 +35,10 @@ lower, upper = rectangle([0, 0, 0], [1, 0, 0], [0, 1, 0]), rectangle([0, 0, 1], 
 scene, groups = scene_of([lower, upper])
 root = math.sqrt(2)
 known = 2 / math.pi * (math.log(2 / math.sqrt(3)) + 2 * root * math.atan(1 / root) - 2 * math.atan(1))
-# [/squares]
 
 # [first]
 F, half_width = twinray.view_factors(scene, groups, estimator="hits")
 print(f"by rays F = {F[0, 1]:.6f} +- {half_width[0, 1]:.6f}; the formula says {known:.6f}")
-# [/first]
 
 # [contour]
 F, half_width = twinray.view_factors(scene, groups)
@@ -48,13 +46,11 @@ exact = F[0, 1]
 print(f"by contours F = {exact:.6f}, off by {abs(exact - known):.1e}")
 # [/contour]
 
-# [coverage]
 held = 0
 for seed in range(1, 101):
     F, half_width = twinray.view_factors(scene, groups, estimator="hits", rays=4096, seed=seed)
     held += abs(F[0, 1] - known) <= half_width[0, 1]
 print(f"of 100 intervals {held} hold the truth")
-# [/coverage]
 
 # [cube]
 x, y, z, o = [1, 0, 0], [0, 1, 0], [0, 0, 1], [0, 0, 0]
@@ -62,7 +58,6 @@ cube = [rectangle(*wall) for wall in ((o, x, y), (z, y, x), (o, y, z), (x, z, y)
 F, _ = twinray.view_factors(*scene_of(cube))
 light = np.linalg.solve(np.eye(6) - 0.5 * F, np.ones(6))
 print(f"each wall of the cube sends {light[0]:.7g}, by the series 2")
-# [/cube]
 
 # [room]
 room = [rectangle(*wall, n=12) for wall in ((o, x, y), (o, y, z), (x, z, y), (o, z, x), (y, x, z))]

@@ -29,7 +29,6 @@ double floor_to_wall(Context& context) {
     ViewFactors factors(accel, faces, options, pairs.known);
     return factors.rows(0, 1).front().factors.front().value;
 }
-// [/corner]
 
 // [spheres]
 // A sphere of radius 1 within one of radius 2 that looks inwards: returns the view factor of the outer one to itself.
@@ -45,7 +44,6 @@ ViewFactor outer_to_outer(Context& context) {
     ViewFactors factors(accel, faces, {.grouping = FaceGrouping::instance, .rays = 1 << 21});
     return factors.rows(1, 2).front().factors.back();
 }
-// [/spheres]
 
 // [project]
 // Returns how far the view factors between the faces of a box are from reciprocity, as counted and after project().

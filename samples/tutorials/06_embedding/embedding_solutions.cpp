@@ -28,7 +28,6 @@ std::size_t differing_pixels(const Picture& a, const Picture& b) {
     for (std::size_t i = 0; i < a.size(); ++i) count += a[i] != b[i];
     return count;
 }
-// [/exercise1]
 
 // [exercise2]
 // Memory that twinray gets from the renderer: that of a Buffer, each with memory of its own.

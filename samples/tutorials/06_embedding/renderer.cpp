@@ -94,7 +94,6 @@ std::uint64_t Renderer::submit(const Scene& scene, Shadows* shadows) {
     }
     return submitted_ = number;
 }
-// [/submit]
 
 // [give up]
 // twinray was told that this number will be reached. It must be, although the frame will not be submitted.

@@ -4,7 +4,6 @@
 
 #include <array>
 
-#include "pipelines.h"
 #include "scene.h"
 
 namespace renderer {

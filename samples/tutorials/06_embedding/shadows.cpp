@@ -54,7 +54,6 @@ Shadows::~Shadows() {
     } catch (const Error&) {  // the device is lost: nothing runs there any more
     }
 }
-// [/end]
 
 // [move]
 void Shadows::move(const Scene& scene) {

@@ -7,7 +7,6 @@
 
 #include <twinray/tlas.h>
 
-#include "pipelines.h"
 #include "scene.h"
 
 namespace renderer {

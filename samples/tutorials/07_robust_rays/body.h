@@ -22,7 +22,6 @@ inline Mesh make_body() {
     body.normals = smooth_normals(body);
     return body;
 }
-// [/body]
 
 // [rays]
 // Rays from points near the body's middle, and the vertices that they are aimed at.
@@ -46,4 +45,3 @@ inline AimedRays aim_at_vertices(const Mesh& body, uint origins, uint seed) {
     }
     return aimed;
 }
-// [/rays]

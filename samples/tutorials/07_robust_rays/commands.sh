@@ -8,10 +8,8 @@ cd "$2"
 
 # [leaks]
 twinray leaks body.obj --accel sw --ray-count 200000
-# [/leaks]
 # [verify]
 twinray verify body.obj --level fast --replays faulty --quiet
-# [/verify]
 # [replay]
 twinray verify --replay faulty/edge-SW_LEAK-1.json > replay.txt
 # [/replay]

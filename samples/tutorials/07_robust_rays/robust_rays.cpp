@@ -22,7 +22,6 @@ std::vector<uint> leaked_vertices(AbstractAccel& accel, const AimedRays& aimed, 
         if (!hits[i].hit) leaked.push_back(aimed.vertices[i]);
     return leaked;
 }
-// [/count]
 
 // [crossings]
 // A ray that loses one wall may hit the next one, so that no miss shows it. The number of crossings does: from inside
@@ -34,7 +33,6 @@ LeakCounts count_crossings(Context& context, const Mesh& body, Level level) {
     test.trace(100'000, counts);
     return counts;
 }
-// [/crossings]
 
 // [picture]
 // Shows the body from outside, with its edges, and a red dot where a ray got out.

@@ -26,7 +26,6 @@ std::size_t random_rays_out(Context& context, const Mesh& body) {
     for (const Hit& hit : accel.closest_hits(rays, {.level = Level::fast})) out += hit.hit == 0;
     return out;
 }
-// [/exercise1]
 
 // [exercise2]
 // The body a thousand lengths away: coordinates have fewer digits left for its shape.
@@ -37,7 +36,6 @@ LeakCounts far_away(Context& context, Mesh body) {
     LeakTest(accel, body, Level::watertight, 3).trace(100'000, counts);
     return counts;
 }
-// [/exercise2]
 
 // [exercise3]
 // Tests the driver's own structures with the same rays.

@@ -8,7 +8,7 @@
 #include <iostream>
 #include <vector>
 
-#include "samples/tutorials/08_error_against_run_time/estimates.h"
+#include "contestants.h"
 
 using namespace twinray;
 

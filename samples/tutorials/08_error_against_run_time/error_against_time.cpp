@@ -6,9 +6,7 @@
 #include <iomanip>
 #include <iostream>
 
-#include <twinray/commands.h>
-
-#include "samples/tutorials/08_error_against_run_time/contestants.h"
+#include "contestants.h"
 
 using namespace twinray;
 
@@ -49,7 +47,6 @@ double time_of_ray(const Contestant& contestant, const Batch& batch) {
                  .level = contestant.level});
     return 1e9 * commands.submit_and_wait() / double(batch.count);
 }
-// [/time]
 
 // [rounds]
 constexpr int rounds = 15;
@@ -63,7 +60,6 @@ std::vector<std::vector<double>> times_of(const std::vector<Contestant>& contest
     for (std::vector<double>& of_one : times) std::sort(of_one.begin(), of_one.end());
     return times;
 }
-// [/rounds]
 
 // [measure]
 Result measure(const Contestant& contestant, const Reference& reference, const std::vector<Ray>& rays,
@@ -83,7 +79,6 @@ Result measure(const Contestant& contestant, const Reference& reference, const s
     result.aimed = classes.total();
     return result;
 }
-// [/measure]
 
 // [front]
 // Returns those without a fault that no other beats in both time and error; the fastest first.

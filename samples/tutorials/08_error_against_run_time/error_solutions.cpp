@@ -3,8 +3,7 @@
 #include <cmath>
 #include <iostream>
 
-#include "samples/tutorials/08_error_against_run_time/contestants.h"
-#include "samples/tutorials/08_error_against_run_time/estimates.h"
+#include "contestants.h"
 #include "twinray/glsl/vector_math.h"
 
 using namespace twinray;

@@ -17,4 +17,3 @@ void main()
     AT(args.balls, i).object_to_world.r1 = vec4(0.0, BALL_RADIUS, 0.0, height_of(place, args.time));
     AT(args.balls, i).object_to_world.r2 = vec4(0.0, 0.0, BALL_RADIUS, place.y);
 }
-// [/float]

@@ -24,7 +24,6 @@ double largest_error(AbstractAccel& accel, float time) {
     }
     return largest;
 }
-// [/expected]
 
 // [rebuilt]
 // Compares hits after a refit with hits of a new accelerator with the same water.

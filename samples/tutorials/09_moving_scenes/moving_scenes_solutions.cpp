@@ -32,7 +32,6 @@ std::vector<Work> work_of_frames(Pond& pond, Context& context) {
     }
     return frames;
 }
-// [/exercise1]
 
 // [stir]
 // The whole pond turns about its middle, the faster the nearer to it.

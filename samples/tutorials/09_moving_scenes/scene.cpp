@@ -34,7 +34,6 @@ Pond::Pond(AbstractAccel& accel)
     }
     commands.submit();
 }
-// [/push]
 
 // [move]
 void Pond::move(Commands& commands, float time) {

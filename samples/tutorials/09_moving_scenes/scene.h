@@ -7,6 +7,7 @@
 #include <twinray/scene.h>
 #include <twinray/tlas.h>
 
+// [include]
 #include "twinray/glsl/cpp.h"
 
 namespace twinray {
@@ -15,6 +16,7 @@ using glm::sin;
 #include "pond.h"
 #include "twinray/glsl/cpp_end.h"
 }  // namespace twinray
+// [/include]
 
 using namespace twinray;
 
@@ -31,7 +33,6 @@ class Pond {
     void move(Commands& commands, float time);
     std::vector<Rgb> picture(uint width, uint height);
     std::vector<vec3> vertices() const;  // as they are on the device
-    AccelHandle water() const { return water_handle_; }
 
   private:
     AbstractAccel& accel_;

@@ -15,4 +15,3 @@ void main()
     vec2 place = vec2(AT(args.positions, 3u * i), AT(args.positions, 3u * i + 2u));
     AT(args.positions, 3u * i + 1u) = height_of(place, args.time);
 }
-// [/waves]

@@ -7,8 +7,7 @@
 #include <sstream>
 #include <string>
 
-#include "engine_tree.h"
-#include "scene.h"
+#include "tree.h"
 
 namespace {
 
@@ -142,13 +141,11 @@ int main(int argc, char** argv) try {
     four.triangles(scene);
     four.tree(wide, 0, boxes.size());
     four.write(folder / "10_wide_tree.svg");
-    // [check]
     Context context;
     check_binary(context, scene, sorted, binary, root);
     const std::size_t compared = check_wide(context, scene, sorted, wide);
     std::cout << "the engine's binary tree is the same, bit for bit; so are " << compared
               << " records of its tree of four\n";
-    // [/check]
 } catch (const std::exception& error) {
     std::cerr << error.what() << '\n';
     return 1;

@@ -3,8 +3,7 @@
 #include <cmath>
 #include <iostream>
 
-#include "engine_tree.h"
-#include "scene.h"
+#include "tree.h"
 
 // [exercise1]
 // The areas of all boxes below the root, including leaves, over the root's: the boxes that a long random ray enters.
@@ -34,7 +33,6 @@ double cost_of_engine(Context& context, const Mesh& mesh, Layout layout) {
     accel.sync();
     return accel.sah(handle).value();
 }
-// [/exercise1]
 
 // [exercise2]
 // Uses triangles with one centre: all codes are equal.

@@ -5,6 +5,7 @@
 #include "twinray/glsl/common.glsl"
 #include "shaders/shared/bvh.h"
 layout(local_size_x = 64) in;
+// [kernel]
 layout(push_constant, scalar) uniform Push
 {
     Address accel;

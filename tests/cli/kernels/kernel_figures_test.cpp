@@ -4,10 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/kernels/kernel_list.h"
-#include "cli/kernels/kernel_statistics.h"
-#include "cli/kernels/limits.h"
-#include "engine/accel/features_of.h"
+#include "cli/kernels/kernels.h"
+#include "engine/accel/trace_desc.h"
 #include "engine/core/error.h"
 #include "tests/scene/temp_dir.h"
 

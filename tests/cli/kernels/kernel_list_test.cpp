@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <set>
 
-#include "cli/kernels/kernel_list.h"
+#include "cli/kernels/kernels.h"
 #include "engine/core/commands.h"
 #include "engine/core/error.h"
 #include "engine/core/spirv_words.h"
-#include "cli/kernels/kernel_statistics.h"
 #include "kernel_modules.h"
 #include "tests/support/device.h"
 

@@ -8,8 +8,8 @@
 #include <cstring>
 
 #include "engine/core/error.h"
-#include "report/conformance/draws.h"
-#include "report/conformance/driver_input.h"
+#include "report/conformance/inputs.h"
+#include "report/conformance/driver.h"
 #include "validation/reference/reference_scene.h"
 
 namespace twinray::conformance {

@@ -7,12 +7,11 @@
 #include <algorithm>
 #include <set>
 
-#include "engine/core/cpu_vectors.h"
+#include "engine/core/device_properties.h"
 #include "engine/core/error.h"
 #include "tests/support/device.h"
 #include "report/faults/fault_injection.h"
 #include "report/conformance/driver.h"
-#include "report/conformance/output.h"
 
 namespace twinray::conformance {
 namespace {
@@ -92,8 +91,7 @@ TEST_F(ConformanceSuite, KnowsWhatPassesAndEveryControlShowsFaults) {
 
 TEST_F(ConformanceSuite, TellsTheFirstFaultyRay) {
     if (!context().properties().ray_query) return;
-    const std::vector<Record> records = run({.only = of_topic(Topic::edges)});
-    for (const Record& record : records) {
+    for (const Record& record : run({.only = of_topic(Topic::edges)})) {
         EXPECT_EQ(record.results.at("topic"), Value("edges"));
         if (record.faults == 0) continue;
         const std::string kind = record.example.substr(0, record.example.find(' '));
@@ -135,16 +133,14 @@ TEST(ConformanceOfAHungDevice, TellsTheCaseAndEnds) {
     driver.heal();
 }
 
-class ConformanceWithoutQueries : public test::VulkanTest {
+class ConformanceWithoutQueries : public ConformanceSuite {
   protected:
     ContextDesc context_desc() const override { return {.use_ray_query = false}; }
 };
 
 TEST_F(ConformanceWithoutQueries, ThePipelineAnswersAlone) {
     if (!context().properties().ray_tracing_pipeline) TWINRAY_LACKS("ray_tracing", "no pipelines");
-    Recorder recorder({"now", "0.1", {}});
-    conformance::run(context(), {.only = of_topic(Topic::limits)}, recorder, true);
-    for (const Record& record : recorder.records()) {
+    for (const Record& record : run({.only = of_topic(Topic::limits)})) {
         EXPECT_EQ(record.was_run, record.backend == "hw-pipeline");
         EXPECT_EQ(record.pass.has_value(), record.was_run);
         EXPECT_TRUE(record.was_run || record.reason.find("ray queries") != std::string::npos) << record.reason;
@@ -152,16 +148,15 @@ TEST_F(ConformanceWithoutQueries, ThePipelineAnswersAlone) {
     EXPECT_THROW(Driver driver(context()), Error);
 }
 
-class ConformanceWithoutHardware : public test::VulkanTest {
+class ConformanceWithoutHardware : public ConformanceSuite {
   protected:
     ContextDesc context_desc() const override { return {.use_ray_query = false, .use_ray_tracing_pipeline = false}; }
 };
 
 TEST_F(ConformanceWithoutHardware, NothingIsRunAndEachSaysWhy) {
-    Recorder recorder({"now", "0.1", {}});
-    conformance::run(context(), {}, recorder, true);
-    EXPECT_EQ(recorder.records().size(), 2 * catalogue().size());
-    for (const Record& record : recorder.records()) {
+    const std::vector<Record> records = run();
+    EXPECT_EQ(records.size(), 2 * catalogue().size());
+    for (const Record& record : records) {
         EXPECT_FALSE(record.was_run || record.pass.has_value());
         EXPECT_NE(record.reason.find("needs ray "), std::string::npos) << record.reason;
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Folders of reproducers, and the program in them with a ray that the driver answers correctly.
-#include "report/reproducer/write.h"
+#include "report/reproducer/reproduce.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -13,7 +13,7 @@
 #include <twinray/tlas.h>
 #include "tests/scene/temp_dir.h"
 #include "tests/support/device.h"
-#include "report/replay/scene_file.h"
+#include "report/replay/replay.h"
 #include "report/reproducer/program.h"
 #include "validation/verify/comparison.h"
 
@@ -35,14 +35,14 @@ Scene grid_scene() {
 class WriteTest : public ::testing::Test {
   protected:
     void SetUp() override {
-        if (!test::make_context()) return;
+        if (!test::make_context()) {
+            if (HasFailure()) FAIL() << "no device";
+            return;
+        }
         devices_ = std::make_unique<frame::Devices>(ContextDesc{.validation = true});
         if (!devices_->why_not({frame::Backend::ray_query, Level::watertight}).empty())
             TWINRAY_LACKS("ray_tracing", "the device has no ray queries");
-        has_driver_ = true;
     }
-    bool has_driver() const { return has_driver_; }
-    frame::Devices& devices() { return *devices_; }
     // Returns a ray at a vertex that the driver loses, if there is one.
     std::optional<Ray> lost_ray(const Scene& scene) {
         const ReferenceScene reference = ReferenceScene::of(scene);
@@ -57,17 +57,10 @@ class WriteTest : public ::testing::Test {
     // Writes a replay file of the ray, and the scene beside it.
     fs::path replay_of(const std::string& name, const Scene& scene, const Ray& ray, const char* backend) {
         replay::write_glb(folder_ / "grid.glb", scene);
-        replay::write(folder_ / name, {"grid.glb",
-                                       replay::hash_of(scene),
-                                       backend,
-                                       "watertight",
-                                       "HW_LEAK",
-                                       ray,
-                                       miss(),
-                                       {},
-                                       "a device",
-                                       "a driver",
-                                       "a version"});
+        const std::string hash = replay::hash_of(scene);
+        replay::write(
+            folder_ / name,
+            {"grid.glb", hash, backend, "watertight", "HW_LEAK", ray, miss(), {}, "a device", "a driver", "a version"});
         return folder_ / name;
     }
     // Compiles the program without warnings and returns its exit status.
@@ -79,16 +72,12 @@ class WriteTest : public ::testing::Test {
         const int status = std::system((file.string() + " > " + (folder_ / "said").string()).c_str());
         return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     }
-    const test::TempDir& folder() const { return folder_; }
 
-  private:
     test::TempDir folder_;
     std::unique_ptr<frame::Devices> devices_;
-    bool has_driver_ = false;
 };
 
 TEST_F(WriteTest, TheProgramTellsRightFromWrong) {
-    if (!has_driver()) return;
     const Scene scene = grid_scene();
     const Ray inside{vec3(0.625f, 2, 0.25f), 0, vec3(0, -1, 0), INFINITY}, beside{vec3(-1), 0, vec3(0, 1, 0), INFINITY};
     const RightAnswers hit = right_answers(ReferenceScene::of(scene), inside);
@@ -100,30 +89,29 @@ TEST_F(WriteTest, TheProgramTellsRightFromWrong) {
 }
 
 TEST_F(WriteTest, TheFirstOfEachClassIsWrittenAndTheRestPassedOver) {
-    if (!has_driver()) return;
     const Scene scene = grid_scene();
     const std::optional<Ray> lost = lost_ray(scene);
     if (!lost) GTEST_SKIP() << "this driver loses no ray at the vertices of a grid";
     const Ray inside{vec3(0.625f, 2, 0.25f), 0, vec3(0, -1, 0), INFINITY};
-    const std::vector<fs::path> files = {replay_of("ours.json", scene, *lost, "sw"), folder() / "missing.json",
+    const std::vector<fs::path> files = {replay_of("ours.json", scene, *lost, "sw"), folder_ / "missing.json",
                                          replay_of("right.json", scene, inside, "hw"),
                                          replay_of("lost.json", scene, *lost, "hw"),
                                          replay_of("again.json", scene, *lost, "hw")};
     std::ostringstream said;
-    EXPECT_EQ(write_reproducers(folder() / "out", files, devices(), said), 1u);
+    EXPECT_EQ(write_reproducers(folder_ / "out", files, *devices_, said), 1u);
     test::expect_contains(said.str(), "missing.json' cannot be opened");
     test::expect_contains(said.str(), "right.json': the driver's own answer is AGREE, which is no fault");
     test::expect_contains(said.str(), "HW_LEAK in ");
     for (const char* name : {"reproducer.c", "report.md", "replay.json", "scene.glb", "query.spv"})
-        EXPECT_TRUE(fs::exists(folder() / "out" / "HW_LEAK" / name)) << name;
-    const replay::Replay replay = replay::read(folder() / "out" / "HW_LEAK" / "replay.json");
-    const Scene least = replay::load_traced_scene(folder() / "out" / "HW_LEAK" / "replay.json", replay);
+        EXPECT_TRUE(fs::exists(folder_ / "out" / "HW_LEAK" / name)) << name;
+    const replay::Replay replay = replay::read(folder_ / "out" / "HW_LEAK" / "replay.json");
+    const Scene least = replay::load_traced_scene(folder_ / "out" / "HW_LEAK" / "replay.json", replay);
     EXPECT_LE(count_triangles(least), 4u);
     EXPECT_EQ(class_of(ReferenceScene::of(least), replay.ray, replay.answer), HitClass::hw_leak);
 
     std::ostringstream nothing;
-    EXPECT_EQ(write_reproducers(folder() / "late", files, devices(), nothing, 0), 0u) << "the time is up";
-    EXPECT_FALSE(fs::exists(folder() / "late"));
+    EXPECT_EQ(write_reproducers(folder_ / "late", files, *devices_, nothing, 0), 0u) << "the time is up";
+    EXPECT_FALSE(fs::exists(folder_ / "late"));
 }
 
 }  // namespace

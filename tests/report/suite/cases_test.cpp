@@ -6,7 +6,6 @@
 #include <set>
 
 #include "engine/core/error.h"
-#include "report/suite/schedule.h"
 #include "report/suite/suite.h"
 #include "tests/scene/temp_dir.h"
 

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include <twinray/geometry.h>
-#include "report/suite/flip.h"
+#include "report/suite/pictures.h"
 
 namespace twinray::suite {
 namespace {

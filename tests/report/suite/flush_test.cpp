@@ -6,16 +6,12 @@
 
 #include <cmath>
 #include <cstring>
-#include <twinray/geometry.h>
-#include <twinray/scene.h>
 
 #include "engine/accel/geometry.h"
 #include "swtlas/plan.h"
 #include "validation/cpu_reference/reference.h"
-#include "validation/reference/aimed_rays.h"
 #include "tests/support/device.h"
 #include "report/suite/scenes.h"
-#include "report/suite/cpu_reference.h"
 
 namespace twinray::suite {
 namespace {
@@ -29,10 +25,7 @@ std::size_t hit_count(const std::vector<Hit>& hits) {
 // t is 1e-36, and its products with the steps of compressed boxes are denormal, so they are scaled by a power of two.
 TEST(FlushedDenormals, LongDirectionsLoseNothing) {
     if (!FlushDenormals::is_able()) TWINRAY_LACKS("flushed_denormals", "this processor cannot");
-    Scene scene;
-    scene.meshes = {make_icosphere(3)};
-    scene.instances = {{"", 0, {}}};
-    const std::unique_ptr<reference::Scene> on_cpu = cpu_reference_of(scene);
+    const std::unique_ptr<reference::Scene> on_cpu = cpu_reference_of(instances_of(make_icosphere(3)));
     std::vector<Ray> rays = random_rays({vec3(-1), vec3(1)}, 4096, 1);
     for (Ray& ray : rays) ray.direction = normalize(ray.direction);
     const std::size_t expected = hit_count(trace_cpu_reference(*on_cpu, rays, Level::watertight));
@@ -50,16 +43,10 @@ TEST(FlushedDenormals, LongDirectionsLoseNothing) {
 TEST(FlushedDenormals, ShortDirectionsInLargeScenesLoseNothing) {
     if (!FlushDenormals::is_able()) TWINRAY_LACKS("flushed_denormals", "this processor cannot");
     for (const auto& [size, length] : {std::pair{3e30f, 1e-8f}, {1e38f, 1.0f}, {1e20f, 1e-15f}, {3e38f, 4.0f}}) {
-        Scene scene;
-        scene.meshes = {make_icosphere(3)};
-        for (vec3& position : scene.meshes[0].positions) position *= size;
-        scene.instances = {{"", 0, {}}};
-        const std::unique_ptr<reference::Scene> on_cpu = cpu_reference_of(scene);
-        std::vector<Ray> rays = random_rays({vec3(-1), vec3(1)}, 4096, 1);
-        for (Ray& ray : rays) {
-            ray.origin *= size;
-            ray.direction = length * normalize(ray.direction);
-        }
+        const std::unique_ptr<reference::Scene> on_cpu =
+            cpu_reference_of(instances_of(scaled(make_icosphere(3), size)));
+        std::vector<Ray> rays = scaled(random_rays({vec3(-1), vec3(1)}, 4096, 1), size);
+        for (Ray& ray : rays) ray.direction = length * normalize(ray.direction);
         const std::size_t expected = hit_count(trace_cpu_reference(*on_cpu, rays, Level::watertight));
         EXPECT_GT(expected, 500u);
         EXPECT_EQ(hit_count(trace_cpu_reference(*on_cpu, rays, Level::watertight, Denormals::flushed)), expected)

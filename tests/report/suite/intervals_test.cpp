@@ -3,22 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <functional>
-#include <optional>
 
 #include <twinray/analysis.h>
-#include <twinray/geometry.h>
 #include <twinray/tlas.h>
 
 #include "broken_program.trace_program.h"
-#include "engine/core/statistics.h"
 #include "tests/support/device.h"
-#include "validation/leaks/inside_rays.h"
+#include "validation/leaks/closed_mesh.h"
 #include "report/page/verdict.h"
-#include "report/suite/checks.h"
-#include "report/suite/factor_scenes.h"
+#include "report/suite/scenes.h"
 #include "validation/cpu_reference/flush_denormals.h"
-#include "report/suite/tracing.h"
 
 namespace twinray::suite {
 namespace {

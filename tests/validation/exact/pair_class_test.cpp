@@ -11,7 +11,7 @@
 #include "engine/collide/exact_class.h"
 #include "engine/core/parallel.h"
 #include "tests/collide/triangle_pairs.h"
-#include "validation/exact/rational.h"
+#include "validation/exact/exact_reference.h"
 
 namespace twinray::exact {
 namespace {

@@ -9,7 +9,6 @@
 #include "engine/core/error.h"
 #include "tests/scene/temp_dir.h"
 #include "tests/validation/reference/meshes.h"
-#include "validation/leaks/inside_rays.h"
 
 namespace twinray {
 namespace {

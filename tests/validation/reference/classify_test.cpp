@@ -15,19 +15,15 @@ namespace twinray {
 namespace {
 
 TEST(HitClassCounts, NamesAreThoseOfTheReports) {
-    EXPECT_EQ(name_of(HitClass::agree), "AGREE");
-    EXPECT_EQ(name_of(HitClass::tie), "TIE");
-    EXPECT_EQ(name_of(HitClass::boundary), "BOUNDARY");
-    EXPECT_EQ(name_of(HitClass::boundary_hw_miss), "BOUNDARY_HW_MISS");
-    EXPECT_EQ(name_of(HitClass::unspecified), "UNSPECIFIED");
-    EXPECT_EQ(name_of(HitClass::invalid_input), "INVALID_INPUT");
-    EXPECT_EQ(name_of(HitClass::sw_leak), "SW_LEAK");
-    EXPECT_EQ(name_of(HitClass::sw_false), "SW_FALSE");
-    EXPECT_EQ(name_of(HitClass::t_err), "T_ERR");
-    EXPECT_EQ(name_of(HitClass::hw_leak), "HW_LEAK");
-    EXPECT_EQ(name_of(HitClass::hw_false), "HW_FALSE");
-    EXPECT_EQ(name_of(HitClass::hw_t_err), "HW_T_ERR");
-    EXPECT_EQ(name_of(HitClass::hw_range), "HW_RANGE");
+    using enum HitClass;
+    const std::pair<HitClass, const char*> names[] = {{agree, "AGREE"},       {tie, "TIE"},
+                                                      {boundary, "BOUNDARY"}, {boundary_hw_miss, "BOUNDARY_HW_MISS"},
+                                                      {sw_leak, "SW_LEAK"},   {unspecified, "UNSPECIFIED"},
+                                                      {sw_false, "SW_FALSE"}, {invalid_input, "INVALID_INPUT"},
+                                                      {t_err, "T_ERR"},       {hw_leak, "HW_LEAK"},
+                                                      {hw_false, "HW_FALSE"}, {hw_t_err, "HW_T_ERR"},
+                                                      {hw_range, "HW_RANGE"}};
+    for (const auto& [kind, name] : names) EXPECT_EQ(name_of(kind), name);
 }
 
 TEST(HitClassCounts, OnlySoftwareLeaksFalseHitsAndTErrorsAreFaultsOfOurs) {
@@ -80,43 +76,36 @@ const Ray inner_ray = make_ray({0.7f, 0.2f, 0}, {0, 0, 1});
 const Hit near_hit = {1, 4, 0, 0, 0.5f, 0.2f, 0, 0};
 const Hit far_hit = {1, 6, 2, 0, 0.5f, 0.2f, 0, 0};
 
-TEST(Classify, RightAnswersAgree) {
+Ray upward(float x, float y, float t_min = 0) { return make_ray({x, y, 0}, {0, 0, 1}, t_min); }
+
+TEST(Classify, AnswersBeforeTwoSheets) {
     const ReferenceScene reference = reference_of(two_sheets());
-    EXPECT_EQ(check(reference, inner_ray, near_hit), both(HitClass::agree, HitClass::agree));
-    EXPECT_EQ(check(reference, make_ray({2, 2, 0}, {0, 0, 1}), miss()), both(HitClass::agree, HitClass::agree));
+    ASSERT_EQ(reference.closest_hit(upward(0.5f, 0.5f)).primitive, 0u);
+    const RayResult agrees = both(HitClass::agree, HitClass::agree), leaks = both(HitClass::sw_leak, HitClass::hw_leak),
+                    is_false = both(HitClass::sw_false, HitClass::hw_false);
+    const struct {
+        const char* what;
+        Ray ray;
+        Hit hit;
+        RayResult expected;
+    } rows[] = {{"the right hit", inner_ray, near_hit, agrees},
+                {"a right miss", upward(2, 2), miss(), agrees},
+                {"an interior hit reported as a miss", inner_ray, miss(), leaks},
+                {"a far hit in place of a near one", inner_ray, far_hit, leaks},
+                {"a far hit through a shared edge", upward(0.5f, 0.5f), {1, 6, 2, 0, 0, 0.5f, 0, 0}, leaks},
+                {"a triangle that the ray clearly misses", inner_ray, {1, 4, 1, 0, 0.2f, 0, 0, 0}, is_false},
+                {"a hit where all is missed", upward(2, 2), near_hit, is_false},
+                {"a hit outside the interval", upward(0.7f, 0.2f, 4.5f), near_hit, is_false},
+                {"the neighbour across a shared edge",
+                 upward(0.5f, 0.5f),
+                 {1, 4, 1, 0, 0.5f, 0, 0, 0},
+                 both(HitClass::tie, HitClass::tie)}};
+    for (const auto& row : rows) EXPECT_EQ(check(reference, row.ray, row.hit), row.expected) << row.what;
 }
 
 TEST(Classify, AnAcceleratorWithoutAnAnswerHasNoClass) {
-    const RayResult ray_result = classify(reference_of(two_sheets()), inner_ray, near_hit, std::nullopt);
-    EXPECT_EQ(ray_result.software, HitClass::agree);
-    EXPECT_EQ(ray_result.hardware, std::nullopt);
-}
-
-TEST(Classify, InteriorHitReportedAsMissIsALeak) {
-    EXPECT_EQ(check(reference_of(two_sheets()), inner_ray, miss()), both(HitClass::sw_leak, HitClass::hw_leak));
-}
-
-TEST(Classify, FarHitInPlaceOfANearOneIsALeak) {
-    EXPECT_EQ(check(reference_of(two_sheets()), inner_ray, far_hit), both(HitClass::sw_leak, HitClass::hw_leak));
-}
-
-TEST(Classify, FarHitThroughASharedEdgeIsALeak) {
-    const Ray ray = make_ray({0.5f, 0.5f, 0}, {0, 0, 1});
-    const Hit through = {1, 6, 2, 0, 0, 0.5f, 0, 0};
-    EXPECT_EQ(check(reference_of(two_sheets()), ray, through), both(HitClass::sw_leak, HitClass::hw_leak));
-}
-
-TEST(Classify, TriangleThatTheRayClearlyMissesIsFalse) {
-    const ReferenceScene reference = reference_of(two_sheets());
-    const Hit other = {1, 4, 1, 0, 0.2f, 0, 0, 0};
-    EXPECT_EQ(check(reference, inner_ray, other), both(HitClass::sw_false, HitClass::hw_false));
-    EXPECT_EQ(check(reference, make_ray({2, 2, 0}, {0, 0, 1}), near_hit), both(HitClass::sw_false, HitClass::hw_false));
-}
-
-TEST(Classify, HitOutsideTheIntervalIsFalse) {
-    Ray ray = inner_ray;
-    ray.t_min = 4.5f;
-    EXPECT_EQ(check(reference_of(two_sheets()), ray, near_hit), both(HitClass::sw_false, HitClass::hw_false));
+    EXPECT_EQ(classify(reference_of(two_sheets()), inner_ray, near_hit, std::nullopt),
+              (RayResult{HitClass::agree, std::nullopt}));
 }
 
 TEST(Classify, PrimitiveOrInstanceThatCannotBeHitIsFalse) {
@@ -131,21 +120,13 @@ TEST(Classify, PrimitiveOrInstanceThatCannotBeHitIsFalse) {
     }
 }
 
-TEST(Classify, NeighbourAcrossASharedEdgeIsATie) {
-    const ReferenceScene reference = reference_of(two_sheets());
-    const Ray ray = make_ray({0.5f, 0.5f, 0}, {0, 0, 1});
-    ASSERT_EQ(reference.closest_hit(ray).primitive, 0u);
-    const Hit neighbour = {1, 4, 1, 0, 0.5f, 0, 0, 0};
-    EXPECT_EQ(check(reference, ray, neighbour), both(HitClass::tie, HitClass::tie));
-}
-
 TEST(Classify, SilhouetteIsBoundary) {
     const ReferenceScene reference = reference_of(two_sheets());
-    const Ray on_rim = make_ray({1, 0.5f, 0}, {0, 0, 1});
+    const Ray on_rim = upward(1, 0.5f);
     ASSERT_TRUE(reference.closest_hit(on_rim).hit);
     EXPECT_EQ(check(reference, on_rim, {1, 6, 2, 0, 0.5f, 0.5f, 0, 0}), both(HitClass::boundary, HitClass::boundary));
     EXPECT_EQ(check(reference, on_rim, miss()), both(HitClass::boundary, HitClass::boundary_hw_miss));
-    const Ray past_rim = make_ray({std::nextafter(1.0f, 2.0f), 0.5f, 0}, {0, 0, 1});
+    const Ray past_rim = upward(std::nextafter(1.0f, 2.0f), 0.5f);
     ASSERT_FALSE(reference.closest_hit(past_rim).hit);
     EXPECT_EQ(check(reference, past_rim, {1, 4, 0, 0, 0.5f, 0.5f, 0, 0}), both(HitClass::boundary, HitClass::boundary));
 }
@@ -240,27 +221,21 @@ void expect_misses_leak(const Soup& soup, const Transform& transform = {}) {
     }
 }
 
-TEST(Classify, MissFromInsideAClosedSphereIsALeakAlsoAtVerticesAndEdges) { expect_misses_leak(sphere(3)); }
-
-TEST(Classify, LeaksAreFoundWhateverTheWinding) {
-    Soup soup = sphere(3);
-    for (std::size_t i = 0; i < soup.triangles.size(); i += 3) std::swap(soup.triangles[i].x, soup.triangles[i].y);
-    expect_misses_leak(soup);
-}
-
-TEST(Classify, LeaksAreFoundInDoubledSurfacesAndWithoutSharedIndices) {
-    Soup doubled;
+// Also at vertices and edges, whatever the winding, in doubled surfaces, without shared indices, and in moved and
+// stretched instances.
+TEST(Classify, MissFromInsideAClosedSphereIsALeak) {
     const Soup indexed = sphere(3);
+    expect_misses_leak(indexed);
+    Soup mixed = indexed, doubled;
+    for (std::size_t i = 0; i < mixed.triangles.size(); i += 3) std::swap(mixed.triangles[i].x, mixed.triangles[i].y);
+    expect_misses_leak(mixed);
     for (const uvec3& t : indexed.triangles) {
         doubled.add(indexed.positions[t.x], indexed.positions[t.y], indexed.positions[t.z]);
         doubled.add(indexed.positions[t.y], indexed.positions[t.x], indexed.positions[t.z]);
     }
     expect_misses_leak(doubled);
-}
-
-TEST(Classify, LeaksAreFoundInMovedAndStretchedInstances) {
-    const Transform stretched = rotation(0.5f, 0.3f) * Transform::scaling({1, 2, 3});
-    expect_misses_leak(sphere(3), Transform::translation({1, 2, 3}) * stretched);
+    expect_misses_leak(indexed,
+                       Transform::translation({1, 2, 3}) * (rotation(0.5f, 0.3f) * Transform::scaling({1, 2, 3})));
 }
 
 // The square's right half is split at (1, 0.3), which is no vertex of the left half.
@@ -270,8 +245,7 @@ TEST(Classify, TJunctionIsUnspecified) {
     soup.add({1, 0, 4}, {2, 0, 4}, {1, 0.3f, 4});
     soup.add({1, 0.3f, 4}, {2, 0, 4}, {1, 1, 4});
     const ReferenceScene reference = reference_of(soup);
-    const Ray ray = make_ray({1, 0.3f, 0}, {0, 0, 1});
-    EXPECT_EQ(check(reference, ray, miss()), both(HitClass::unspecified, HitClass::unspecified));
+    EXPECT_EQ(check(reference, upward(1, 0.3f), miss()), both(HitClass::unspecified, HitClass::unspecified));
 }
 
 TEST(Classify, SilhouetteOfAClosedMeshIsBoundary) {
@@ -287,10 +261,9 @@ TEST(Classify, SilhouetteOfAClosedMeshIsBoundary) {
 TEST(Classify, AnyHitIsClassifiedByHitAndMiss) {
     const ReferenceScene reference = reference_of(two_sheets());
     EXPECT_EQ(classify_any(reference, inner_ray, true, false), both(HitClass::agree, HitClass::hw_leak));
-    EXPECT_EQ(classify_any(reference, make_ray({2, 2, 0}, {0, 0, 1}), true, false),
-              both(HitClass::sw_false, HitClass::agree));
-    const Ray past_rim = make_ray({std::nextafter(1.0f, 2.0f), 0.5f, 0}, {0, 0, 1});
-    EXPECT_EQ(classify_any(reference, past_rim, true, false), both(HitClass::boundary, HitClass::agree));
+    EXPECT_EQ(classify_any(reference, upward(2, 2), true, false), both(HitClass::sw_false, HitClass::agree));
+    EXPECT_EQ(classify_any(reference, upward(std::nextafter(1.0f, 2.0f), 0.5f), true, false),
+              both(HitClass::boundary, HitClass::agree));
 }
 
 TEST(ClassifyAll, ClassifiesEachRayAndRejectsListsOfAnotherLength) {

@@ -147,23 +147,17 @@ Soup slivers(std::uint32_t seed, float width) {
     return soup;
 }
 
-TEST(HonestKernel, HasNoFaultOnSoups) {
+TEST(HonestKernel, HasNoFaultOnSoupsSliversGridsAndClosedMeshes) {
     for (std::uint32_t seed = 1; seed <= 4; ++seed) {
         expect_no_fault(one(random_soup(300, 0.5f, seed)), seed);
         expect_no_fault(one(random_soup(300, 0.02f, seed)), seed);
     }
-}
-
-TEST(HonestKernel, HasNoFaultOnGridsAndClosedMeshes) {
+    for (const float width : {1e-2f, 1e-4f, 1e-6f})
+        for (std::uint32_t seed = 1; seed <= 3; ++seed) expect_no_fault(one(slivers(seed, width)), seed);
     expect_no_fault(one(grid(14, 0, 0, 1)), 11);
     expect_no_fault(one(grid(14, 0.3f, 0.3f, 1)), 12);
     expect_no_fault(one(sphere(3)), 13);
     expect_no_fault(one(cube()), 14);
-}
-
-TEST(HonestKernel, HasNoFaultOnSlivers) {
-    for (const float width : {1e-2f, 1e-4f, 1e-6f})
-        for (std::uint32_t seed = 1; seed <= 3; ++seed) expect_no_fault(one(slivers(seed, width)), seed);
 }
 
 TEST(HonestKernel, HasNoFaultFarFromTheOrigin) {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/picture/face_picture.h"
 
+#include <algorithm>
+
 #include <twinray/scene.h>
 #include "twinray/glsl/vector_math.h"
-#include "viewer/picture/marks.h"
-#include "viewer/picture/ray_picture.h"
+#include "viewer/picture/scene_picture.h"
 
 #include "tests/accel/accel_fixture.h"
 #include "tests/scene/temp_dir.h"

@@ -1,4 +1,0 @@
-#!/usr/bin/env bash
-# SPDX-License-Identifier: MIT
-tutorial_embedding .
-mv 06_embedding.png embedding.png

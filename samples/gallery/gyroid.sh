@@ -1,3 +1,0 @@
-#!/usr/bin/env bash
-# SPDX-License-Identifier: MIT
-iso_surface gyroid.png
