@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Checks the format of the code: C++ with clang-format, CMake with gersemi, shell with shellcheck, Python with ruff and
-# mypy, spelling with codespell, shaders of at most 120 columns, and sentences that do not dangle
+# Checks the format of the code: C++ and GLSL with clang-format, CMake with gersemi, shell with shellcheck, Python with ruff and
+# mypy, spelling with codespell, and sentences that do not dangle
 # (tools/check_openers.py).
 #   tools/lint.sh          prints what is wrong; exit status 1 if anything is, 77 if it cannot check
 #   tools/lint.sh --fix    formats C++, CMake and Python first
@@ -25,10 +25,9 @@ if [[ "$(cat build/lint/tools 2>/dev/null)" != "${tools[*]}" ]]; then
     echo "${tools[*]}" >build/lint/tools
 fi
 
-mapfile -t cpp < <(git ls-files '*.h' '*.cpp' | grep -v '^shaders/')
+mapfile -t cpp < <(git ls-files '*.h' '*.cpp' '*.glsl' '*.comp' '*.frag' '*.vert')
 mapfile -t cmake < <(git ls-files '*CMakeLists.txt' '*.cmake')
 mapfile -t scripts < <(git ls-files '*.sh' .ci/run)
-mapfile -t shaders < <(git ls-files shaders '*.glsl' '*.comp' '*.frag' '*.vert')
 mapfile -t texts < <(git ls-files '*.md' '*.h' '*.cpp' '*.py' '*.sh' '*.glsl' '*.comp' '*.cmake' '*CMakeLists.txt')
 
 if [[ ${1-} == --fix ]]; then
@@ -45,8 +44,6 @@ check() { # what, command...
         status=1
     fi
 }
-# shellcheck disable=SC2317,SC2329
-narrow() { ! awk 'length($0) > 120 { print FILENAME ":" FNR ": " length($0) " columns" }' "$@" | grep .; }
 
 check "C++" $bin/clang-format --dry-run --Werror "${cpp[@]}"
 check "CMake" $bin/gersemi --quiet --check "${cmake[@]}"
@@ -54,7 +51,6 @@ check "shell" $bin/shellcheck -x "${scripts[@]}"
 check "Python" $bin/ruff check --quiet
 check "Python's form" $bin/ruff format --quiet --check
 check "Python's types" $bin/mypy --no-error-summary --cache-dir build/mypy bindings/python/twinray
-check "columns of shaders" narrow "${shaders[@]}"
 check "openers of sentences" python3 tools/check_openers.py
 check "spelling" $bin/codespell --ignore-words-list fo,inout,lod,mis,paeth,propety,rcall,tarce,verfy,doubleclick "${texts[@]}"
 exit $status

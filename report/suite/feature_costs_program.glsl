@@ -3,8 +3,7 @@
 // costs have neither.
 #include "twinray/glsl/program.h"
 
-bool intersect_primitive(Candidate candidate, Ray ray_local, inout float t, inout vec2 uv)
-{
+bool intersect_primitive(Candidate candidate, Ray ray_local, inout float t, inout vec2 uv) {
     vec4 sphere = AT(Vec4s(candidate.user_data), candidate.primitive_index);
     vec3 d = ray_local.direction;
     vec3 to_center = sphere.xyz - ray_local.origin;

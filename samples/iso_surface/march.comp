@@ -5,36 +5,36 @@
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"
 layout(local_size_x = 64) in;
-layout(push_constant, scalar) uniform Push
-{
-    Floats positions; // 3 vertices a triangle
+layout(push_constant, scalar) uniform Push {
+    Floats positions;  // 3 vertices a triangle
     Floats normals;
-    Uints count; // triangles so far
-    uint cells;  // along an edge of the cube from -1 to 1
-    uint most;   // triangles
-} push;
+    Uints count;  // triangles so far
+    uint cells;   // along an edge of the cube from -1 to 1
+    uint most;    // triangles
+}
+push;
 
 // A thick gyroid, cut out of a ball, with the edges rounded off.
-float field(vec3 p)
-{
+float field(vec3 p) {
     vec3 q = 9.0 * p;
     float gyroid = (abs(dot(sin(q), cos(q.yzx))) - 0.45) / 12.0, ball = length(p) - 0.9;
     float near_edge = max(1.0 - abs(gyroid - ball) / 0.06, 0.0);
     return max(gyroid, ball) + near_edge * near_edge * 0.015;
 }
 
-vec3 gradient(vec3 p)
-{
+vec3 gradient(vec3 p) {
     const float h = 0.002;
     return vec3(field(p + vec3(h, 0, 0)) - field(p - vec3(h, 0, 0)),
                 field(p + vec3(0, h, 0)) - field(p - vec3(0, h, 0)),
                 field(p + vec3(0, 0, h)) - field(p - vec3(0, 0, h)));
 }
 
-struct Corner { vec3 position; float value; };
+struct Corner {
+    vec3 position;
+    float value;
+};
 
-Corner corner_at(uvec3 place)
-{
+Corner corner_at(uvec3 place) {
     vec3 position = 2.0 * vec3(place) / float(push.cells) - 1.0;
     return Corner(position, field(position));
 }
@@ -42,11 +42,9 @@ Corner corner_at(uvec3 place)
 // Returns the point with f = 0 between two corners. Neighbours give them in the same order, so that all bits agree.
 vec3 crossing(Corner a, Corner b) { return mix(a.position, b.position, a.value / (a.value - b.value)); }
 
-void add_triangle(vec3 a, vec3 b, vec3 c)
-{
+void add_triangle(vec3 a, vec3 b, vec3 c) {
     vec3 outwards = gradient((a + b + c) / 3.0);
-    if (dot(cross(b - a, c - a), outwards) < 0.0)
-    {
+    if (dot(cross(b - a, c - a), outwards) < 0.0) {
         vec3 swapped = b;
         b = c;
         c = swapped;
@@ -54,15 +52,13 @@ void add_triangle(vec3 a, vec3 b, vec3 c)
     uint slot = atomicAdd(AT(push.count, 0), 1u);
     if (slot >= push.most) return;
     vec3 vertices[3] = vec3[3](a, b, c);
-    for (uint k = 0u; k < 3u; k++)
-    {
+    for (uint k = 0u; k < 3u; k++) {
         AT(Vec3s(push.positions.address), 3u * slot + k) = vertices[k];
         AT(Vec3s(push.normals.address), 3u * slot + k) = gradient(vertices[k]);
     }
 }
 
-void march(Corner corners[4])
-{
+void march(Corner corners[4]) {
     uint inside[4], outside[4];
     uint insides = 0u, outsides = 0u;
     for (uint i = 0u; i < 4u; i++)
@@ -80,8 +76,7 @@ void march(Corner corners[4])
     if (edges == 4u) add_triangle(on_edge[1], on_edge[2], on_edge[3]);
 }
 
-void main()
-{
+void main() {
     uint index = global_index(), n = push.cells;
     if (index >= n * n * n) return;
     uvec3 cell = uvec3(index % n, index / n % n, index / (n * n));
@@ -90,8 +85,7 @@ void main()
     corners[0] = corner_at(cell);
     corners[3] = corner_at(cell + 1u);
     for (uint first = 0u; first < 3u; first++)
-        for (uint turn = 1u; turn < 3u; turn++)
-        {
+        for (uint turn = 1u; turn < 3u; turn++) {
             uvec3 one = cell + axes[first];
             corners[1] = corner_at(one);
             corners[2] = corner_at(one + axes[(first + turn) % 3u]);

@@ -6,18 +6,17 @@
 #include "twinray/glsl/surface.glsl"
 #include "twinray/glsl/spawn.glsl"
 layout(local_size_x = 64) in;
-layout(push_constant, scalar) uniform Push
-{
+layout(push_constant, scalar) uniform Push {
     Address accel;
-    Uints pixels; // red, green, blue from the low byte
+    Uints pixels;  // red, green, blue from the low byte
     uint width;
     uint height;
-} push;
+}
+push;
 
-const float EVERYWHERE = 1e30; // t_max
+const float EVERYWHERE = 1e30;  // t_max
 
-vec3 radiance(Ray ray)
-{
+vec3 radiance(Ray ray) {
     Hit hit;
     vec3 sky = mix(vec3(0.9, 0.92, 0.95), vec3(0.35, 0.5, 0.75), 0.5 + 0.5 * ray.direction.y);
     if (!closest_hit(push.accel, ray, hit)) return sky;
@@ -32,8 +31,7 @@ vec3 radiance(Ray ray)
     return color * (0.25 + 0.15 * normal.y + 0.7 * sun);
 }
 
-void main()
-{
+void main() {
     uint i = global_index();
     if (i >= push.width * push.height) return;
     vec2 at = (vec2(i % push.width, i / push.width) + 0.5 - 0.5 * vec2(push.width, push.height)) / float(push.height);

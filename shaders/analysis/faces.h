@@ -5,30 +5,26 @@
 #define TWINRAY_ANALYSIS_FACES_H
 #include "twinray/glsl/spawn.h"
 
-struct FacesOfInstance
-{
+struct FacesOfInstance {
     InstancedMesh placed;
-    uint first; // face of triangle 0
+    uint first;  // face of triangle 0
     uint reserved;
 };
 BUFFER_OF(FacesOfInstance, 8);
 
 BUFFER_OF(Face, 8);
 
-struct FaceTable
-{
-    REF(FacesOfInstance) instances; // in the order of the accelerator's instances
+struct FaceTable {
+    REF(FacesOfInstance) instances;  // in the order of the accelerator's instances
     REF(Face) faces;
 };
 
-FUNC uint face_of(FaceTable table, Hit hit)
-{
+FUNC uint face_of(FaceTable table, Hit hit) {
     return AT(table.instances, hit.instance_index).first + hit.primitive_index;
 }
 
 // Returns the point (1-u-v) v0 + u v1 + v v2 of a face, in world space, with the data for a ray to leave it.
-FUNC SurfacePoint point_on_face(FaceTable table, uint face, vec2 uv)
-{
+FUNC SurfacePoint point_on_face(FaceTable table, uint face, vec2 uv) {
     Face which = AT(table.faces, face);
     FacesOfInstance instance = AT(table.instances, which.instance);
     PackedMesh mesh = instance.placed.mesh;
@@ -37,8 +33,7 @@ FUNC SurfacePoint point_on_face(FaceTable table, uint face, vec2 uv)
 }
 
 // Returns whether a direction comes from the side on which the vertices turn counter-clockwise in object space.
-FUNC bool meets_front(FaceTable table, uint face, vec3 direction)
-{
+FUNC bool meets_front(FaceTable table, uint face, vec3 direction) {
     Face which = AT(table.faces, face);
     FacesOfInstance instance = AT(table.instances, which.instance);
     PackedMesh mesh = instance.placed.mesh;

@@ -9,12 +9,11 @@
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { HorizonArgs args; };
 
-const float AT_END = 1.0f / 65536.0f; // of an edge, near: more than a place on it is rounded, and a vertex itself
-const float AT_END_BY_STEPS = 1.0f / 4194304.0f; // of the steps done: likewise far away
-const float ROUNDINGS = 1.0f + 1.0f / 65536.0f; // more than those of a slope
+const float AT_END = 1.0f / 65536.0f;  // of an edge, near: more than a place on it is rounded, and a vertex itself
+const float AT_END_BY_STEPS = 1.0f / 4194304.0f;  // of the steps done: likewise far away
+const float ROUNDINGS = 1.0f + 1.0f / 65536.0f;   // more than those of a slope
 
-float height_at(ivec2 at)
-{
+float height_at(ivec2 at) {
     if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(args.columns, args.rows)))) return NO_HEIGHT;
     return AT(args.heights, uint(at.y) * args.columns + uint(at.x));
 }
@@ -22,32 +21,27 @@ float height_at(ivec2 at)
 bool is_there(ivec2 at) { return height_at(at) > NO_HEIGHT; }
 
 // A way from a cell. It is counted in steps of a column or a row away from the cell, whatever its direction.
-struct Way
-{
-    ivec2 start; // column and row
-    ivec2 side;  // 1 or -1: where columns and rows go
-    vec2 speed;  // steps per length
-    vec2 pause;  // length per step
+struct Way {
+    ivec2 start;  // column and row
+    ivec2 side;   // 1 or -1: where columns and rows go
+    vec2 speed;   // steps per length
+    vec2 pause;   // length per step
     float eye;
 };
 
 // Returns how many steps are done at a length, by the same rounding as step * pause.
-int steps_done(float along, float speed, float pause)
-{
+int steps_done(float along, float speed, float pause) {
     int steps = int(along * speed);
     if (float(steps + 1) * pause <= along) return steps + 1;
     return float(steps) * pause > along ? steps - 1 : steps;
 }
 
 // Returns whether the cell is a corner of a triangle: two neighbours of the six that its triangles have are there.
-bool is_corner(ivec2 cell)
-{
-    const ivec2 around[6] =
-        ivec2[6](ivec2(1, 0), ivec2(1, 1), ivec2(0, 1), ivec2(-1, 0), ivec2(-1, -1), ivec2(0, -1));
+bool is_corner(ivec2 cell) {
+    const ivec2 around[6] = ivec2[6](ivec2(1, 0), ivec2(1, 1), ivec2(0, 1), ivec2(-1, 0), ivec2(-1, -1), ivec2(0, -1));
     if (!is_there(cell)) return false;
     bool was_there = is_there(cell + around[5]), is_any = false;
-    for (uint k = 0u; k < 6u; ++k)
-    {
+    for (uint k = 0u; k < 6u; ++k) {
         bool is_next = is_there(cell + around[k]);
         is_any = is_any || (was_there && is_next);
         was_there = is_next;
@@ -58,10 +52,9 @@ bool is_corner(ivec2 cell)
 // Returns the slope to the point of an edge of the surface, `part` of it behind p, if it is steeper than `least` and
 // part of a triangle: that with `third` or `other_third`, or at an end of the edge any. It is no higher than the edge's
 // ends, by the same rounding as that of maxima.
-float slope_to(Way way, ivec2 p, ivec2 q, ivec2 third, ivec2 other_third, float part, float along, float least)
-{
+float slope_to(Way way, ivec2 p, ivec2 q, ivec2 third, ivec2 other_third, float part, float along, float least) {
     float end = max(AT_END, along * max(way.speed.x, way.speed.y) * AT_END_BY_STEPS);
-    bool is_p = part < end, is_q = part > 1.0f - end;
+    bool is_p = part<end, is_q = part> 1.0f - end;
     float a = height_at(p), b = height_at(q);
     if (is_p && b <= NO_HEIGHT) b = a;
     if (is_q && a <= NO_HEIGHT) a = b;
@@ -77,23 +70,20 @@ float slope_to(Way way, ivec2 p, ivec2 q, ivec2 third, ivec2 other_third, float 
 
 // Returns the steepest of `best` and the points where a way crosses the diagonal and the far sides of a square: `done`
 // steps away, reached at `along` and left at `leave`.
-float slope_in_square(Way way, ivec2 done, float along, vec2 leave, float best)
-{
+float slope_in_square(Way way, ivec2 done, float along, vec2 leave, float best) {
     ivec2 near = way.start + way.side * done, far = near + way.side;
     ivec2 low = min(near, far), high = max(near, far);
-    if (leave.x <= leave.y)
-    {
+    if (leave.x <= leave.y) {
         PRECISE float part = leave.x * way.speed.y - float(done.y);
         ivec2 top = ivec2(far.x, low.y);
         best = slope_to(way, ivec2(far.x, near.y), far, top + ivec2(1, 1), top + ivec2(-1, 0), part, leave.x, best);
     }
-    if (leave.y <= leave.x)
-    {
+    if (leave.y <= leave.x) {
         PRECISE float part = leave.y * way.speed.x - float(done.x);
         ivec2 left = ivec2(low.x, far.y);
         best = slope_to(way, ivec2(near.x, far.y), far, left + ivec2(1, 1), left + ivec2(0, -1), part, leave.y, best);
     }
-    bool is_along = way.side.x == way.side.y; // the diagonal rises with both steps
+    bool is_along = way.side.x == way.side.y;  // the diagonal rises with both steps
     int line = is_along ? done.x - done.y : done.x + done.y + 1;
     float across = is_along ? way.speed.x - way.speed.y : way.speed.x + way.speed.y;
     if (across == 0.0f) return best;
@@ -104,8 +94,7 @@ float slope_in_square(Way way, ivec2 done, float along, vec2 leave, float best)
     return slope_to(way, from, to, ivec2(high.x, low.y), ivec2(low.x, high.y), part, at_line, best);
 }
 
-float slope_of_horizon(ivec2 start, vec2 across)
-{
+float slope_of_horizon(ivec2 start, vec2 across) {
     Way way;
     way.start = start;
     way.speed = abs(across);
@@ -120,8 +109,7 @@ float slope_of_horizon(ivec2 start, vec2 across)
     ivec2 done = ivec2(0);
     float along = 0.0f, best = 0.0f;
     float top = AT(args.maxima, AT(args.levels, args.level_count - 1u).first) - eye;
-    while (true)
-    {
+    while (true) {
         ivec2 square = start + way.side * done - ivec2(lessThan(way.side, ivec2(0)));
         if (any(lessThan(square, ivec2(0))) || any(greaterThanEqual(square + 1, ivec2(args.columns, args.rows)))) break;
         HorizonLevel maxima = AT(args.levels, level);
@@ -129,8 +117,7 @@ float slope_of_horizon(ivec2 start, vec2 across)
         float rise = AT(args.maxima, maxima.first + uint(block.y) * maxima.columns + uint(block.x)) - eye;
         PRECISE float wanted = (best + 0.5f * args.bend * along) * along;
         bool is_low = rise <= 0.0f || rise * ROUNDINGS <= wanted;
-        if (!is_low && level > 0u)
-        {
+        if (!is_low && level > 0u) {
             --level;
             continue;
         }
@@ -149,19 +136,16 @@ float slope_of_horizon(ivec2 start, vec2 across)
     return best;
 }
 
-void main()
-{
+void main() {
     uint i = global_index();
     if (i >= args.count) return;
     i += args.first;
     ivec2 cell = ivec2(args.corner + uvec2(i % args.asked_columns, i / args.asked_columns));
     bool is_hole = !is_there(cell);
     PRECISE float sum = 0.0f;
-    for (uint k = 0u; k < args.way_count; ++k)
-    {
+    for (uint k = 0u; k < args.way_count; ++k) {
         float slope = is_hole ? uintBitsToFloat(0x7fc00000u) : slope_of_horizon(cell, AT(args.ways, k));
-        if (args.measure == HORIZON_SLOPE)
-        {
+        if (args.measure == HORIZON_SLOPE) {
             AT(args.answers, i * args.way_count + k) = slope;
             continue;
         }

@@ -9,8 +9,7 @@ layout(local_size_x = CHUNK) in;
 #ifdef KERNEL_PAIR_RAYS
 layout(push_constant, scalar) uniform Push { PairRaysArgs args; };
 
-void main()
-{
+void main() {
     uint i = gl_LocalInvocationIndex;
     PairChunk chunk = AT(args.chunks, group_index());
     vec4 u = pair_sample_of(args, chunk, i / SAMPLES_OF_CHUNK, chunk.first + i % SAMPLES_OF_CHUNK);
@@ -23,8 +22,7 @@ void main()
 #ifdef KERNEL_PAIR_WEIGHTS
 layout(push_constant, scalar) uniform Push { PairWeightsArgs args; };
 
-void main()
-{
+void main() {
     uint i = global_index();
     if (i < args.count && AT(args.hits, i).hit != 0u) AT(args.weights, i) = -AT(args.weights, i);
 }

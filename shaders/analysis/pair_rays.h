@@ -6,46 +6,41 @@
 
 // Rays between two faces: samples `first` to `first + SAMPLES_OF_CHUNK - 1` of each replicate, in the order of
 // RayChunk.
-struct PairChunk
-{
+struct PairChunk {
     uint a;
     uint b;
     uint first;
-    float distance; // of the faces, about; weights are in units of their values there
+    float distance;  // of the faces, about; weights are in units of their values there
     FacePart part_a;
     FacePart part_b;
 };
 BUFFER_OF(PairChunk, 4);
 
-struct PairRaysArgs
-{
+struct PairRaysArgs {
     FaceTable table;
     REF(PairChunk) chunks;
-    REF(Ray) rays;  // written
-    Floats weights; // written
+    REF(Ray) rays;   // written
+    Floats weights;  // written
     uint seed;
-    uint sequence; // SEQUENCE_*
+    uint sequence;  // SEQUENCE_*
     uint is_two_sided;
     uint reserved;
 };
 
-struct PairWeightsArgs
-{
+struct PairWeightsArgs {
     REF(Hit) hits;
-    Floats weights; // of blocked rays made negative
+    Floats weights;  // of blocked rays made negative
     uint count;
     uint reserved;
 };
 
-struct PairRay
-{
+struct PairRay {
     // from a spawn point to the other: it meets all that is between; ends before it begins where `weight` is 0
     Ray ray;
-    float weight; // cos cos (distance / r)^2; 0 where a side that does not count is seen, half of it where both do
+    float weight;  // cos cos (distance / r)^2; 0 where a side that does not count is seen, half of it where both do
 };
 
-FUNC vec4 pair_sample_of(PairRaysArgs args, PairChunk chunk, uint replicate, uint index)
-{
+FUNC vec4 pair_sample_of(PairRaysArgs args, PairChunk chunk, uint replicate, uint index) {
     uvec4 key = random_words(uvec4(chunk.a, chunk.b, replicate, args.seed));
     uvec4 words;
     if (args.sequence == SEQUENCE_SOBOL)
@@ -55,8 +50,7 @@ FUNC vec4 pair_sample_of(PairRaysArgs args, PairChunk chunk, uint replicate, uin
     return vec4(unit_floats(uvec2(words.x, words.y)), unit_floats(uvec2(words.z, words.w)));
 }
 
-FUNC PairRay pair_ray(PairRaysArgs args, PairChunk chunk, vec4 u)
-{
+FUNC PairRay pair_ray(PairRaysArgs args, PairChunk chunk, vec4 u) {
     SurfacePoint a = inner_point(args.table, chunk.a, sample_part(chunk.part_a, vec2(u.x, u.y)));
     SurfacePoint b = inner_point(args.table, chunk.b, sample_part(chunk.part_b, vec2(u.z, u.w)));
     vec3 way = b.position - a.position;

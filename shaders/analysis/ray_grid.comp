@@ -10,8 +10,7 @@ layout(local_size_x = 64) in;
 #ifdef KERNEL_GRID_RAYS
 layout(push_constant, scalar) uniform Push { GridRaysArgs args; };
 
-void main()
-{
+void main() {
     uint i = global_index();
     if (i < args.count) AT(args.rays, i) = grid_ray(args.grid, args.first + i);
 }
@@ -20,21 +19,18 @@ void main()
 #ifdef KERNEL_COUNT_FACES
 layout(push_constant, scalar) uniform Push { CountFacesArgs args; };
 
-void add_odd(uint group)
-{
+void add_odd(uint group) {
     atomicAdd(AT(args.counts, group).hits, 1u);
     atomicAdd(AT(args.counts, group).odd, 1u);
 }
 
 // Adds the hits of two neighbouring rays to the counts of their groups.
-void main()
-{
+void main() {
     uint ray = 2u * global_index();
     if (ray >= args.ray_count) return;
     uint a = group_of(args, ray);
     uint b = ray + 1u < args.ray_count ? group_of(args, ray + 1u) : NO_GROUP;
-    if (a == b)
-    {
+    if (a == b) {
         if (a != NO_GROUP) atomicAdd(AT(args.counts, a).hits, 2u);
         return;
     }

@@ -9,8 +9,7 @@ layout(local_size_x = 64) in;
 #ifdef KERNEL_SKY_RAYS
 layout(push_constant, scalar) uniform Push { SkyRaysArgs args; };
 
-void main()
-{
+void main() {
     uint i = global_index();
     if (i < args.ray_count) AT(args.rays, i) = sky_ray(args, i);
 }
@@ -22,8 +21,7 @@ layout(push_constant, scalar) uniform Push { CountFreeArgs args; };
 uint is_free(uint ray) { return AT(args.rays, ray).t_max > 0.0 && AT(args.hits, ray).hit == 0u ? 1u : 0u; }
 
 // Adds the results of two rays of a face to its counts.
-void main()
-{
+void main() {
     uint pair = global_index();
     if (pair >= args.pair_count) return;
     uint pairs_of_face = (args.samples + 1u) / 2u;

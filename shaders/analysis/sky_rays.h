@@ -8,36 +8,34 @@
 
 const uint FACE_STREAM = 0x66616365u;
 
-struct SkyRaysArgs
-{
+struct SkyRaysArgs {
     FaceTable table;
-    REF(Ray) rays; // `samples` of each face; one that leaves a side that does not count ends before it begins
-    vec3 towards;  // the zenith or the sun; unit
-    uint to_sun;   // 1: all rays go there; 0: to all of the sky above the horizon, by its contribution to the face
+    REF(Ray) rays;  // `samples` of each face; one that leaves a side that does not count ends before it begins
+    vec3 towards;   // the zenith or the sun; unit
+    uint to_sun;    // 1: all rays go there; 0: to all of the sky above the horizon, by its contribution to the face
     uint front_only;
     uint first_face;
     uint ray_count;
     uint samples;
-    uint rows; // of strata, about sqrt(samples)
+    uint rows;  // of strata, about sqrt(samples)
     uint stream;
     uint seed_low;
     uint seed_high;
 };
 
-struct CountFreeArgs
-{
+struct CountFreeArgs {
     REF(Ray) rays;
     REF(Hit) hits;
-    REF(GroupCount) counts; // of each face: rays that begin and meet nothing; pairs are (2 i, 2 i + 1) of a face's rays
+    REF(GroupCount)
+    counts;  // of each face: rays that begin and meet nothing; pairs are (2 i, 2 i + 1) of a face's rays
     uint first_face;
     uint samples;
-    uint pair_count; // ceil(samples / 2) of each face
+    uint pair_count;  // ceil(samples / 2) of each face
     uint reserved;
 };
 
 // Returns the point u of stratum `index` of `count` with equal areas, which fill `rows` rows of the unit square.
-FUNC vec2 in_stratum(uint index, uint count, uint rows, vec2 u)
-{
+FUNC vec2 in_stratum(uint index, uint count, uint rows, vec2 u) {
     uint row = index * rows / count;
     uint first = (row * count + rows - 1u) / rows;
     uint next = ((row + 1u) * count + rows - 1u) / rows;
@@ -45,8 +43,7 @@ FUNC vec2 in_stratum(uint index, uint count, uint rows, vec2 u)
     return vec2((float(index - first) + u.x) / columns, (float(first) + u.y * columns) / float(count));
 }
 
-FUNC Ray sky_ray(SkyRaysArgs args, uint index)
-{
+FUNC Ray sky_ray(SkyRaysArgs args, uint index) {
     uint face = args.first_face + index / args.samples;
     uint number = index % args.samples;
     // Two hashes: a face has up to 2^20 rays, and the sun up to 2^32 positions.
@@ -56,8 +53,7 @@ FUNC Ray sky_ray(SkyRaysArgs args, uint index)
     vec2 second = unit_floats(uvec2(words.z, words.w));
     SurfacePoint point = point_on_face(args.table, face, sample_triangle(args.to_sun != 0u ? first : second));
     vec3 direction = args.towards;
-    if (args.to_sun == 0u)
-    {
+    if (args.to_sun == 0u) {
         // The density is the cosine, over all of the sphere that is not below the horizon.
         direction = to_world(frame_about(point.normal), sample_cosine_hemisphere(first));
         if (dot(direction, args.towards) < 0.0f) direction = -direction;

@@ -9,8 +9,7 @@ layout(local_size_x = CHUNK) in;
 #ifdef KERNEL_FACE_RAYS
 layout(push_constant, scalar) uniform Push { FaceRaysArgs args; };
 
-void main()
-{
+void main() {
     uint i = gl_LocalInvocationIndex;
     RayChunk chunk = AT(args.chunks, group_index());
     vec4 u = sample_of(args, chunk.face, i / SAMPLES_OF_CHUNK, chunk.first + i % SAMPLES_OF_CHUNK);
@@ -21,8 +20,7 @@ void main()
 #ifdef KERNEL_FACE_TARGETS
 layout(push_constant, scalar) uniform Push { FaceTargetsArgs args; };
 
-void main()
-{
+void main() {
     uint i = global_index();
     if (i >= args.count) return;
     AT(args.targets, i) = target_of(args, AT(args.rays, i), AT(args.hits, i));

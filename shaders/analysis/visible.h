@@ -4,12 +4,11 @@
 #define TWINRAY_ANALYSIS_VISIBLE_H
 #include "twinray/glsl/ray.h"
 
-struct VisibleArgs
-{
-    Floats points;  // three each
-    Floats vectors; // likewise
-    Floats normals; // of the points, or absent
-    REF(Ray) rays;  // of a tile: by point, then by vector; one that leaves the back of its point ends before it begins
+struct VisibleArgs {
+    Floats points;   // three each
+    Floats vectors;  // likewise
+    Floats normals;  // of the points, or absent
+    REF(Ray) rays;   // of a tile: by point, then by vector; one that leaves the back of its point ends before it begins
     REF(Hit) hits;
     Uints answers;  // a byte a ray
     uint first_point;
@@ -17,6 +16,6 @@ struct VisibleArgs
     uint vector_count;
     float t_near;
     float t_far;
-    float reach; // the largest coordinate of the scene
+    float reach;  // the largest coordinate of the scene
 };
 #endif

@@ -10,8 +10,7 @@ layout(local_size_x = 64) in;
 #ifdef KERNEL_INSTANCE_BOXES
 layout(push_constant, scalar) uniform Push { InstanceBoxesArgs args; };
 
-void main()
-{
+void main() {
     uint i = global_index();
     if (i >= args.count) return;
     bool is_unusable = false;
@@ -26,8 +25,7 @@ layout(push_constant, scalar) uniform Push { BoxTreeArgs args; };
 #endif
 
 #ifdef KERNEL_LEAVES
-void main()
-{
+void main() {
     uint i = global_index();
     if (i < args.count) AT(args.nodes, args.leaf_begin + i) = AT(args.boxes, AT(args.order, i));
 }
@@ -35,20 +33,17 @@ void main()
 
 #ifdef KERNEL_LEVEL
 // Nodes without leaves below them are empty.
-TreeBox load(uint node)
-{
+TreeBox load(uint node) {
     if (node >= args.leaf_begin + args.count) return empty_tree_box();
     return AT(args.nodes, node);
 }
 
-uint leaves_of(TreeBox box, uint node)
-{
+uint leaves_of(TreeBox box, uint node) {
     if (node < args.leaf_begin) return box.item;
     return is_empty(box) ? 0u : 1u;
 }
 
-void main()
-{
+void main() {
     uint i = global_index();
     if (i >= args.first) return;
     uint node = args.first + i;

@@ -13,13 +13,11 @@ layout(push_constant, scalar) uniform Push { HilbertOrderArgs args; };
 layout(local_size_x = WORLD_BOUND_GROUP) in;
 #include "shaders/engine/group_box.glsl"
 
-void main()
-{
+void main() {
     if (group_index() >= args.group_count) return;
     GeometryBox box = no_box();
     uint stride = args.group_count * WORLD_BOUND_GROUP;
-    for (uint i = global_index(); i < args.count; i += stride)
-    {
+    for (uint i = global_index(); i < args.count; i += stride) {
         TreeBox given = AT(args.boxes, i);
         vec3 center = center_of(given);
         if (is_empty(given) || !is_finite(center)) continue;
@@ -33,14 +31,12 @@ void main()
 #ifdef KERNEL_CODES
 layout(local_size_x = 64) in;
 
-const uint HILBERT_BITS = 20u; // an axis
+const uint HILBERT_BITS = 20u;  // an axis
 
 // Deals the bits of the index out to three words, from the highest on: Skilling, "Programming the Hilbert curve", 2004.
-uvec3 hilbert_words(uvec3 cell)
-{
+uvec3 hilbert_words(uvec3 cell) {
     uvec3 x = cell;
-    for (uint bit = 1u << (HILBERT_BITS - 1u); bit > 1u; bit = bit >> 1u)
-    {
+    for (uint bit = 1u << (HILBERT_BITS - 1u); bit > 1u; bit = bit >> 1u) {
         uint below = bit - 1u;
         if ((x.x & bit) != 0u) x.x = x.x ^ below;
         uint swapped = (x.y & bit) != 0u ? 0u : (x.x ^ x.y) & below;
@@ -59,15 +55,13 @@ uvec3 hilbert_words(uvec3 cell)
 }
 
 // Returns the 30 higher or lower bits of the index of the cell with a point of the cube from `low` with sides `size`.
-uint hilbert_code(vec3 point, vec3 low, float size, bool is_higher)
-{
+uint hilbert_code(vec3 point, vec3 low, float size, bool is_higher) {
     uvec3 words = hilbert_words(cells_of(point, low, low + vec3(size)));
     uint shift = is_higher ? 10u : 0u;
     return interleaved((words.x >> shift) & 1023u, (words.y >> shift) & 1023u, (words.z >> shift) & 1023u);
 }
 
-void main()
-{
+void main() {
     uint i = global_index();
     if (i >= args.count) return;
     uint index = i;

@@ -8,16 +8,14 @@
 
 const int UNKNOWN_SIGN = 2;
 
-FUNC int certain_sign(double value, double bound)
-{
+FUNC int certain_sign(double value, double bound) {
     if (value > bound) return 1;
     if (-value > bound) return -1;
-    return bound == double(0.0f) ? 0 : UNKNOWN_SIGN; // 0: each product has a factor of exactly 0
+    return bound == double(0.0f) ? 0 : UNKNOWN_SIGN;  // 0: each product has a factor of exactly 0
 }
 
 // Returns the sign of det(a - d, b - d, c - d): positive if d sees a, b, c turn clockwise. 0 if two points are one.
-FUNC int filtered_volume_sign(dvec3 a, dvec3 b, dvec3 c, dvec3 d)
-{
+FUNC int filtered_volume_sign(dvec3 a, dvec3 b, dvec3 c, dvec3 d) {
     const double BOUND = double(8.8817841970012523e-16f);
     if (a == b || a == c || a == d || b == c || b == d || c == d) return 0;
     PRECISE dvec3 ad = a - d;
@@ -30,15 +28,14 @@ FUNC int filtered_volume_sign(dvec3 a, dvec3 b, dvec3 c, dvec3 d)
     PRECISE double ab = ad.x * bd.y;
     PRECISE double ba = bd.x * ad.y;
     PRECISE double volume = ad.z * (bc - cb) + bd.z * (ca - ac) + cd.z * (ab - ba);
-    PRECISE double size = (abs(bc) + abs(cb)) * abs(ad.z) + (abs(ca) + abs(ac)) * abs(bd.z) +
-        (abs(ab) + abs(ba)) * abs(cd.z);
+    PRECISE double size =
+        (abs(bc) + abs(cb)) * abs(ad.z) + (abs(ca) + abs(ac)) * abs(bd.z) + (abs(ab) + abs(ba)) * abs(cd.z);
     PRECISE double bound = BOUND * size;
     return certain_sign(volume, bound);
 }
 
 // Returns the coordinates across `axis`, in cyclic order of x, y, z.
-FUNC dvec2 without_axis(dvec3 p, uint axis)
-{
+FUNC dvec2 without_axis(dvec3 p, uint axis) {
     if (axis == 0u) return dvec2(p.y, p.z);
     if (axis == 1u) return dvec2(p.z, p.x);
     return dvec2(p.x, p.y);
@@ -46,8 +43,7 @@ FUNC dvec2 without_axis(dvec3 p, uint axis)
 
 // Returns the sign of det(a - c, b - c) as seen along an axis: positive if a, b, c turn anticlockwise, 0 if two are
 // equal.
-FUNC int filtered_area_sign(dvec3 a, dvec3 b, dvec3 c, uint axis)
-{
+FUNC int filtered_area_sign(dvec3 a, dvec3 b, dvec3 c, uint axis) {
     const double BOUND = double(4.4408920985006262e-16f);
     if (a == b || a == c || b == c) return 0;
     dvec2 a2 = without_axis(a, axis);

@@ -11,15 +11,13 @@ layout(push_constant, scalar) uniform Push { PairSearchArgs args; };
 bool has(uint flag) { return (args.flags & flag) != 0u; }
 
 // Counts them; returns how many there were before, without the high word.
-uint count(uint pairs)
-{
+uint count(uint pairs) {
     uint before = atomicAdd(AT(args.total, 0).low, pairs);
     if (before + pairs < before) atomicAdd(AT(args.total, 0).high, 1u);
     return before;
 }
 
-void append_pair(uint item, uint other)
-{
+void append_pair(uint item, uint other) {
     uint slot = count(1u);
     if (slot >= args.capacity) return;
     bool is_turned = has(SEARCH_WITHIN) && other < item;
@@ -27,8 +25,7 @@ void append_pair(uint item, uint other)
     AT(args.second, slot) = is_turned ? item : other;
 }
 
-void main()
-{
+void main() {
     uint i = args.query_begin + global_index();
     if (i >= args.query_end) return;
     TreeBox query = AT(args.queries, i);
@@ -36,21 +33,15 @@ void main()
     if (has(SEARCH_ANY) && atomicAdd(AT(args.total, 0).low, 0u) != 0u) return;
     uint end = args.leaf_begin + args.leaf_count;
     uint node = has(SEARCH_WITHIN) ? next_subtree(args.leaf_begin + i) : 1u;
-    while (node != 0u && node < end)
-    {
+    while (node != 0u && node < end) {
         TreeBox other = AT(args.nodes, node);
         bool meets = overlap(query, other) && !(has(SEARCH_OTHER_GROUPS) && other.group == query.group);
-        if (has(SEARCH_COUNT) && meets && node < args.leaf_begin && contains(query, other))
-        {
+        if (has(SEARCH_COUNT) && meets && node < args.leaf_begin && contains(query, other)) {
             count(other.item);
-        }
-        else if (meets && node < args.leaf_begin)
-        {
+        } else if (meets && node < args.leaf_begin) {
             node = 2u * node;
             continue;
-        }
-        else if (meets && !is_empty(other))
-        {
+        } else if (meets && !is_empty(other)) {
             append_pair(query.item, other.item);
             if (has(SEARCH_ANY)) return;
         }

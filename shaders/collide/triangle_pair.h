@@ -10,11 +10,10 @@
 #include "shaders/collide/pair_class.h"
 
 // The shape of a triangle: 2: itself; 1: the segment from a to b = c; 0: the point a = b = c.
-struct Hull
-{
+struct Hull {
     WorldTriangle at;
     uint dimension;
-    uint axis; // along which it has an area
+    uint axis;  // along which it has an area
 };
 
 FUNC bool is_known(ivec3 s) { return s.x != UNKNOWN_SIGN && s.y != UNKNOWN_SIGN && s.z != UNKNOWN_SIGN; }
@@ -22,14 +21,12 @@ FUNC bool is_all(ivec3 s, int sign) { return s.x == sign && s.y == sign && s.z =
 FUNC bool has_sign(ivec3 s, int sign) { return s.x == sign || s.y == sign || s.z == sign; }
 FUNC bool is_on_one_side(ivec3 s) { return is_all(s, 1) || is_all(s, -1); }
 
-FUNC Hull hull_of(WorldTriangle t, INOUT(bool) doubt)
-{
+FUNC Hull hull_of(WorldTriangle t, INOUT(bool) doubt) {
     Hull hull;
     hull.at = t;
     hull.dimension = 2u;
     bool is_unsure = false;
-    for (uint axis = 0u; axis < 3u; axis = axis + 1u)
-    {
+    for (uint axis = 0u; axis < 3u; axis = axis + 1u) {
         hull.axis = axis;
         int sign = area_sign(t.a, t.b, t.c, axis);
         if (sign == 1 || sign == -1) return hull;
@@ -45,8 +42,7 @@ FUNC Hull hull_of(WorldTriangle t, INOUT(bool) doubt)
     return hull;
 }
 
-FUNC ivec3 sides_of(WorldTriangle plane, WorldTriangle t)
-{
+FUNC ivec3 sides_of(WorldTriangle plane, WorldTriangle t) {
     return ivec3(volume_sign(plane.a, plane.b, plane.c, t.a), volume_sign(plane.a, plane.b, plane.c, t.b),
                  volume_sign(plane.a, plane.b, plane.c, t.c));
 }
@@ -54,15 +50,13 @@ FUNC ivec3 sides_of(WorldTriangle plane, WorldTriangle t)
 // ---- In one plane ---------------------------------------------------------------------------------------------------
 
 // Tells whether the line from p to q has t on one side and the point with the sign `own` not on that side.
-struct Separation
-{
-    bool is_strict; // no point of t on the line
+struct Separation {
+    bool is_strict;  // no point of t on the line
     bool is_weak;
     bool is_known;
 };
 
-FUNC Separation separation(dvec3 p, dvec3 q, int own, WorldTriangle t, uint axis)
-{
+FUNC Separation separation(dvec3 p, dvec3 q, int own, WorldTriangle t, uint axis) {
     ivec3 s = ivec3(area_sign(p, q, t.a, axis), area_sign(p, q, t.b, axis), area_sign(p, q, t.c, axis));
     Separation found;
     found.is_strict = (is_all(s, 1) && own <= 0) || (is_all(s, -1) && own >= 0);
@@ -71,8 +65,7 @@ FUNC Separation separation(dvec3 p, dvec3 q, int own, WorldTriangle t, uint axis
     return found;
 }
 
-FUNC Separation best_of(Separation a, Separation b)
-{
+FUNC Separation best_of(Separation a, Separation b) {
     Separation both;
     both.is_strict = a.is_strict || b.is_strict;
     both.is_weak = a.is_weak || b.is_weak;
@@ -80,13 +73,11 @@ FUNC Separation best_of(Separation a, Separation b)
     return both;
 }
 
-FUNC Separation edges_separation(WorldTriangle of, WorldTriangle t, uint axis)
-{
+FUNC Separation edges_separation(WorldTriangle of, WorldTriangle t, uint axis) {
     int own = area_sign(of.a, of.b, of.c, axis);
     Separation found = best_of(separation(of.a, of.b, own, t, axis), separation(of.b, of.c, own, t, axis));
     found = best_of(found, separation(of.c, of.a, own, t, axis));
-    if (own == UNKNOWN_SIGN)
-    {
+    if (own == UNKNOWN_SIGN) {
         found.is_strict = false;
         found.is_known = false;
     }
@@ -95,8 +86,7 @@ FUNC Separation edges_separation(WorldTriangle of, WorldTriangle t, uint axis)
 
 // Convex sets in a plane are apart if a line along an edge of either has them on different sides. Edges of no length
 // never do.
-FUNC uint coplanar_class(Hull t, Hull u, uint axis)
-{
+FUNC uint coplanar_class(Hull t, Hull u, uint axis) {
     Separation found = best_of(edges_separation(t.at, u.at, axis), edges_separation(u.at, t.at, axis));
     if (found.is_strict) return PAIR_SEPARATE;
     if (!found.is_known) return PAIR_UNDECIDED;
@@ -107,24 +97,21 @@ FUNC uint coplanar_class(Hull t, Hull u, uint axis)
 // ---- Two triangles that are not in one plane ------------------------------------------------------------------------
 
 // A line through two vertices of a triangle that meets the plane of the other one, upwards.
-struct Cut
-{
+struct Cut {
     dvec3 from;
     dvec3 to;
-    bool is_vertex; // it meets the plane in one of them
+    bool is_vertex;  // it meets the plane in one of them
 };
 
 // The segment in which a triangle meets the plane of the other: from one cut to the other.
-struct Cuts
-{
+struct Cuts {
     Cut first;
     Cut last;
-    bool is_point;  // both are one vertex
-    bool straddles; // there are vertices on both sides
+    bool is_point;   // both are one vertex
+    bool straddles;  // there are vertices on both sides
 };
 
-FUNC Cut make_cut(dvec3 p, int p_side, dvec3 q, int q_side)
-{
+FUNC Cut make_cut(dvec3 p, int p_side, dvec3 q, int q_side) {
     Cut cut;
     cut.from = p_side < q_side ? p : q;
     cut.to = p_side < q_side ? q : p;
@@ -135,21 +122,17 @@ FUNC Cut make_cut(dvec3 p, int p_side, dvec3 q, int q_side)
 FUNC bool is_apex(int own, int b, int c) { return own != b && own != c && !(own == 0 && b != c); }
 
 // `s`: the sides of its vertices, neither all 0 nor on one side.
-FUNC Cuts cuts_of(WorldTriangle t, ivec3 s)
-{
+FUNC Cuts cuts_of(WorldTriangle t, ivec3 s) {
     dvec3 a = t.a;
     dvec3 b = t.b;
     dvec3 c = t.c;
     ivec3 r = s;
-    if (is_apex(s.y, s.z, s.x))
-    {
+    if (is_apex(s.y, s.z, s.x)) {
         a = t.b;
         b = t.c;
         c = t.a;
         r = ivec3(s.y, s.z, s.x);
-    }
-    else if (is_apex(s.z, s.x, s.y))
-    {
+    } else if (is_apex(s.z, s.x, s.y)) {
         a = t.c;
         b = t.a;
         c = t.b;
@@ -169,8 +152,7 @@ FUNC int order_of(Cut p, Cut q) { return volume_sign(p.from, p.to, q.from, q.to)
 
 FUNC bool is_touch_of_vertex(int order, Cut p, Cut q) { return order == 0 && (p.is_vertex || q.is_vertex); }
 
-FUNC uint cuts_class(Cuts t, Cuts u)
-{
+FUNC uint cuts_class(Cuts t, Cuts u) {
     int ff = order_of(t.first, u.first);
     int fl = order_of(t.first, u.last);
     int lf = order_of(t.last, u.first);
@@ -186,8 +168,7 @@ FUNC uint cuts_class(Cuts t, Cuts u)
     return is_vertex ? PAIR_VERTEX_TOUCH : PAIR_EDGE_TOUCH;
 }
 
-FUNC uint triangles_class(Hull t, Hull u)
-{
+FUNC uint triangles_class(Hull t, Hull u) {
     ivec3 of_u = sides_of(t.at, u.at);
     if (is_on_one_side(of_u)) return PAIR_SEPARATE;
     ivec3 of_t = sides_of(u.at, t.at);
@@ -199,8 +180,7 @@ FUNC uint triangles_class(Hull t, Hull u)
 
 // ---- Segments and points --------------------------------------------------------------------------------------------
 
-FUNC uint segment_triangle_class(Hull segment, Hull t)
-{
+FUNC uint segment_triangle_class(Hull segment, Hull t) {
     dvec3 p = segment.at.a;
     dvec3 q = segment.at.b;
     int p_side = volume_sign(t.at.a, t.at.b, t.at.c, p);
@@ -208,8 +188,8 @@ FUNC uint segment_triangle_class(Hull segment, Hull t)
     if (p_side == q_side && (p_side == 1 || p_side == -1)) return PAIR_SEPARATE;
     if (p_side == UNKNOWN_SIGN || q_side == UNKNOWN_SIGN) return PAIR_UNDECIDED;
     if (p_side == 0 && q_side == 0) return coplanar_class(segment, t, t.axis);
-    ivec3 s = ivec3(volume_sign(p, q, t.at.a, t.at.b), volume_sign(p, q, t.at.b, t.at.c),
-                    volume_sign(p, q, t.at.c, t.at.a));
+    ivec3 s =
+        ivec3(volume_sign(p, q, t.at.a, t.at.b), volume_sign(p, q, t.at.b, t.at.c), volume_sign(p, q, t.at.c, t.at.a));
     if (has_sign(s, 1) && has_sign(s, -1)) return PAIR_SEPARATE;
     if (!is_known(s)) return PAIR_UNDECIDED;
     if (p_side == 0 || q_side == 0) return PAIR_VERTEX_TOUCH;
@@ -218,18 +198,15 @@ FUNC uint segment_triangle_class(Hull segment, Hull t)
     return zeros == 1u ? PAIR_EDGE_TOUCH : PAIR_VERTEX_TOUCH;
 }
 
-FUNC uint point_triangle_class(Hull point, Hull t)
-{
+FUNC uint point_triangle_class(Hull point, Hull t) {
     int side = volume_sign(t.at.a, t.at.b, t.at.c, point.at.a);
     if (side == UNKNOWN_SIGN) return PAIR_UNDECIDED;
     return side == 0 ? coplanar_class(point, t, t.axis) : PAIR_SEPARATE;
 }
 
 // Returns an axis along which three of four points have an area; 3: there is none, they are on one line.
-FUNC uint axis_of(dvec3 a, dvec3 b, dvec3 c, dvec3 d, INOUT(bool) doubt)
-{
-    for (uint axis = 0u; axis < 3u; axis = axis + 1u)
-    {
+FUNC uint axis_of(dvec3 a, dvec3 b, dvec3 c, dvec3 d, INOUT(bool) doubt) {
+    for (uint axis = 0u; axis < 3u; axis = axis + 1u) {
         ivec3 s = ivec3(area_sign(a, b, c, axis), area_sign(a, b, d, axis), area_sign(c, d, a, axis));
         if (has_sign(s, 1) || has_sign(s, -1)) return axis;
         doubt = doubt || !is_known(s);
@@ -238,8 +215,7 @@ FUNC uint axis_of(dvec3 a, dvec3 b, dvec3 c, dvec3 d, INOUT(bool) doubt)
 }
 
 // Classifies two segments or points.
-FUNC uint segments_class(Hull t, Hull u)
-{
+FUNC uint segments_class(Hull t, Hull u) {
     int side = volume_sign(t.at.a, t.at.b, u.at.a, u.at.b);
     if (side == 1 || side == -1) return PAIR_SEPARATE;
     bool doubt = side == UNKNOWN_SIGN;
@@ -251,16 +227,14 @@ FUNC uint segments_class(Hull t, Hull u)
     return is_apart ? PAIR_SEPARATE : PAIR_COPLANAR_TOUCH;
 }
 
-FUNC uint hulls_class(Hull t, Hull u)
-{
+FUNC uint hulls_class(Hull t, Hull u) {
     if (u.dimension == 2u) return t.dimension == 1u ? segment_triangle_class(t, u) : point_triangle_class(t, u);
     return segments_class(t, u);
 }
 
 // ---- Any two triangles ----------------------------------------------------------------------------------------------
 
-FUNC uint class_of(WorldTriangle t, WorldTriangle u)
-{
+FUNC uint class_of(WorldTriangle t, WorldTriangle u) {
     bool doubt = false;
     Hull a = hull_of(t, doubt);
     Hull b = hull_of(u, doubt);

@@ -4,8 +4,7 @@
 #include "twinray/glsl/common.glsl"
 #include "shaders/collide/orient.h"
 
-struct WorldTriangle
-{
+struct WorldTriangle {
     dvec3 a;
     dvec3 b;
     dvec3 c;

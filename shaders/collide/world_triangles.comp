@@ -8,21 +8,20 @@ layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { WorldTrianglesArgs args; };
 
 // Returns the last run that does not begin after `triangle`.
-uint run_of(uint triangle)
-{
+uint run_of(uint triangle) {
     uint low = 0u;
     uint high = args.run_count;
-    while (high - low > 1u)
-    {
+    while (high - low > 1u) {
         uint middle = (low + high) / 2u;
-        if (AT(args.runs, middle).first_triangle <= triangle) low = middle;
-        else high = middle;
+        if (AT(args.runs, middle).first_triangle <= triangle)
+            low = middle;
+        else
+            high = middle;
     }
     return low;
 }
 
-void main()
-{
+void main() {
     uint i = global_index();
     if (i >= args.count) return;
     uint index = run_of(i);

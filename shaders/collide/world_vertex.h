@@ -8,14 +8,12 @@
 #include "shaders/collide/pair_class.h"
 #include "shaders/shared/transform_double.h"
 
-FUNC double world_coordinate(vec4 row, dvec3 p)
-{
+FUNC double world_coordinate(vec4 row, dvec3 p) {
     PRECISE double x = product_sum(dvec3(widened(row.x), widened(row.y), widened(row.z)), p) + widened(row.w);
     return x;
 }
 
-FUNC dvec3 world_vertex(TriangleRun run, uint vertex)
-{
+FUNC dvec3 world_vertex(TriangleRun run, uint vertex) {
     Floats positions = run.placed.mesh.positions;
     dvec3 given = dvec3(widened(AT(positions, 3u * vertex)), widened(AT(positions, 3u * vertex + 1u)),
                         widened(AT(positions, 3u * vertex + 2u)));
@@ -24,14 +22,12 @@ FUNC dvec3 world_vertex(TriangleRun run, uint vertex)
     return dvec3(world_coordinate(rows.r0, p), world_coordinate(rows.r1, p), world_coordinate(rows.r2, p));
 }
 
-FUNC uvec3 indices_of(TriangleRun run, uint primitive)
-{
+FUNC uvec3 indices_of(TriangleRun run, uint primitive) {
     Uints indices = run.placed.mesh.indices;
     return uvec3(AT(indices, 3u * primitive), AT(indices, 3u * primitive + 1u), AT(indices, 3u * primitive + 2u));
 }
 
-FUNC WorldTriangle world_triangle(TriangleRun run, uvec3 indices)
-{
+FUNC WorldTriangle world_triangle(TriangleRun run, uvec3 indices) {
     WorldTriangle triangle;
     triangle.a = world_vertex(run, indices.x);
     triangle.b = world_vertex(run, indices.y);
@@ -40,8 +36,7 @@ FUNC WorldTriangle world_triangle(TriangleRun run, uvec3 indices)
 }
 
 // Returns a float not above x, and the largest such one but for denormals.
-FUNC float float_below(double x)
-{
+FUNC float float_below(double x) {
     const float LARGEST = 3.402823466e38f;
     const float LEAST_NORMAL = 1.17549435082e-38f;
     if (x > double(LARGEST)) return LARGEST;
@@ -54,15 +49,14 @@ FUNC float float_below(double x)
 FUNC vec3 floats_below(dvec3 p) { return vec3(float_below(p.x), float_below(p.y), float_below(p.z)); }
 
 // Returns whether no coordinate is infinite or NaN.
-FUNC bool is_finite_point(dvec3 p)
-{
-    const double LARGEST = double(3.402823466e38f) * double(3.402823466e38f) * double(4.0f); // above any that is finite
+FUNC bool is_finite_point(dvec3 p) {
+    const double LARGEST =
+        double(3.402823466e38f) * double(3.402823466e38f) * double(4.0f);  // above any that is finite
     return abs(p.x) < LARGEST && abs(p.y) < LARGEST && abs(p.z) < LARGEST;
 }
 
 // The box is empty if a vertex is not finite.
-FUNC TreeBox box_around(WorldTriangle t, uint item, uint group)
-{
+FUNC TreeBox box_around(WorldTriangle t, uint item, uint group) {
     TreeBox box = empty_tree_box();
     if (!is_finite_point(t.a) || !is_finite_point(t.b) || !is_finite_point(t.c)) return box;
     box.min = floats_below(min(t.a, min(t.b, t.c)));

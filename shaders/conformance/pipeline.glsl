@@ -22,8 +22,7 @@ layout(primitive_culling);
 #endif
 layout(location = 0) rayPayloadEXT uint is_hit;
 
-void main()
-{
+void main() {
     uint i = shot_index();
     if (i >= launch.count) return;
     QueryArgs args = arguments();
@@ -47,8 +46,7 @@ void main() { is_hit = 0u; }
 layout(location = 0) rayPayloadInEXT uint is_hit;
 hitAttributeEXT vec2 uv;
 
-void main()
-{
+void main() {
     QueryArgs args = arguments();
     uint i = shot_index();
     bool is_front = gl_HitKindEXT == gl_HitKindFrontFacingTriangleEXT;
@@ -61,10 +59,9 @@ void main()
     AT(args.answers, i).primitive = gl_PrimitiveID;
     AT(args.answers, i).object_origin = gl_ObjectRayOriginEXT;
     AT(args.answers, i).object_direction = gl_ObjectRayDirectionEXT;
-    AT(args.answers, i).to_world = Columns(gl_ObjectToWorldEXT[0], gl_ObjectToWorldEXT[1], gl_ObjectToWorldEXT[2],
-                                           gl_ObjectToWorldEXT[3]);
-    if (is_triangle)
-    {
+    AT(args.answers, i).to_world =
+        Columns(gl_ObjectToWorldEXT[0], gl_ObjectToWorldEXT[1], gl_ObjectToWorldEXT[2], gl_ObjectToWorldEXT[3]);
+    if (is_triangle) {
         AT(args.answers, i).is_front = is_front ? 1u : 0u;
         AT(args.answers, i).uv = uv;
     }
@@ -76,8 +73,7 @@ void main()
 hitAttributeEXT vec2 uv;
 
 // Intersections have no payload, so counters lie in the answer, which begins as zeros.
-void note_candidate(QueryArgs args, uint shot, bool is_box)
-{
+void note_candidate(QueryArgs args, uint shot, bool is_box) {
     uint boxes = atomicAdd(AT(args.answers, shot).boxes, is_box ? 1u : 0u);
     uint triangles = atomicAdd(AT(args.answers, shot).triangles, is_box ? 0u : 1u);
     uint position = boxes + triangles;
@@ -89,11 +85,10 @@ void note_candidate(QueryArgs args, uint shot, bool is_box)
 
 #ifdef STAGE_RAHIT
 // Decides about triangles that are not opaque, and boxes for which an intersection was reported.
-void main()
-{
+void main() {
     bool is_triangle =
         gl_HitKindEXT == gl_HitKindFrontFacingTriangleEXT || gl_HitKindEXT == gl_HitKindBackFacingTriangleEXT;
-    if (!is_triangle) return; // the intersection shader has refused all that must be refused
+    if (!is_triangle) return;  // the intersection shader has refused all that must be refused
     QueryArgs args = arguments();
     uint i = shot_index();
     Shot shot = AT(args.shots, i);
@@ -105,14 +100,13 @@ void main()
 
 #ifdef STAGE_RINT
 // Reports boxes that a ray may meet.
-void main()
-{
+void main() {
     QueryArgs args = arguments();
     uint i = shot_index();
     Shot shot = AT(args.shots, i);
     note_candidate(args, i, true);
     if (is_refused(shot, gl_PrimitiveID)) return;
     uv = vec2(0.0f);
-    reportIntersectionEXT(box_t_of(shot, gl_PrimitiveID), 0u); // does nothing outside of the interval
+    reportIntersectionEXT(box_t_of(shot, gl_PrimitiveID), 0u);  // does nothing outside of the interval
 }
 #endif

@@ -16,24 +16,20 @@ layout(primitive_culling);
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { QueryArgs args; };
 
-void note_candidate(uint shot, uint position, bool is_box, rayQueryEXT query)
-{
+void note_candidate(uint shot, uint position, bool is_box, rayQueryEXT query) {
     if (position >= args.slots) return;
-    AT(args.candidates, shot * args.slots + position) =
-        candidate_name(is_box, rayQueryGetIntersectionInstanceIdEXT(query, false),
-                       rayQueryGetIntersectionGeometryIndexEXT(query, false),
-                       rayQueryGetIntersectionPrimitiveIndexEXT(query, false));
+    AT(args.candidates, shot * args.slots + position) = candidate_name(
+        is_box, rayQueryGetIntersectionInstanceIdEXT(query, false),
+        rayQueryGetIntersectionGeometryIndexEXT(query, false), rayQueryGetIntersectionPrimitiveIndexEXT(query, false));
 }
 
 // Returns the end of the ray behind which nothing is found any more.
-float end_of(rayQueryEXT query, Ray ray)
-{
+float end_of(rayQueryEXT query, Ray ray) {
     bool has_hit = rayQueryGetIntersectionTypeEXT(query, true) != gl_RayQueryCommittedIntersectionNoneEXT;
     return has_hit ? rayQueryGetIntersectionTEXT(query, true) : ray.t_max;
 }
 
-void consider_triangle(Shot shot, rayQueryEXT query, inout Answer answer)
-{
+void consider_triangle(Shot shot, rayQueryEXT query, inout Answer answer) {
     answer.triangles++;
     float t = rayQueryGetIntersectionTEXT(query, false);
     if (!(t > shot.ray.t_min && t < shot.ray.t_max)) answer.outside++;
@@ -41,8 +37,7 @@ void consider_triangle(Shot shot, rayQueryEXT query, inout Answer answer)
     rayQueryConfirmIntersectionEXT(query);
 }
 
-void consider_box(Shot shot, rayQueryEXT query, inout Answer answer)
-{
+void consider_box(Shot shot, rayQueryEXT query, inout Answer answer) {
     answer.boxes++;
     if (rayQueryGetIntersectionCandidateAABBOpaqueEXT(query)) answer.opaque_boxes++;
     uint primitive = rayQueryGetIntersectionPrimitiveIndexEXT(query, false);
@@ -51,8 +46,7 @@ void consider_box(Shot shot, rayQueryEXT query, inout Answer answer)
     rayQueryGenerateIntersectionEXT(query, t);
 }
 
-void read_committed(rayQueryEXT query, inout Answer answer)
-{
+void read_committed(rayQueryEXT query, inout Answer answer) {
     uint kind = rayQueryGetIntersectionTypeEXT(query, true);
     if (kind == gl_RayQueryCommittedIntersectionNoneEXT) return;
     bool is_triangle = kind == gl_RayQueryCommittedIntersectionTriangleEXT;
@@ -72,8 +66,7 @@ void read_committed(rayQueryEXT query, inout Answer answer)
     answer.uv = rayQueryGetIntersectionBarycentricsEXT(query, true);
 }
 
-Answer nothing()
-{
+Answer nothing() {
     Answer answer;
     answer.kind = ANSWER_MISS;
     answer.t = 0.0f;
@@ -86,8 +79,7 @@ Answer nothing()
     return answer;
 }
 
-void main()
-{
+void main() {
     uint i = global_index();
     if (i >= args.count) return;
     Shot shot = AT(args.shots, i);
@@ -95,12 +87,13 @@ void main()
     rayQueryEXT query;
     rayQueryInitializeEXT(query, accelerationStructureEXT(args.structure), shot.flags, shot.cull_mask, shot.ray.origin,
                           shot.ray.t_min, shot.ray.direction, shot.ray.t_max);
-    while (rayQueryProceedEXT(query))
-    {
+    while (rayQueryProceedEXT(query)) {
         bool is_box = rayQueryGetIntersectionTypeEXT(query, false) == gl_RayQueryCandidateIntersectionAABBEXT;
         note_candidate(i, answer.triangles + answer.boxes, is_box, query);
-        if (is_box) consider_box(shot, query, answer);
-        else consider_triangle(shot, query, answer);
+        if (is_box)
+            consider_box(shot, query, answer);
+        else
+            consider_triangle(shot, query, answer);
     }
     read_committed(query, answer);
     AT(args.answers, i) = answer;

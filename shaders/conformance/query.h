@@ -4,13 +4,12 @@
 #define TWINRAY_CONFORMANCE_QUERY_H
 
 // A ray with all that a ray query takes, and the treatment of its candidates.
-struct Shot
-{
+struct Shot {
     Ray ray;
-    uint flags;     // SPIR-V's ray flags
+    uint flags;  // SPIR-V's ray flags
     uint cull_mask;
-    uint refused;   // bit i: candidates of primitives i, i + 32, ... are refused
-    float box_t;    // a box's primitive i is met at t = box_t + i * box_step
+    uint refused;  // bit i: candidates of primitives i, i + 32, ... are refused
+    float box_t;   // a box's primitive i is met at t = box_t + i * box_step
     float box_step;
     uint reserved;
 };
@@ -24,8 +23,7 @@ const uint ANSWER_TRIANGLE = 1u;
 const uint ANSWER_BOX = 2u;
 
 // A map.
-struct Columns
-{
+struct Columns {
     vec3 c0;
     vec3 c1;
     vec3 c2;
@@ -33,9 +31,8 @@ struct Columns
 };
 
 // The committed hit, and the number of candidates on the way. A miss has zeros but for the candidates.
-struct Answer
-{
-    uint kind; // ANSWER_...
+struct Answer {
+    uint kind;  // ANSWER_...
     float t;
     uint instance;
     uint custom_index;
@@ -47,26 +44,24 @@ struct Answer
     vec3 object_origin;
     vec3 object_direction;
     Columns to_world;
-    uint triangles;        // candidates
+    uint triangles;  // candidates
     uint boxes;
-    uint opaque_boxes;     // of `boxes`, those reported as opaque; OPACITY_UNKNOWN if no stage is told
-    uint outside;          // triangles whose t was not inside the interval that was left
+    uint opaque_boxes;  // of `boxes`, those reported as opaque; OPACITY_UNKNOWN if no stage is told
+    uint outside;       // triangles whose t was not inside the interval that was left
 };
 BUFFER_OF(Answer, 4);
 const uint OPACITY_UNKNOWN = 0xffffffffu;
 
 // Returns one word that names a candidate. Instances are below 2048, geometries below 256, primitives below 4096.
-FUNC uint candidate_name(bool is_box, uint instance, uint geometry, uint primitive)
-{
+FUNC uint candidate_name(bool is_box, uint instance, uint geometry, uint primitive) {
     return (is_box ? 0x80000000u : 0u) | (instance << 20u) | (geometry << 12u) | primitive;
 }
 
-struct QueryArgs
-{
-    Address structure; // a top level
+struct QueryArgs {
+    Address structure;  // a top level
     REF(Shot) shots;
-    REF(Answer) answers; // written
-    Uints candidates;    // written: `slots` words for each shot, those of its first candidates; absent where slots is 0
+    REF(Answer) answers;  // written
+    Uints candidates;  // written: `slots` words for each shot, those of its first candidates; absent where slots is 0
     uint count;
     uint slots;
 };

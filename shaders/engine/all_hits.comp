@@ -12,8 +12,7 @@ layout(push_constant, scalar) uniform Push { AllHitsArgs args; };
 bool intersect_primitive(Candidate candidate, Ray ray_local, inout float t, inout vec2 uv) { return false; }
 
 // Filters of users may not write (see program.h): this kernel asks how often it is called.
-bool accept_hit(Candidate candidate, float t, vec2 uv)
-{
+bool accept_hit(Candidate candidate, float t, vec2 uv) {
     uint slot = append_to(args.total);
     if (slot >= args.capacity) return false;
     Hit hit;
@@ -30,8 +29,7 @@ bool accept_hit(Candidate candidate, float t, vec2 uv)
     return false;
 }
 
-void main()
-{
+void main() {
     uint i = args.first + global_index();
     if (i >= args.end) return;
     uint flags = args.flags | ALL_NON_OPAQUE;

@@ -9,8 +9,7 @@ layout(local_size_x = 64) in;
 #ifdef KERNEL_COPY_WORDS
 layout(push_constant, scalar) uniform Push { CopyWordsArgs args; };
 
-void main()
-{
+void main() {
     uint index = global_index();
     if (index < args.count) AT(args.to, index) = AT(args.from, index);
 }
@@ -19,8 +18,7 @@ void main()
 #ifdef KERNEL_COPY_FLOATS
 layout(push_constant, scalar) uniform Push { CopyFloatsArgs args; };
 
-void main()
-{
+void main() {
     uint index = global_index();
     if (index < args.count) AT(args.to, index) = AT(args.from, index) * args.factor;
 }
@@ -29,8 +27,7 @@ void main()
 #ifdef KERNEL_COPY_TRANSFORMS
 layout(push_constant, scalar) uniform Push { CopyTransformsArgs args; };
 
-void main()
-{
+void main() {
     uint index = global_index();
     if (index >= args.count) return;
     AT(args.records, index).object_to_world =

@@ -8,8 +8,7 @@
 shared vec3 group_lo[gl_WorkGroupSize.x];
 shared vec3 group_hi[gl_WorkGroupSize.x];
 
-GeometryBox no_box()
-{
+GeometryBox no_box() {
     GeometryBox box;
     box.lo = vec3(uintBitsToFloat(0x7f800000u));
     box.hi = vec3(uintBitsToFloat(0xff800000u));
@@ -17,16 +16,13 @@ GeometryBox no_box()
 }
 
 // Called by all invocations of a group: joins their boxes to the first.
-void join_boxes(vec3 lo, vec3 hi)
-{
+void join_boxes(vec3 lo, vec3 hi) {
     uint thread = gl_LocalInvocationIndex;
     group_lo[thread] = lo;
     group_hi[thread] = hi;
     barrier();
-    DONT_UNROLL for (uint stride = gl_WorkGroupSize.x / 2u; stride > 0u; stride /= 2u)
-    {
-        if (thread < stride)
-        {
+    DONT_UNROLL for (uint stride = gl_WorkGroupSize.x / 2u; stride > 0u; stride /= 2u) {
+        if (thread < stride) {
             group_lo[thread] = min(group_lo[thread], group_lo[thread + stride]);
             group_hi[thread] = max(group_hi[thread], group_hi[thread + stride]);
         }
@@ -35,12 +31,10 @@ void join_boxes(vec3 lo, vec3 hi)
 }
 
 // Called by all invocations of all groups. Returns true in one invocation of all, once every box is in.
-bool add_box(REF(WorldBoundBits) bits, uint group_count, GeometryBox box)
-{
+bool add_box(REF(WorldBoundBits) bits, uint group_count, GeometryBox box) {
     uint thread = gl_LocalInvocationIndex;
     join_boxes(box.lo, box.hi);
-    if (thread < 3u)
-    {
+    if (thread < 3u) {
         atomicMin(AT(bits, 0).lo[thread], ordered_bits(group_lo[0][thread]));
         atomicMax(AT(bits, 0).hi[thread], ordered_bits(group_hi[0][thread]));
     }
@@ -52,11 +46,9 @@ bool add_box(REF(WorldBoundBits) bits, uint group_count, GeometryBox box)
 }
 
 // Returns the whole box. Called by the invocation that add_box() picked.
-GeometryBox whole_box(REF(WorldBoundBits) bits)
-{
+GeometryBox whole_box(REF(WorldBoundBits) bits) {
     GeometryBox box;
-    for (uint axis = 0u; axis < 3u; axis++)
-    {
+    for (uint axis = 0u; axis < 3u; axis++) {
         box.lo[axis] = from_ordered_bits(atomicAdd(AT(bits, 0).lo[axis], 0u));
         box.hi[axis] = from_ordered_bits(atomicAdd(AT(bits, 0).hi[axis], 0u));
     }

@@ -9,8 +9,7 @@ layout(push_constant, scalar) uniform Push { JoinAreasArgs args; };
 
 shared AreaItem items[AREA_GROUP];
 
-void write_cost(float sum, GeometryBox root, float unit)
-{
+void write_cost(float sum, GeometryBox root, float unit) {
     float area = half_area(root.lo, root.hi, unit);
     TreeCost cost;
     cost.now = area > 0.0f ? sum / area : 0.0f;
@@ -19,8 +18,7 @@ void write_cost(float sum, GeometryBox root, float unit)
     AT(args.result, 0) = cost;
 }
 
-void main()
-{
+void main() {
     uint index = global_index();
     uint thread = gl_LocalInvocationIndex;
     GeometryBox root = AT(args.root, 0);
@@ -28,8 +26,7 @@ void main()
     items[thread] = no_area();
     if (index < args.count) items[thread] = AT(args.items, index);
     barrier();
-    DONT_UNROLL for (uint stride = 1u; stride < AREA_GROUP; stride *= 2u)
-    {
+    DONT_UNROLL for (uint stride = 1u; stride < AREA_GROUP; stride *= 2u) {
         if (thread % (2u * stride) == 0u) items[thread] = join_areas(items[thread], items[thread + stride], unit);
         barrier();
     }

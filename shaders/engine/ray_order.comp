@@ -10,14 +10,12 @@ layout(push_constant, scalar) uniform Push { RayOrderArgs args; };
 #ifdef KERNEL_RAY_BOX
 #include "shaders/engine/group_box.glsl"
 
-void main()
-{
+void main() {
     if (group_index() >= args.group_count) return;
     GeometryBox box = no_box();
     uint count = ray_count(args.count, args.indirect_count);
     uint stride = args.group_count * WORLD_BOUND_GROUP;
-    for (uint i = global_index(), left = RAYS_IN_BOX; left > 0u && i < count; i += stride, left--)
-    {
+    for (uint i = global_index(), left = RAYS_IN_BOX; left > 0u && i < count; i += stride, left--) {
         Ray ray = AT(args.rays, i);
         if (!is_traceable(ray)) continue;
         box.lo = min(box.lo, ray.origin);
@@ -28,8 +26,7 @@ void main()
 #endif
 
 #ifdef KERNEL_RAY_KEYS
-void main()
-{
+void main() {
     uint i = global_index();
     if (i >= args.count) return;
     // The sort is stable: of rays with the last key, those within the count stay before those beyond.

@@ -10,8 +10,7 @@
 layout(local_size_x = 256) in;
 layout(push_constant, scalar) uniform Push { RefineGatherArgs args; };
 
-void main()
-{
+void main() {
     uint i = global_index();
     if (i >= args.count) return;
     AT(args.instances, i) = refine_instance(in_built_units(AT(args.records, i)), absent_near(args.records.address));
@@ -22,8 +21,7 @@ void main()
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { ExactHitsArgs args; };
 
-void main()
-{
+void main() {
     uint i = global_index();
     if (i >= args.count) return;
     Hit hit = AT(args.hits, i);

@@ -15,8 +15,7 @@ layout(push_constant, scalar) uniform Push { ScanArgs args; };
 
 shared uint sums[THREADS];
 
-void main()
-{
+void main() {
     uint thread = gl_LocalInvocationID.x;
     uint run = (args.count + THREADS - 1u) / THREADS;
     uint begin = min(thread * run, args.count);
@@ -25,16 +24,14 @@ void main()
     for (uint i = begin; i < end; ++i) total += AT(args.values, i);
     sums[thread] = total;
     barrier();
-    DONT_UNROLL for (uint distance = 1u; distance < THREADS; distance *= 2u)
-    {
+    DONT_UNROLL for (uint distance = 1u; distance < THREADS; distance *= 2u) {
         uint before = thread >= distance ? sums[thread - distance] : 0u;
         barrier();
         sums[thread] += before;
         barrier();
     }
     uint position = sums[thread] - total;
-    for (uint i = begin; i < end; ++i)
-    {
+    for (uint i = begin; i < end; ++i) {
         uint value = AT(args.values, i);
         AT(args.values, i) = position;
         position += value;
@@ -48,24 +45,17 @@ layout(constant_id = DIGIT_BITS_CONSTANT) const uint DIGIT_BITS = SORT_GPU_DIGIT
 
 const uint DIGITS = 1u << DIGIT_BITS;
 
-shared uint columns[DIGITS * THREADS]; // [digit][thread]
+shared uint columns[DIGITS * THREADS];  // [digit][thread]
 
-Uints kept_columns(SortArgs args)
-{
-    return Uints(address_at(args.kept.address, group_index(), DIGITS * THREADS * 4u));
-}
+Uints kept_columns(SortArgs args) { return Uints(address_at(args.kept.address, group_index(), DIGITS * THREADS * 4u)); }
 bool keeps_columns(SortArgs args) { return !is_absent(args.kept); }
 
-uint slot_of(SortArgs args, uint key)
-{
-    return (key >> args.shift & (DIGITS - 1u)) * THREADS + gl_LocalInvocationID.x;
-}
+uint slot_of(SortArgs args, uint key) { return (key >> args.shift & (DIGITS - 1u)) * THREADS + gl_LocalInvocationID.x; }
 
 uint run_begin(SortArgs args) { return min((group_index() * THREADS + gl_LocalInvocationID.x) * args.run, args.count); }
 
 // Counts the digits of this thread's items, begin .. end - 1. All threads of the group call it.
-void count_digits(SortArgs args, uint begin, uint end)
-{
+void count_digits(SortArgs args, uint begin, uint end) {
     for (uint digit = 0u; digit < DIGITS; ++digit) columns[digit * THREADS + gl_LocalInvocationID.x] = 0u;
     for (uint i = begin; i < end; ++i) columns[slot_of(args, AT(args.keys_in, i))] += 1u;
     barrier();
@@ -73,18 +63,15 @@ void count_digits(SortArgs args, uint begin, uint end)
 #endif
 
 #ifdef KERNEL_SORT_HISTOGRAM
-void main()
-{
+void main() {
     if (group_index() >= args.block_count) return;
     uint begin = run_begin(args);
     count_digits(args, begin, min(begin + args.run, args.count));
     Uints kept = kept_columns(args);
     bool keeps = keeps_columns(args);
-    for (uint digit = gl_LocalInvocationID.x; digit < DIGITS; digit += THREADS)
-    {
+    for (uint digit = gl_LocalInvocationID.x; digit < DIGITS; digit += THREADS) {
         uint sum = 0u;
-        for (uint slot = digit * THREADS; slot < (digit + 1u) * THREADS; ++slot)
-        {
+        for (uint slot = digit * THREADS; slot < (digit + 1u) * THREADS; ++slot) {
             if (keeps) AT(kept, slot) = sum;
             sum += columns[slot];
         }
@@ -97,15 +84,12 @@ void main()
 layout(constant_id = IOTA_CONSTANT) const bool VALUES_ARE_IOTA = false;
 
 // Computes the destinations of the items of each digit and thread.
-void begin_digits()
-{
+void begin_digits() {
     Uints kept = kept_columns(args);
     bool is_kept = keeps_columns(args);
-    for (uint digit = gl_LocalInvocationID.x; digit < DIGITS; digit += THREADS)
-    {
+    for (uint digit = gl_LocalInvocationID.x; digit < DIGITS; digit += THREADS) {
         uint next = AT(args.counts, digit * args.block_count + group_index());
-        for (uint slot = digit * THREADS; slot < (digit + 1u) * THREADS; ++slot)
-        {
+        for (uint slot = digit * THREADS; slot < (digit + 1u) * THREADS; ++slot) {
             uint count = is_kept ? 0u : columns[slot];
             columns[slot] = is_kept ? next + AT(kept, slot) : next;
             next += count;
@@ -114,21 +98,18 @@ void begin_digits()
     barrier();
 }
 
-uint value_at(uint index)
-{
+uint value_at(uint index) {
     if (VALUES_ARE_IOTA) return index;
     return AT(args.values_in, index);
 }
 
-void main()
-{
+void main() {
     if (group_index() >= args.block_count) return;
     uint begin = run_begin(args);
     uint end = min(begin + args.run, args.count);
     if (!keeps_columns(args)) count_digits(args, begin, end);
     begin_digits();
-    for (uint i = begin; i < end; ++i)
-    {
+    for (uint i = begin; i < end; ++i) {
         uint key = AT(args.keys_in, i);
         uint slot = slot_of(args, key);
         uint to = columns[slot];

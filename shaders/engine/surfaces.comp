@@ -9,8 +9,7 @@ layout(local_size_x = 64) in;
 #ifdef KERNEL_SURFACES
 layout(push_constant, scalar) uniform Push { SurfaceArgs args; };
 
-void main()
-{
+void main() {
     uint i = global_index();
     if (i >= args.count) return;
     Hit hit = AT(args.hits, i);
@@ -24,8 +23,7 @@ void main()
 #ifdef KERNEL_INTERPOLATE
 layout(push_constant, scalar) uniform Push { InterpolateArgs args; };
 
-void main()
-{
+void main() {
     uint i = global_index();
     if (i >= args.of.count) return;
     Hit hit = AT(args.of.hits, i);

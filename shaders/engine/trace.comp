@@ -15,24 +15,23 @@ layout(constant_id = QUERY_CONSTANT) const uint TRACE_QUERY = QUERY_CLOSEST;
 layout(constant_id = INTERLEAVE_CONSTANT) const uint TRACE_INTERLEAVE = 0u;
 layout(push_constant, scalar) uniform Push { TraceArgs args; };
 
-void trace_ray(uint position, TraceOptions options)
-{
+void trace_ray(uint position, TraceOptions options) {
     uint i = ray_at(args.order, position);
     Hit hit = trace(args.scene, load_ray(args.rays, i), options);
-    if ((TRACE_FEATURES & FEATURE_HITS) != 0u) store_hit(args.hits, i, hit);
-    else AT(args.hits, i).hit = hit.hit;
+    if ((TRACE_FEATURES & FEATURE_HITS) != 0u)
+        store_hit(args.hits, i, hit);
+    else
+        AT(args.hits, i).hit = hit.hit;
 }
 
-void main()
-{
+void main() {
     uint count = ray_count(args.count, args.indirect_count);
     uint groups = gl_NumWorkGroups.x * gl_NumWorkGroups.y;
     uint size = gl_WorkGroupSize.x;
     uint run = TRACE_INTERLEAVE == 0u ? 1u : run_of_blocks(count, size, groups);
     uint first = interleaved_group(group_index(), groups, TRACE_INTERLEAVE) * run * size + gl_LocalInvocationID.x;
     TraceOptions options = trace_options(args.mask, args.flags, TRACE_QUERY, args.user_data);
-    if (TRACE_INTERLEAVE == 0u)
-    {
+    if (TRACE_INTERLEAVE == 0u) {
         if (first < count) trace_ray(first, options);
         return;
     }

@@ -8,8 +8,7 @@ layout(local_size_x = WORLD_BOUND_GROUP) in;
 #include "shaders/engine/group_box.glsl"
 layout(push_constant, scalar) uniform Push { WorldBoundArgs args; };
 
-void main()
-{
+void main() {
     if (group_index() >= args.group_count) return;
     uint index = global_index();
     GeometryBox box = no_box();

@@ -13,13 +13,12 @@ layout(constant_id = QUERY_CONSTANT) const uint TRACE_QUERY = QUERY_CLOSEST;
 layout(constant_id = FEATURES_CONSTANT) const uint TRACE_FEATURES = FEATURES_ALL;
 layout(push_constant, scalar) uniform Push { TraceArgs args; };
 
-TraceOptions trace_options()
-{
+TraceOptions trace_options() {
     TraceOptions options;
     options.mask = args.mask;
     options.flags = args.flags;
     options.query = TRACE_QUERY;
-    options.level = LEVEL_WATERTIGHT; // the driver's test, whatever was asked for
+    options.level = LEVEL_WATERTIGHT;  // the driver's test, whatever was asked for
     options.features = TRACE_FEATURES;
     options.user_data = args.user_data;
     return options;
@@ -31,8 +30,7 @@ HwTlasHeader scene() { return AT(REF(HwTlasHeader)(args.scene), 0); }
 // Traces one ray per invocation.
 layout(location = 0) rayPayloadEXT Hit payload;
 
-void main()
-{
+void main() {
     uint position = args.first + gl_LaunchIDEXT.y * gl_LaunchSizeEXT.x + gl_LaunchIDEXT.x;
     if (position >= ray_count(args.count, args.indirect_count)) return;
     uint i = ray_at(args.order, position);
@@ -50,12 +48,10 @@ void main()
     float step = REFINING_STEP;
 #endif
     bool is_done = true;
-    do
-    {
+    do {
         payload = miss();
-        if (is_traceable(ray))
-        {
-            payload.t = traced_from; // for the any-hit stage
+        if (is_traceable(ray)) {
+            payload.t = traced_from;  // for the any-hit stage
             uint flags = ray_flags(options, gl_RayFlagsOpaqueEXT, gl_RayFlagsTerminateOnFirstHitEXT);
             traceRayEXT(accelerationStructureEXT(scene().tlas), flags, args.mask, 0u, 0u, 0u, ray.origin,
                         max(ray.t_min, 0.0f), ray.direction, ray.t_max, 0);
@@ -64,8 +60,10 @@ void main()
         is_done = payload.hit == 0u || refine(payload, ray, step, options);
 #endif
     } while (!is_done);
-    if ((TRACE_FEATURES & FEATURE_HITS) != 0u) store_hit(args.hits, i, payload);
-    else AT(args.hits, i).hit = payload.hit;
+    if ((TRACE_FEATURES & FEATURE_HITS) != 0u)
+        store_hit(args.hits, i, payload);
+    else
+        AT(args.hits, i).hit = payload.hit;
 }
 #endif
 
@@ -77,10 +75,9 @@ void main() { payload = miss(); }
 
 #ifdef STAGE_RCHIT
 layout(location = 0) rayPayloadInEXT Hit payload;
-hitAttributeEXT vec2 uv; // barycentrics of a triangle, values from the intersection for a box
+hitAttributeEXT vec2 uv;  // barycentrics of a triangle, values from the intersection for a box
 
-void main()
-{
+void main() {
     Candidate found = candidate_of(scene(), gl_InstanceID, gl_PrimitiveID, gl_InstanceCustomIndexEXT,
                                    gl_HitKindEXT == gl_HitKindFrontFacingTriangleEXT, trace_options());
     payload = hit_of(found, gl_HitTEXT, uv);
@@ -94,10 +91,9 @@ hitAttributeEXT vec2 uv;
 
 #if defined(STAGE_RAHIT)
 // Decides about hits of non-opaque instances.
-layout(location = 0) rayPayloadInEXT Hit payload; // t: by how far the traced ray begins ahead of the given one
+layout(location = 0) rayPayloadInEXT Hit payload;  // t: by how far the traced ray begins ahead of the given one
 
-void main()
-{
+void main() {
     Candidate found = candidate_of(scene(), gl_InstanceID, gl_PrimitiveID, gl_InstanceCustomIndexEXT,
                                    gl_HitKindEXT == gl_HitKindFrontFacingTriangleEXT, trace_options());
     if (!accept_hit(found, payload.t + gl_HitTEXT, uv)) ignoreIntersectionEXT;
@@ -106,10 +102,9 @@ void main()
 
 #if defined(STAGE_RINT)
 // Reports boxes that a ray may meet.
-void main()
-{
-    Candidate found = candidate_of(scene(), gl_InstanceID, gl_PrimitiveID, gl_InstanceCustomIndexEXT, false,
-                                   trace_options());
+void main() {
+    Candidate found =
+        candidate_of(scene(), gl_InstanceID, gl_PrimitiveID, gl_InstanceCustomIndexEXT, false, trace_options());
     Ray ray_local;
     ray_local.origin = gl_ObjectRayOriginEXT;
     ray_local.direction = gl_ObjectRayDirectionEXT;

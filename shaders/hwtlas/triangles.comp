@@ -8,16 +8,14 @@
 layout(local_size_x = WORLD_BOUND_GROUP) in;
 layout(push_constant, scalar) uniform Push { HwTrianglesArgs args; };
 
-struct MeshTriangle
-{
+struct MeshTriangle {
     vec3 v0;
     vec3 v1;
     vec3 v2;
     bool is_active;
 };
 
-MeshTriangle load_triangle(HwTrianglesArgs mesh, uint triangle)
-{
+MeshTriangle load_triangle(HwTrianglesArgs mesh, uint triangle) {
     MeshTriangle t;
     uvec3 vertices = load_indices(mesh.indices, triangle);
     t.v0 = load_position(mesh.positions, vertices.x);
@@ -27,8 +25,7 @@ MeshTriangle load_triangle(HwTrianglesArgs mesh, uint triangle)
     return t;
 }
 
-GeometryBox box_of(MeshTriangle t)
-{
+GeometryBox box_of(MeshTriangle t) {
     GeometryBox box;
     box.lo = min(t.v0, min(t.v1, t.v2));
     box.hi = max(t.v0, max(t.v1, t.v2));
@@ -38,12 +35,10 @@ GeometryBox box_of(MeshTriangle t)
 #ifdef KERNEL_TRIANGLE_BOUND
 #include "shaders/engine/group_box.glsl"
 
-void main()
-{
+void main() {
     if (group_index() >= args.group_count) return;
     GeometryBox box = no_box();
-    if (global_index() < args.count)
-    {
+    if (global_index() < args.count) {
         MeshTriangle triangle = load_triangle(args, global_index());
         if (triangle.is_active) box = box_of(triangle);
     }
@@ -55,10 +50,9 @@ void main()
 #endif
 
 #ifdef KERNEL_TRIANGLE_CODES
-const uint LAST = 0x3fffffffu; // for triangles that cannot be hit
+const uint LAST = 0x3fffffffu;  // for triangles that cannot be hit
 
-void main()
-{
+void main() {
     uint index = global_index();
     if (index >= args.count) return;
     MeshTriangle triangle = load_triangle(args, index);
@@ -71,15 +65,13 @@ void main()
 
 #ifdef KERNEL_GATHER_TRIANGLES
 // An inactive triangle is collapsed to a point inside the box of the others: see hwtlas/blas.h.
-void store(uint vertex, vec3 position)
-{
+void store(uint vertex, vec3 position) {
     AT(args.vertices, vertex * 3u) = position.x;
     AT(args.vertices, vertex * 3u + 1u) = position.y;
     AT(args.vertices, vertex * 3u + 2u) = position.z;
 }
 
-void main()
-{
+void main() {
     uint position = global_index();
     if (position >= args.count) return;
     bool has_table = !is_absent(args.table);
@@ -88,14 +80,11 @@ void main()
     if (has_order) AT(args.table, position) = index;
     MeshTriangle triangle = load_triangle(args, index);
     AreaItem area = no_area();
-    if (triangle.is_active)
-    {
+    if (triangle.is_active) {
         GeometryBox box = box_of(triangle);
         area.lo = box.lo;
         area.hi = box.hi;
-    }
-    else
-    {
+    } else {
         HwGeometry geometry = AT(args.geometry, 0);
         vec3 anchor = geometry.lo.x <= geometry.hi.x ? geometry.lo : vec3(0.0f);
         triangle.v0 = anchor;

@@ -7,15 +7,13 @@
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { MoveArgs args; };
 
-void main()
-{
+void main() {
     uint i = global_index();
     if (i >= args.particles.count) return;
     vec3 position = AT(args.particles.position, i);
     vec3 velocity = AT(args.particles.velocity, i);
     float radius = AT(args.particles.radius, i);
-    for (int axis = 0; axis < 3; axis++)
-    {
+    for (int axis = 0; axis < 3; axis++) {
         float acceleration = axis == 1 ? -args.gravity : 0.0;
         Motion motion = moved(Motion(position[axis], velocity[axis]), radius, acceleration, args.seconds, args.bounce);
         position[axis] = motion.position;

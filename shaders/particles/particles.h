@@ -7,18 +7,16 @@
 #include "twinray/glsl/soa.h"
 
 // A metal whose colour tells how fast a particle is.
-struct HeatMaterial
-{
-    vec3 color; // linear
+struct HeatMaterial {
+    vec3 color;  // linear
     float metallic;
     float roughness;
 };
 BUFFER_OF(HeatMaterial, 4);
 
 // A matt wall of squares of the size `cell`.
-struct WallMaterial
-{
-    vec3 color; // linear
+struct WallMaterial {
+    vec3 color;  // linear
     float cell;
 };
 BUFFER_OF(WallMaterial, 4);
@@ -30,20 +28,18 @@ TWINRAY_SET_VIEW(ParticleMaterials, PARTICLE_MATERIALS)
 TWINRAY_SOA_VIEW(Particles, PARTICLE_FIELDS)
 
 // Particle i is element i of the heat materials and of the instances.
-struct MoveArgs
-{
+struct MoveArgs {
     Particles particles;
     ParticleMaterials materials;
     REF(InstanceRecord) instances;
-    float seconds;   // of the frame
-    float gravity;   // along -y
-    float bounce;    // the part of a speed that a wall gives back
-    float max_speed; // at the hot end of the colours
+    float seconds;    // of the frame
+    float gravity;    // along -y
+    float bounce;     // the part of a speed that a wall gives back
+    float max_speed;  // at the hot end of the colours
 };
 
 // Returns a colour from blue (t = 0) by green and yellow to white (t = 1), straight in each quarter.
-FUNC vec3 heat_color(float t)
-{
+FUNC vec3 heat_color(float t) {
     float quarter = min(floor(4.0f * t), 3.0f);
     float s = 4.0f * t - quarter;
     if (quarter == 0.0f) return vec3(0.1f, 0.2f + 0.5f * s, 0.8f);
@@ -53,8 +49,7 @@ FUNC vec3 heat_color(float t)
 }
 
 // Makes particle i's material: the colour of its speed, and a surface of its own.
-FUNC HeatMaterial heat_material(uint i, vec3 velocity, float max_speed)
-{
+FUNC HeatMaterial heat_material(uint i, vec3 velocity, float max_speed) {
     HeatMaterial material;
     material.color = heat_color(clamp(length(velocity) / max_speed, 0.0f, 1.0f));
     float noise = 0.5f * sin(0.1f * float(i + 1u)) + 0.5f;
@@ -64,21 +59,18 @@ FUNC HeatMaterial heat_material(uint i, vec3 velocity, float max_speed)
 }
 
 // Position and velocity along one axis.
-struct Motion
-{
+struct Motion {
     float position;
     float velocity;
 };
 
 // Moves by a step along an axis between walls at -1 and 1, which throw a particle back. However fast it is, it stays
 // between them.
-FUNC Motion moved(Motion motion, float radius, float acceleration, float seconds, float bounce)
-{
+FUNC Motion moved(Motion motion, float radius, float acceleration, float seconds, float bounce) {
     PRECISE float velocity = motion.velocity + acceleration * seconds;
     PRECISE float position = motion.position + velocity * seconds;
     float limit = 1.0f - radius;
-    if (abs(position) > limit)
-    {
+    if (abs(position) > limit) {
         float wall = position > 0.0f ? limit : -limit;
         PRECISE float beyond = position - wall;
         position = wall - bounce * beyond;

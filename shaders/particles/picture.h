@@ -6,18 +6,16 @@
 #include "shaders/particles/particles.h"
 #include "twinray/glsl/spawn.h"
 
-struct MeshData
-{
+struct MeshData {
     Floats positions;
     Uints indices;
 };
 
-struct PictureScene
-{
-    MeshData walls; // of instance 0
-    MeshData ball;  // of the others
+struct PictureScene {
+    MeshData walls;  // of instance 0
+    MeshData ball;   // of the others
     REF(InstanceRecord) instances;
-    REF(SetKey) keys; // by instance: its material
+    REF(SetKey) keys;  // by instance: its material
     vec3 lamp;
     float lamp_power;
     vec3 background;
@@ -26,30 +24,27 @@ struct PictureScene
 BUFFER_OF(PictureScene, 8);
 
 // The light of a ray: the part that arrives anyway, and the part that arrives if the lamp is not hidden.
-struct Light
-{
+struct Light {
     vec3 indirect;
     vec3 direct;
 };
 BUFFER_OF(Light, 4);
 
-struct ShadeArgs
-{
+struct ShadeArgs {
     ParticleMaterials materials;
     REF(PictureScene) scene;
     REF(Ray) rays;
     REF(Hit) hits;
-    REF(Ray) shadow_rays; // written; those that need none are empty
-    REF(Light) light;     // written
+    REF(Ray) shadow_rays;  // written; those that need none are empty
+    REF(Light) light;      // written
     uint count;
 };
 
-struct AddLightArgs
-{
+struct AddLightArgs {
     REF(Light) light;
     REF(Hit) shadow_hits;
-    REF(vec3) picture; // written
+    REF(vec3) picture;  // written
     uint count;
-    uint samples; // rays of a pixel, which follow each other
+    uint samples;  // rays of a pixel, which follow each other
 };
 #endif

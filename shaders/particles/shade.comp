@@ -13,37 +13,33 @@ layout(push_constant, scalar) uniform Push { ShadeArgs args; };
 
 const float PI = 3.14159265;
 
-struct Surface
-{
+struct Surface {
     vec3 color;
     float metallic;
-    float roughness; // perceptual
+    float roughness;  // perceptual
 };
 
-Surface surface_of(HeatMaterial material, vec3 position, vec3 normal)
-{
+Surface surface_of(HeatMaterial material, vec3 position, vec3 normal) {
     return Surface(material.color, material.metallic, material.roughness);
 }
 
 // Squares on the wall, whatever its own coordinate rounds to.
-Surface surface_of(WallMaterial material, vec3 position, vec3 normal)
-{
+Surface surface_of(WallMaterial material, vec3 position, vec3 normal) {
     vec3 cell = floor(position * (1.0 - abs(normal)) / material.cell);
     bool is_dark = (int(cell.x) + int(cell.y) + int(cell.z) & 1) != 0;
     return Surface(material.color * (is_dark ? 0.7 : 1.0), 0.0, 1.0);
 }
 
 // Returns a Trowbridge-Reitz lobe with height-correlated masking, and Schlick's Fresnel term, times the cosine.
-vec3 reflected(Surface surface, vec3 normal, vec3 to_eye, vec3 to_lamp)
-{
+vec3 reflected(Surface surface, vec3 normal, vec3 to_eye, vec3 to_lamp) {
     float cos_lamp = max(dot(normal, to_lamp), 0.0);
     float cos_eye = max(dot(normal, to_eye), 0.01);
     vec3 middle = normalize(to_eye + to_lamp);
     float cos_middle = max(dot(normal, middle), 0.0);
     float a2 = pow(surface.roughness, 4.0);
     float spread = cos_middle * cos_middle * (a2 - 1.0) + 1.0;
-    float masking = cos_lamp * sqrt(cos_eye * cos_eye * (1.0 - a2) + a2) +
-        cos_eye * sqrt(cos_lamp * cos_lamp * (1.0 - a2) + a2);
+    float masking =
+        cos_lamp * sqrt(cos_eye * cos_eye * (1.0 - a2) + a2) + cos_eye * sqrt(cos_lamp * cos_lamp * (1.0 - a2) + a2);
     vec3 mirror = mix(vec3(0.04), surface.color, surface.metallic);
     vec3 fresnel = mirror + (1.0 - mirror) * pow(1.0 - max(dot(to_eye, middle), 0.0), 5.0);
     vec3 lobe = fresnel * (a2 / (PI * spread * spread) * 0.5 / max(masking, 0.01));
@@ -51,8 +47,7 @@ vec3 reflected(Surface surface, vec3 normal, vec3 to_eye, vec3 to_lamp)
     return (matt + lobe) * cos_lamp;
 }
 
-void main()
-{
+void main() {
     uint i = global_index();
     if (i >= args.count) return;
     PictureScene scene = AT(args.scene, 0);
@@ -65,8 +60,8 @@ void main()
     MeshData mesh = scene.walls;
     if (is_ball) mesh = scene.ball;
     Placement placement = placement_of(AT(scene.instances, hit.instance_index));
-    SurfacePoint point = surface_point(placement, vertices_of(mesh.positions, mesh.indices, hit.primitive_index),
-                                       vec2(hit.u, hit.v));
+    SurfacePoint point =
+        surface_point(placement, vertices_of(mesh.positions, mesh.indices, hit.primitive_index), vec2(hit.u, hit.v));
     vec3 normal = is_ball ? normalize(point.position - offset_of(placement.to_world)) : point.normal;
 
     Surface surface = Surface(vec3(1.0, 0.0, 1.0), 0.0, 1.0);
@@ -89,13 +84,11 @@ void main()
 #ifdef KERNEL_ADD_LIGHT
 layout(push_constant, scalar) uniform Push { AddLightArgs args; };
 
-void main()
-{
+void main() {
     uint pixel = global_index();
     if (pixel >= args.count) return;
     vec3 sum = vec3(0.0);
-    for (uint i = pixel * args.samples; i < (pixel + 1u) * args.samples; i++)
-    {
+    for (uint i = pixel * args.samples; i < (pixel + 1u) * args.samples; i++) {
         Light light = AT(args.light, i);
         sum += light.indirect;
         if (AT(args.shadow_hits, i).hit == 0u) sum += light.direct;

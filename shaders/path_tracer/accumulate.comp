@@ -12,15 +12,13 @@
 layout(local_size_x = PATH_GROUP) in;
 layout(push_constant, scalar) uniform Push { AccumulateArgs args; };
 
-void main()
-{
+void main() {
     uint i = global_index();
     if (i >= args.count) return;
     uint index = AT(args.pixels, i);
     vec3 sum = AT(args.sums, index).rgb;
     AT(args.sums, index).rgb = vec3(0.0);
-    if (!is_finite(sum))
-    {
+    if (!is_finite(sum)) {
         atomicAdd(AT(args.counters, 0).non_finite, 1u);
         sum = vec3(0.0);
     }

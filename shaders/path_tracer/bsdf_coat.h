@@ -10,16 +10,14 @@ FUNC float coat_fresnel(float cosine) { return 0.04f + 0.96f * schlick_weight(co
 // Returns the fraction of the light from or to a direction that the coat keeps.
 FUNC float kept_by_coat(Bsdf bsdf, vec3 w) { return bsdf.coat * coat_fresnel(dot(w, bsdf.coat_normal)); }
 
-FUNC float under_coat(Bsdf bsdf, vec3 wo, vec3 wi)
-{
+FUNC float under_coat(Bsdf bsdf, vec3 wo, vec3 wi) {
     if (wi.z <= 0.0f) return 1.0f - kept_by_coat(bsdf, wo);
     return 1.0f - max(kept_by_coat(bsdf, wo), kept_by_coat(bsdf, wi));
 }
 
 FUNC bool has_smooth_coat(Bsdf bsdf) { return bsdf.coat_alpha < SMOOTH_ALPHA; }
 
-FUNC BsdfValue evaluate_coat(Bsdf bsdf, vec3 wo, vec3 wi)
-{
+FUNC BsdfValue evaluate_coat(Bsdf bsdf, vec3 wo, vec3 wi) {
     BsdfValue value = no_value();
     Frame frame = frame_about(bsdf.coat_normal);
     vec3 to = to_local(frame, wi);
@@ -35,8 +33,7 @@ FUNC BsdfValue evaluate_coat(Bsdf bsdf, vec3 wo, vec3 wi)
 }
 
 // Samples the coat: a smooth one in the mirror direction.
-FUNC vec3 sample_coat(Bsdf bsdf, vec3 wo, vec2 u)
-{
+FUNC vec3 sample_coat(Bsdf bsdf, vec3 wo, vec2 u) {
     if (has_smooth_coat(bsdf)) return bsdf.coat_normal * (2.0f * dot(wo, bsdf.coat_normal)) - wo;
     Frame frame = frame_about(bsdf.coat_normal);
     vec3 from = to_local(frame, wo);

@@ -5,16 +5,14 @@
 #define TWINRAY_PATH_TRACER_BSDF_GLASS_H
 
 // Returns wo refracted at a facet with normal h; dot(wo, h) > 0 and no total reflection.
-FUNC vec3 refracted(vec3 wo, vec3 h, float eta)
-{
+FUNC vec3 refracted(vec3 wo, vec3 h, float eta) {
     float cosine = dot(wo, h);
     float cosine_t = sqrt(max(1.0f - (1.0f - cosine * cosine) / (eta * eta), 0.0f));
     return h * (cosine / eta - cosine_t) - wo / eta;
 }
 
 // KHR_materials_transmission: the lobe of transmitted light is that of reflected light, mirrored at the wall.
-FUNC BsdfValue evaluate_thin(Bsdf bsdf, vec3 wo, vec3 wi)
-{
+FUNC BsdfValue evaluate_thin(Bsdf bsdf, vec3 wo, vec3 wi) {
     if (is_smooth(bsdf) || wi.z == 0.0f) return no_value();
     vec3 mirrored = vec3(wi.x, wi.y, abs(wi.z));
     vec3 h = normalize(wo + mirrored);
@@ -28,8 +26,7 @@ FUNC BsdfValue evaluate_thin(Bsdf bsdf, vec3 wo, vec3 wi)
 }
 
 // Walter et al., "Microfacet Models for Refraction through Rough Surfaces", 2007, without the factor for radiance.
-FUNC BsdfValue evaluate_solid(Bsdf bsdf, vec3 wo, vec3 wi)
-{
+FUNC BsdfValue evaluate_solid(Bsdf bsdf, vec3 wo, vec3 wi) {
     BsdfValue value = no_value();
     if (is_smooth(bsdf) || wi.z == 0.0f) return value;
     bool is_reflected = wi.z > 0.0f;
@@ -47,14 +44,12 @@ FUNC BsdfValue evaluate_solid(Bsdf bsdf, vec3 wo, vec3 wi)
     return value;
 }
 
-FUNC BsdfValue evaluate_glass(Bsdf bsdf, vec3 wo, vec3 wi)
-{
+FUNC BsdfValue evaluate_glass(Bsdf bsdf, vec3 wo, vec3 wi) {
     if (is_thin(bsdf)) return evaluate_thin(bsdf, wo, wi);
     return evaluate_solid(bsdf, wo, wi);
 }
 
-FUNC BsdfChoice choose_glass(Bsdf bsdf, vec3 wo, float lobe, vec2 u)
-{
+FUNC BsdfChoice choose_glass(Bsdf bsdf, vec3 wo, float lobe, vec2 u) {
     vec3 h = is_smooth(bsdf) ? vec3(0.0f, 0.0f, 1.0f) : sample_facet(bsdf, wo, u);
     float cosine = dot(wo, h);
     if (cosine <= 0.0f) return no_choice();

@@ -3,8 +3,7 @@
 #ifndef TWINRAY_PATH_TRACER_BSDF_OF_GLSL
 #define TWINRAY_PATH_TRACER_BSDF_OF_GLSL
 
-Bsdf glass_of(SceneData scene, Surface surface, vec3 color, float roughness, bool is_front)
-{
+Bsdf glass_of(SceneData scene, Surface surface, vec3 color, float roughness, bool is_front) {
     float ior = max(AT(scene.materials, surface.material).ior, 1e-3);
     Bsdf bsdf = plain_bsdf();
     bsdf.is_glass = true;
@@ -16,12 +15,10 @@ Bsdf glass_of(SceneData scene, Surface surface, vec3 color, float roughness, boo
 }
 
 // Returns them as x and y.
-vec2 roughness_and_metallic(SceneData scene, Surface surface, uint flags)
-{
+vec2 roughness_and_metallic(SceneData scene, Surface surface, uint flags) {
     float metallic = AT(scene.materials, surface.material).metallic;
     float roughness = AT(scene.materials, surface.material).roughness;
-    if (HAS_TEXTURES && (flags & MATERIAL_ROUGHNESS_TEXTURE) != 0u)
-    {
+    if (HAS_TEXTURES && (flags & MATERIAL_ROUGHNESS_TEXTURE) != 0u) {
         TextureSlot slot = AT(scene.materials, surface.material).roughness_texture;
         vec4 map = sample_data(scene, slot, surface.uv);
         roughness *= map.g;
@@ -31,8 +28,7 @@ vec2 roughness_and_metallic(SceneData scene, Surface surface, uint flags)
 }
 
 // Returns the part of a surface that is glass.
-float glass_part(SceneData scene, Surface surface, uint flags, float metallic)
-{
+float glass_part(SceneData scene, Surface surface, uint flags, float metallic) {
     float transmission = AT(scene.materials, surface.material).transmission;
     if (HAS_TEXTURES && (flags & MATERIAL_TRANSMISSION_TEXTURE) != 0u)
         transmission *= sample_data(scene, AT(scene.materials, surface.material).transmission_texture, surface.uv).r;
@@ -40,8 +36,7 @@ float glass_part(SceneData scene, Surface surface, uint flags, float metallic)
 }
 
 // If a material transmits in part, `choice` decides which part is met.
-Bsdf bsdf_of(SceneData scene, Surface surface, uint flags, vec3 color, bool is_front, float choice)
-{
+Bsdf bsdf_of(SceneData scene, Surface surface, uint flags, vec3 color, bool is_front, float choice) {
     vec2 factors = roughness_and_metallic(scene, surface, flags);
     if (HAS_GLASS && choice < glass_part(scene, surface, flags, factors.y))
         return glass_of(scene, surface, color, factors.x, is_front);

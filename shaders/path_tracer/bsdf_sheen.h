@@ -6,18 +6,16 @@
 #ifndef TWINRAY_PATH_TRACER_BSDF_SHEEN_H
 #define TWINRAY_PATH_TRACER_BSDF_SHEEN_H
 
-const float SHEEN_LEAST_ROUGHNESS = 0.1f; // the table begins here; below, the lobe is a rim that no picture resolves
+const float SHEEN_LEAST_ROUGHNESS = 0.1f;  // the table begins here; below, the lobe is a rim that no picture resolves
 
 // Returns the density of normals: sin^(1 / alpha).
-FUNC float charlie_density(vec3 h, float alpha)
-{
+FUNC float charlie_density(vec3 h, float alpha) {
     float sine2 = min(h.x * h.x + h.y * h.y, 1.0f);
     return (2.0f + 1.0f / alpha) * pow(sine2, 0.5f / alpha) / (2.0f * PI);
 }
 
 // Returns the logarithm of Lambda for cosines to one half, fitted by the authors.
-FUNC float charlie_log_lambda(float cosine, float alpha)
-{
+FUNC float charlie_log_lambda(float cosine, float alpha) {
     float t = (1.0f - alpha) * (1.0f - alpha);
     float a = mix(21.5473f, 25.3245f, t);
     float b = mix(3.82987f, 3.32435f, t);
@@ -27,15 +25,13 @@ FUNC float charlie_log_lambda(float cosine, float alpha)
     return a / (1.0f + b * pow(cosine, c)) + d * cosine + e;
 }
 
-FUNC float charlie_lambda(float cosine, float alpha)
-{
+FUNC float charlie_lambda(float cosine, float alpha) {
     if (cosine < 0.5f) return exp(charlie_log_lambda(cosine, alpha));
     return exp(2.0f * charlie_log_lambda(0.5f, alpha) - charlie_log_lambda(max(1.0f - cosine, 0.0f), alpha));
 }
 
 // Returns the directional albedo of the unscaled lobe, which may exceed 1.
-FUNC float sheen_albedo(float cosine, float roughness)
-{
+FUNC float sheen_albedo(float cosine, float roughness) {
     float x = sqrt(clamp(cosine, 0.0f, 1.0f)) * float(SHEEN_COSINES - 1u);
     float y = sqrt(clamp((roughness - 0.1f) / 0.9f, 0.0f, 1.0f)) * float(SHEEN_ROUGHNESSES - 1u);
     uint i = min(uint(x), SHEEN_COSINES - 2u);
@@ -48,21 +44,18 @@ FUNC float sheen_albedo(float cosine, float roughness)
 }
 
 // Returns the most that the sheen keeps of the light from or to a direction.
-FUNC float kept_by_sheen(Bsdf bsdf, float cosine)
-{
+FUNC float kept_by_sheen(Bsdf bsdf, float cosine) {
     return largest(bsdf.sheen) * min(sheen_albedo(cosine, bsdf.sheen_roughness), 1.0f);
 }
 
 // Returns the extension's albedo scaling of the surface below.
-FUNC float under_sheen(Bsdf bsdf, vec3 wo, vec3 wi)
-{
+FUNC float under_sheen(Bsdf bsdf, vec3 wo, vec3 wi) {
     if (wi.z <= 0.0f) return 1.0f - kept_by_sheen(bsdf, wo.z);
     return 1.0f - max(kept_by_sheen(bsdf, wo.z), kept_by_sheen(bsdf, wi.z));
 }
 
 // Directions are sampled uniformly over the hemisphere.
-FUNC BsdfValue evaluate_sheen(Bsdf bsdf, vec3 wo, vec3 wi)
-{
+FUNC BsdfValue evaluate_sheen(Bsdf bsdf, vec3 wo, vec3 wi) {
     BsdfValue value = no_value();
     if (wi.z <= 0.0f) return value;
     float alpha = bsdf.sheen_roughness * bsdf.sheen_roughness;
@@ -74,8 +67,7 @@ FUNC BsdfValue evaluate_sheen(Bsdf bsdf, vec3 wo, vec3 wi)
     return value;
 }
 
-FUNC vec3 sample_sheen(vec2 u)
-{
+FUNC vec3 sample_sheen(vec2 u) {
     vec2 circle = unit_circle(u.y) * sqrt(max(1.0f - u.x * u.x, 0.0f));
     return vec3(circle.x, circle.y, u.x);
 }

@@ -11,16 +11,15 @@
 layout(local_size_x = PATH_GROUP) in;
 layout(push_constant, scalar) uniform Push { CompareArgs args; };
 
-void main()
-{
+void main() {
     uint i = global_index();
     if (i >= args.count) return;
     Hit first = AT(args.first, i);
     Hit second = AT(args.second, i);
     bool is_same = first.hit == second.hit;
     if (args.is_any == 0u)
-        is_same = is_same && first.instance_index == second.instance_index &&
-                  first.primitive_index == second.primitive_index;
+        is_same =
+            is_same && first.instance_index == second.instance_index && first.primitive_index == second.primitive_index;
     if (is_same) return;
     uint pixel = AT(args.pixels, i);
     AT(args.marks, pixel) = 1u;

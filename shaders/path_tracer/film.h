@@ -8,12 +8,11 @@
 #define TWINRAY_PATH_TRACER_FILM_H
 #include "twinray/glsl/word64.h"
 
-const uint FILM_DIGIT_BITS = 40u; // 2^23 numbers fit into a sum of 64 bits with a sign
-const uint FILM_SQUARES = 3u;     // the number of their sum, behind red, green and blue
+const uint FILM_DIGIT_BITS = 40u;  // 2^23 numbers fit into a sum of 64 bits with a sign
+const uint FILM_SQUARES = 3u;      // the number of their sum, behind red, green and blue
 
 // One digit of four sums of a block: red, green, blue, and the luminance squared.
-struct FilmDigits
-{
+struct FilmDigits {
     uvec2 red;
     uvec2 green;
     uvec2 blue;
@@ -22,18 +21,16 @@ struct FilmDigits
 
 // 72 bytes. A sum is (high * 2^40 + low) * 2^(40 position), in two's complement, in units of 2^-149 for colors and of
 // 2^-298 for squares.
-struct FilmPixel
-{
-    uint count;     // of the blocks that were added
-    uint positions; // low half: of the color sums; high half: of the sum of squares
+struct FilmPixel {
+    uint count;      // of the blocks that were added
+    uint positions;  // low half: of the color sums; high half: of the sum of squares
     FilmDigits high;
     FilmDigits low;
 };
 BUFFER_OF(FilmPixel, 8);
 
 // Return the mantissa and the shift of |x|, which is mantissa << shift, in units of 2^-149, for finite x.
-FUNC uint film_mantissa(float x)
-{
+FUNC uint film_mantissa(float x) {
     uint bits = floatBitsToUint(x);
     return (bits & 0x7fffffu) | ((bits & 0x7f800000u) != 0u ? 0x800000u : 0u);
 }
@@ -43,8 +40,7 @@ FUNC uint film_shift(float x) { return max((floatBitsToUint(x) >> 23u) & 0xffu, 
 FUNC uint film_position(uint shift, uint bits) { return max((shift + bits - 1u) / FILM_DIGIT_BITS, 1u) - 1u; }
 
 // Returns bits [40 position, 40 position + 40) of mantissa << shift, for mantissas of at most 48 bits.
-FUNC uvec2 film_digit(uvec2 mantissa, uint shift, uint position)
-{
+FUNC uvec2 film_digit(uvec2 mantissa, uint shift, uint position) {
     int up = int(shift) - int(FILM_DIGIT_BITS * position);
     if (up >= int(FILM_DIGIT_BITS) || up <= -48) return uvec2(0u);
     uvec2 bits = up >= 0 ? shift_up64(mantissa, uint(up)) : shift_down64(mantissa, uint(-up));
@@ -52,15 +48,13 @@ FUNC uvec2 film_digit(uvec2 mantissa, uint shift, uint position)
 }
 
 // Bits below the positions are left out; a sum whose position is not lower already stays.
-FUNC void film_raise(INOUT(uvec2) high, INOUT(uvec2) low, uint from, uint to)
-{
+FUNC void film_raise(INOUT(uvec2) high, INOUT(uvec2) low, uint from, uint to) {
     if (to <= from) return;
     low = to == from + 1u ? high : uvec2(0u);
     high = uvec2(0u);
 }
 
-FUNC void film_raise_all(INOUT(FilmPixel) pixel, uint color_position, uint square_position)
-{
+FUNC void film_raise_all(INOUT(FilmPixel) pixel, uint color_position, uint square_position) {
     uint old_color = pixel.positions & 0xffffu, old_square = pixel.positions >> 16u;
     film_raise(pixel.high.red, pixel.low.red, old_color, color_position);
     film_raise(pixel.high.green, pixel.low.green, old_color, color_position);
@@ -70,8 +64,7 @@ FUNC void film_raise_all(INOUT(FilmPixel) pixel, uint color_position, uint squar
 }
 
 // Adds to the digits of a sum, whose position is high enough.
-FUNC void film_add_color(INOUT(uvec2) high, INOUT(uvec2) low, float value, uint position)
-{
+FUNC void film_add_color(INOUT(uvec2) high, INOUT(uvec2) low, float value, uint position) {
     uint shift = film_shift(value);
     uvec2 mantissa = uvec2(film_mantissa(value), 0u);
     uvec2 low_digit = film_digit(mantissa, shift, position), high_digit = film_digit(mantissa, shift, position + 1u);
@@ -81,8 +74,7 @@ FUNC void film_add_color(INOUT(uvec2) high, INOUT(uvec2) low, float value, uint 
 }
 
 // Adds a block's sum of finite radiance.
-FUNC void film_add(INOUT(FilmPixel) pixel, vec3 radiance, float luminance_of_it)
-{
+FUNC void film_add(INOUT(FilmPixel) pixel, vec3 radiance, float luminance_of_it) {
     uint shift = max(film_shift(radiance.x), max(film_shift(radiance.y), film_shift(radiance.z)));
     uint square_shift = 2u * film_shift(luminance_of_it);
     film_raise_all(pixel, film_position(shift, 24u), film_position(square_shift, 48u));
@@ -96,8 +88,7 @@ FUNC void film_add(INOUT(FilmPixel) pixel, vec3 radiance, float luminance_of_it)
     pixel.count += 1u;
 }
 
-struct AccumulateArgs
-{
+struct AccumulateArgs {
     REF(FilmPixel) film;
     REF(Radiance) sums;
     REF(Counters) counters;

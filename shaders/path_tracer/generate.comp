@@ -14,10 +14,9 @@ layout(local_size_x = PATH_GROUP) in;
 layout(push_constant, scalar) uniform Push { GenerateArgs args; };
 layout(constant_id = PT_FILTER) const uint FILTER = FILTER_BOX;
 
-const uint PAIR_LENS = 0xffffffffu; // of random dimensions; vertices of paths count theirs from 1
+const uint PAIR_LENS = 0xffffffffu;  // of random dimensions; vertices of paths count theirs from 1
 
-void main()
-{
+void main() {
     uint i = global_index();
     if (i >= args.count) return;
     WaveData wave = AT(args.wave, 0);

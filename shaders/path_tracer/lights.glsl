@@ -4,9 +4,8 @@
 #define TWINRAY_PATH_TRACER_LIGHTS_GLSL
 #include "shaders/path_tracer/light_tree.h"
 
-struct LightSample
-{
-    vec3 direction; // from the surface; unit
+struct LightSample {
+    vec3 direction;  // from the surface; unit
     vec3 radiance;
     float pdf;      // by solid angle; for a punctual light only its chance of being chosen
     bool is_delta;  // a punctual light, which no other strategy finds
@@ -15,8 +14,7 @@ struct LightSample
 };
 
 // Chooses one of `count` lights from the first on. The fraction of word * count decides between a column's two entries.
-uint sample_alias(REF(AliasEntry) table, uint first, uint count, uint word)
-{
+uint sample_alias(REF(AliasEntry) table, uint first, uint count, uint word) {
     uint column, fraction;
     umulExtended(word, count, column, fraction);
     AliasEntry entry = AT(table, first + column);
@@ -24,23 +22,22 @@ uint sample_alias(REF(AliasEntry) table, uint first, uint count, uint word)
 }
 
 // Returns the cell of a table of cumulated probabilities that u in [0, 1) falls into, plus how far into it.
-float sample_sums(Floats sums, uint first, uint count, float u)
-{
+float sample_sums(Floats sums, uint first, uint count, float u) {
     uint low = 0u;
     uint high = count;
-    while (high - low > 1u)
-    {
+    while (high - low > 1u) {
         uint middle = (low + high) / 2u;
-        if (AT(sums, first + middle) <= u) low = middle;
-        else high = middle;
+        if (AT(sums, first + middle) <= u)
+            low = middle;
+        else
+            high = middle;
     }
     float begin = AT(sums, first + low);
     float inside = (u - begin) / (AT(sums, first + low + 1u) - begin);
     return float(low) + clamp(inside, 0.0, 0.99999994);
 }
 
-vec3 environment_pixel(Environment env, int x, int y)
-{
+vec3 environment_pixel(Environment env, int x, int y) {
     uint column = x < 0 ? env.width - 1u : (x >= int(env.width) ? 0u : uint(x));
     return AT(env.pixels, uint(clamp(y, 0, int(env.height) - 1)) * env.width + min(column, env.width - 1u)).rgb;
 }
@@ -48,8 +45,7 @@ vec3 environment_pixel(Environment env, int x, int y)
 // Returns the filtered map as seen. As light it is constant in each pixel, since it is sampled so: near a sun a
 // filtered value could exceed the density of its own pixel a hundred times; such samples are bright dots.
 // at: in pixels.
-vec3 environment_seen(Environment env, vec2 at)
-{
+vec3 environment_seen(Environment env, vec2 at) {
     vec2 low = floor(at - 0.5);
     vec2 weight = at - 0.5 - low;
     int x = int(low.x);
@@ -60,8 +56,7 @@ vec3 environment_seen(Environment env, vec2 at)
 }
 
 // Returns the position in pixels; u grows from -x over -z, +x to +z.
-vec2 environment_position(Environment env, vec3 direction)
-{
+vec2 environment_position(Environment env, vec3 direction) {
     float turns = atan(direction.z, direction.x) / (2.0 * PI) + 0.5;
     float angle = atan(length(direction.xz), direction.y) / PI;
     return vec2(turns * float(env.width), angle * float(env.height));
@@ -69,8 +64,7 @@ vec2 environment_position(Environment env, vec3 direction)
 
 float environment_pdf(Environment env, vec3 pixel) { return env.chance * env.density_per_luminance * luminance(pixel); }
 
-LightSample sample_environment(Environment env, vec2 u)
-{
+LightSample sample_environment(Environment env, vec2 u) {
     float y = sample_sums(env.row_sums, 0u, env.height, u.y);
     uint row = min(uint(y), env.height - 1u);
     float x = sample_sums(env.column_sums, row * (env.width + 1u), env.width, u.x);
@@ -92,8 +86,7 @@ LightSample sample_environment(Environment env, vec2 u)
 }
 
 // chance: that of the environment's place and the tree, which the densities of lights leave out.
-LightSample sample_local(SceneData scene, Emitter emitter, float chance, vec3 from, vec2 u)
-{
+LightSample sample_local(SceneData scene, Emitter emitter, float chance, vec3 from, vec2 u) {
     Placement placement = load_placement(scene.instances, emitter.instance);
     TriangleData data = load_triangle_data(scene, emitter.instance, emitter.primitive);
     data.material = emitter.material;
@@ -107,8 +100,8 @@ LightSample sample_local(SceneData scene, Emitter emitter, float chance, vec3 fr
     light.direction = way * inversesqrt(distance2);
     light.radiance = emitted(scene, emitter.material, flags, surface.uv, cosine > 0.0);
     if (HAS_ALPHA)
-        light.radiance *= opacity(flags, AT(scene.materials, emitter.material).alpha_cutoff,
-                                  base_color(scene, surface, flags).a);
+        light.radiance *=
+            opacity(flags, AT(scene.materials, emitter.material).alpha_cutoff, base_color(scene, surface, flags).a);
     light.pdf = chance * density * distance2 / abs(cosine);
     light.is_delta = false;
     light.has_target = true;
@@ -116,8 +109,7 @@ LightSample sample_local(SceneData scene, Emitter emitter, float chance, vec3 fr
     return light;
 }
 
-LightSample sample_local(SceneData scene, PunctualLight light, float chance, vec3 from, vec2 u)
-{
+LightSample sample_local(SceneData scene, PunctualLight light, float chance, vec3 from, vec2 u) {
     LightSample result;
     result.pdf = chance * light.chance;
     result.is_delta = true;
@@ -131,29 +123,25 @@ LightSample sample_local(SceneData scene, PunctualLight light, float chance, vec
     result.direction = way * inversesqrt(distance2);
     float reach = distance2 / (light.range * light.range);
     result.radiance *= clamp(1.0 - reach * reach, 0.0, 1.0) / distance2;
-    if (light.kind == PUNCTUAL_SPOT)
-    {
+    if (light.kind == PUNCTUAL_SPOT) {
         float cone = clamp(dot(light.direction, -result.direction) * light.cone_scale + light.cone_offset, 0.0, 1.0);
         result.radiance *= cone * cone;
     }
     return result;
 }
 
-struct ChosenLight
-{
+struct ChosenLight {
     uint light;
-    float chance; // without its chance in its part of the table
+    float chance;  // without its chance in its part of the table
 };
 
 // Chooses a light. u in [0, 1): between the tree and the lights that are not in it. word: among these.
-ChosenLight choose_local(SceneData scene, LightReceiver at, float u, uint word)
-{
+ChosenLight choose_local(SceneData scene, LightReceiver at, float u, uint word) {
     ChosenLight chosen;
     uint first = scene.table_first;
     uint count = scene.table_count;
     chosen.chance = HAS_LIGHT_TREE ? scene.table_chance : 1.0;
-    if (HAS_LIGHT_TREE && u >= scene.table_chance)
-    {
+    if (HAS_LIGHT_TREE && u >= scene.table_chance) {
         ChosenLeaf leaf = choose_leaf(scene.light_tree, at, unit_float(word));
         first = leaf.first;
         count = leaf.count;
@@ -165,12 +153,10 @@ ChosenLight choose_local(SceneData scene, LightReceiver at, float u, uint word)
 }
 
 // choice: between the environment, the lights of the table and those of the tree, then among these. u: on the light.
-LightSample sample_light(SceneData scene, LightReceiver at, uvec2 choice, vec2 u)
-{
+LightSample sample_light(SceneData scene, LightReceiver at, uvec2 choice, vec2 u) {
     float environment = HAS_ENVIRONMENT ? scene.environment.chance : 0.0;
     float which = unit_float(choice.x);
-    if (HAS_ENVIRONMENT && (!HAS_LOCAL_LIGHTS || which < environment))
-        return sample_environment(scene.environment, u);
+    if (HAS_ENVIRONMENT && (!HAS_LOCAL_LIGHTS || which < environment)) return sample_environment(scene.environment, u);
     ChosenLight chosen = choose_local(scene, at, (which - environment) / (1.0 - environment), choice.y);
     chosen.chance *= 1.0 - environment;
     SetKey key = AT(scene.light_keys, chosen.light);
@@ -184,15 +170,14 @@ LightSample sample_light(SceneData scene, LightReceiver at, uvec2 choice, vec2 u
 }
 
 // Returns the density with which sample_light would have found this point of an emitter.
-float emitter_pdf(SceneData scene, Hit hit, Surface surface, LightReceiver at, vec3 direction)
-{
+float emitter_pdf(SceneData scene, Hit hit, Surface surface, LightReceiver at, vec3 direction) {
     SurfaceInstance instance = AT(scene.instances, hit.instance_index);
     if (is_absent(instance.emitter_density)) return 0.0;
     vec3 way = surface.point.position - at.position;
     float chance = 1.0 - scene.environment.chance;
     if (HAS_LIGHT_TREE)
         chance *= (1.0 - scene.table_chance) *
-            chance_of_way(scene.light_tree, at, AT(instance.emitter_ways, hit.primitive_index));
+                  chance_of_way(scene.light_tree, at, AT(instance.emitter_ways, hit.primitive_index));
     return chance * AT(instance.emitter_density, hit.primitive_index) * dot(way, way) /
            abs(dot(surface.point.normal, direction));
 }

@@ -5,21 +5,19 @@
 #include "twinray/glsl/random.h"
 #include "shaders/path_tracer/lights.glsl"
 
-WaveData wave; // kernels fill it in first
+WaveData wave;  // kernels fill it in first
 
 // The fields of PathQueue.
-struct PathState
-{
+struct PathState {
     vec3 throughput;
     float pdf;
     uint pixel;
     uint progress;
-    uint medium; // of WaveData::media
-    uint facing; // of WaveData::facings
+    uint medium;  // of WaveData::media
+    uint facing;  // of WaveData::facings
 };
 
-PathState load_path(uint i)
-{
+PathState load_path(uint i) {
     PathState path;
     path.throughput = AT(wave.paths.throughput, i);
     path.pdf = AT(wave.paths.pdf, i);
@@ -30,8 +28,7 @@ PathState load_path(uint i)
     return path;
 }
 
-void go_on(Ray ray, PathState path)
-{
+void go_on(Ray ray, PathState path) {
     uint slot = atomicAdd(AT(wave.counters, 0).paths, 1u);
     AT(wave.next_rays, slot) = ray;
     AT(wave.next_paths.throughput, slot) = path.throughput;
@@ -42,30 +39,28 @@ void go_on(Ray ray, PathState path)
     if (HAS_LIGHT_TREE) AT(wave.next_facings, slot) = path.facing;
 }
 
-void add(uint pixel, vec3 radiance)
-{
-    if (is_finite(radiance)) AT(wave.sums, pixel).rgb += radiance;
-    else atomicAdd(AT(wave.counters, 0).non_finite, 1u);
+void add(uint pixel, vec3 radiance) {
+    if (is_finite(radiance))
+        AT(wave.sums, pixel).rgb += radiance;
+    else
+        atomicAdd(AT(wave.counters, 0).non_finite, 1u);
 }
 
 // Returns the weight of light that a ray sampled with density `own` has found, if light sampling has density `other`.
-float found_weight(float own, float other)
-{
+float found_weight(float own, float other) {
     if (STRATEGY == STRATEGY_BSDF) return 1.0;
     if (STRATEGY == STRATEGY_LIGHTS) return own > 0.0 && other > 0.0 ? 0.0 : 1.0;
     return mis_weight(own, other);
 }
 
-void add_environment(PathState path, Ray ray)
-{
+void add_environment(PathState path, Ray ray) {
     if (!HAS_ENVIRONMENT) return;
     Environment env = AT(wave.scene, 0).environment;
     vec2 at = environment_position(env, ray.direction);
-    if (path.pdf > 0.0)
-    {
+    if (path.pdf > 0.0) {
         vec3 pixel = environment_pixel(env, int(at.x), int(at.y));
         add(path.pixel, path.throughput * pixel * found_weight(path.pdf, environment_pdf(env, pixel)));
-    }
-    else add(path.pixel, path.throughput * environment_seen(env, at));
+    } else
+        add(path.pixel, path.throughput * environment_seen(env, at));
 }
 #endif

@@ -12,74 +12,66 @@ layout(push_constant, scalar) uniform Push { ShadeArgs args; };
 // of its triangle, but its way from here is rounded, and a ray that went all of it could meet a light that is small for
 // its distance.
 const float SHADOW_END = 1.0 - 9.5367431640625e-07;
-const uint ROULETTE_DEPTH = 3u; // scatterings before which no path is ended
+const uint ROULETTE_DEPTH = 3u;  // scatterings before which no path is ended
 
 // The pairs of random dimensions of a vertex; pair 0 of a path is its position in the pixel.
-const uint PAIR_PART = 0u;    // whether a transparent surface is met, and which part of its material
-const uint PAIR_CHOICE = 1u;  // of a light
-const uint PAIR_LIGHT = 2u;   // on the light
-const uint PAIR_SCATTER = 3u; // direction
-const uint PAIR_LOBE = 4u;    // of the BSDF, and Russian roulette
+const uint PAIR_PART = 0u;     // whether a transparent surface is met, and which part of its material
+const uint PAIR_CHOICE = 1u;   // of a light
+const uint PAIR_LIGHT = 2u;    // on the light
+const uint PAIR_SCATTER = 3u;  // direction
+const uint PAIR_LOBE = 4u;     // of the BSDF, and Russian roulette
 const uint PAIR_COUNT = 5u;
 
 // A vertex of a path, shared by the functions below.
-struct Vertex
-{
+struct Vertex {
     PathState path;
     Surface surface;
     Bsdf bsdf;
     vec3 wo;
-    vec3 normal;   // shading normal on the side of wo
-    bool is_front; // of the triangle
-    uint facing;   // see packed_facing
-    uint key;      // of the pixel's random numbers
-    uint number;   // it has PAIR_COUNT pairs of random dimensions
+    vec3 normal;    // shading normal on the side of wo
+    bool is_front;  // of the triangle
+    uint facing;    // see packed_facing
+    uint key;       // of the pixel's random numbers
+    uint number;    // it has PAIR_COUNT pairs of random dimensions
 };
 
 float infinity() { return uintBitsToFloat(0x7f800000u); }
 
-uvec2 pair_of(Vertex vertex, uint which)
-{
+uvec2 pair_of(Vertex vertex, uint which) {
     return sample_pair(vertex.key, args.sample_index, PAIR_COUNT * vertex.number + which + 1u, args.seed);
 }
 
-void add_emission(Vertex vertex, Ray ray, Hit hit, uint flags)
-{
+void add_emission(Vertex vertex, Ray ray, Hit hit, uint flags) {
     vec3 radiance = emitted(AT(wave.scene, 0), vertex.surface.material, flags, vertex.surface.uv, vertex.is_front);
     if (!HAS_LOCAL_LIGHTS || largest(radiance) <= 0.0) return;
-    float other = emitter_pdf(AT(wave.scene, 0), hit, vertex.surface, receiver_of(ray.origin, vertex.path.facing),
-                              ray.direction);
+    float other =
+        emitter_pdf(AT(wave.scene, 0), hit, vertex.surface, receiver_of(ray.origin, vertex.path.facing), ray.direction);
     add(vertex.path.pixel, vertex.path.throughput * radiance * found_weight(vertex.path.pdf, other));
 }
 
 // Continues the same ray behind a surface that is transparent here, or a pane. Shadow rays also pass these, so that the
 // light that the ray finds still counts as found by its last scattering.
-void pass(Vertex vertex, Ray ray)
-{
+void pass(Vertex vertex, Ray ray) {
     vertex.path.progress = with_surface_met(vertex.path.progress);
     go_on(behind(ray, vertex.surface), vertex.path);
 }
 
-bool is_above(Vertex vertex, vec3 direction)
-{
+bool is_above(Vertex vertex, vec3 direction) {
     return (dot(vertex.surface.point.normal, direction) > 0.0) == vertex.is_front;
 }
 
 // Returns the medium in which a ray in the local direction wi starts; 0: none.
-uint medium_towards(Vertex vertex, vec3 wi)
-{
+uint medium_towards(Vertex vertex, vec3 wi) {
     if (!HAS_MEDIA) return 0u;
     if (!has_layer(vertex.bsdf, LAYER_VOLUME) || wi.z > 0.0) return vertex.path.medium;
     return vertex.is_front ? vertex.surface.material + 1u : 0u;
 }
 
 // Samples a light: next-event estimation.
-void light_directly(Vertex vertex)
-{
+void light_directly(Vertex vertex) {
     SceneData scene = AT(wave.scene, 0);
-    LightSample light =
-        sample_light(scene, receiver_of(vertex.surface.point.position, vertex.facing),
-                     pair_of(vertex, PAIR_CHOICE), unit_floats(pair_of(vertex, PAIR_LIGHT)));
+    LightSample light = sample_light(scene, receiver_of(vertex.surface.point.position, vertex.facing),
+                                     pair_of(vertex, PAIR_CHOICE), unit_floats(pair_of(vertex, PAIR_LIGHT)));
     if (!(light.pdf > 0.0) || !(largest(light.radiance) > 0.0)) return;
     Frame frame = frame_about(vertex.normal);
     vec3 wi = to_local(frame, light.direction);
@@ -102,16 +94,14 @@ void light_directly(Vertex vertex)
     AT(wave.shadows.pixel, slot) = vertex.path.pixel;
 }
 
-void scatter(Vertex vertex, Ray met_by)
-{
+void scatter(Vertex vertex, Ray met_by) {
     vec2 lobe_and_roulette = unit_floats(pair_of(vertex, PAIR_LOBE));
     float lobe = lobe_and_roulette.x;
     vec2 u = unit_floats(pair_of(vertex, PAIR_SCATTER));
     BsdfSample onwards;
     vec3 direction;
     // A loop, because drivers inline everything, and the BSDF is most of the kernel.
-    for (uint attempt = 0u; attempt < 2u; attempt++)
-    {
+    for (uint attempt = 0u; attempt < 2u; attempt++) {
         Frame frame = frame_about(vertex.normal);
         onwards = sample_bsdf(vertex.bsdf, to_local(frame, vertex.wo), lobe, u);
         direction = to_world(frame, onwards.wi);
@@ -123,15 +113,13 @@ void scatter(Vertex vertex, Ray met_by)
     if ((onwards.wi.z > 0.0) != is_above(vertex, direction)) return;
     PathState path = vertex.path;
     path.throughput *= onwards.weight;
-    if (is_pane(vertex.bsdf) && onwards.wi.z < 0.0)
-    {
+    if (is_pane(vertex.bsdf) && onwards.wi.z < 0.0) {
         vertex.path.throughput = path.throughput;
         if (largest(path.throughput) > 0.0) pass(vertex, met_by);
         return;
     }
     if (path.progress >> 16u >= args.max_depth) return;
-    if (path.progress >> 16u >= ROULETTE_DEPTH)
-    {
+    if (path.progress >> 16u >= ROULETTE_DEPTH) {
         // It is never less than the throughput: surviving paths would weigh more and more, and if little is absorbed
         // the mean would be that of few paths of great weight. Paths that lose nothing end at max_depth.
         float survival = min(largest(path.throughput), 1.0);
@@ -152,23 +140,20 @@ void scatter(Vertex vertex, Ray met_by)
 }
 
 // Each pixel has one ray at a time.
-void note_first(Vertex vertex, Hit hit, uint flags, vec3 albedo)
-{
+void note_first(Vertex vertex, Hit hit, uint flags, vec3 albedo) {
     FirstSurface first = AT(wave.first_surfaces, vertex.path.pixel);
     first.albedo += albedo;
     first.normal += shading_normal(AT(wave.scene, 0), vertex.surface, flags, vertex.wo);
     first.distance += vertex.surface.t;
     first.count += 1u;
-    if (args.sample_index == 0u)
-    {
+    if (args.sample_index == 0u) {
         first.instance = hit.instance_index + 1u;
         first.primitive = hit.primitive_index;
     }
     AT(wave.first_surfaces, vertex.path.pixel) = first;
 }
 
-void shade(PathState path, Ray ray, Hit hit)
-{
+void shade(PathState path, Ray ray, Hit hit) {
     Vertex vertex;
     vertex.surface = surface_of(AT(wave.scene, 0), ray, hit);
     if (HAS_MEDIA && path.medium != 0u)
@@ -181,22 +166,18 @@ void shade(PathState path, Ray ray, Hit hit)
     uint flags = AT(AT(wave.scene, 0).materials, vertex.surface.material).flags;
     vec2 part = unit_floats(pair_of(vertex, PAIR_PART));
     vec4 color = base_color(AT(wave.scene, 0), vertex.surface, flags);
-    if (HAS_ALPHA)
-    {
+    if (HAS_ALPHA) {
         float cutoff = AT(AT(wave.scene, 0).materials, vertex.surface.material).alpha_cutoff;
-        if (part.x >= opacity(flags, cutoff, color.a))
-        {
+        if (part.x >= opacity(flags, cutoff, color.a)) {
             pass(vertex, ray);
             return;
         }
     }
-    if (HAS_AOVS)
-    {
+    if (HAS_AOVS) {
         note_first(vertex, hit, flags, color.rgb);
         return;
     }
-    if ((flags & MATERIAL_UNLIT) != 0u)
-    {
+    if ((flags & MATERIAL_UNLIT) != 0u) {
         add(path.pixel, path.throughput * color.rgb);
         return;
     }
@@ -207,7 +188,7 @@ void shade(PathState path, Ray ray, Hit hit)
     vertex.bsdf = bsdf_of(AT(wave.scene, 0), vertex.surface, flags, color.rgb, vertex.is_front, part.y);
     if (LAYERS != 0u)
         set_layers(vertex.bsdf, AT(wave.scene, 0), vertex.surface, vertex.normal, vertex.wo, vertex.is_front);
-    if (is_last && !is_pane(vertex.bsdf)) return; // panes are passed at any depth, as by shadow rays
+    if (is_last && !is_pane(vertex.bsdf)) return;  // panes are passed at any depth, as by shadow rays
     vertex.facing = 0u;
     vec3 outside = vertex.surface.point.normal * (vertex.is_front ? 1.0 : -1.0);
     if (HAS_LIGHT_TREE) vertex.facing = packed_facing(outside, vertex.bsdf.is_glass);
@@ -216,8 +197,7 @@ void shade(PathState path, Ray ray, Hit hit)
     scatter(vertex, ray);
 }
 
-void main()
-{
+void main() {
     wave = AT(args.wave, 0);
     uint i = global_index();
     uint count = args.count;
@@ -227,6 +207,8 @@ void main()
     PathState path = load_path(i);
     Ray ray = AT(wave.rays, i);
     Hit hit = AT(wave.hits, i);
-    if (HAS_QUEUES || hit.hit != 0u) shade(path, ray, hit);
-    else add_environment(path, ray);
+    if (HAS_QUEUES || hit.hit != 0u)
+        shade(path, ray, hit);
+    else
+        add_environment(path, ray);
 }

@@ -10,8 +10,7 @@ layout(push_constant, scalar) uniform Push { WaveArgs args; };
 WaveData wave;
 
 // Returns the light that glass lets pass straight on: that of a pane.
-vec3 passed_as_glass(SceneData scene, Ray ray, Surface surface, uint flags, vec3 color)
-{
+vec3 passed_as_glass(SceneData scene, Ray ray, Surface surface, uint flags, vec3 color) {
     vec2 factors = roughness_and_metallic(scene, surface, flags);
     vec3 wo = -normalize(ray.direction);
     bool is_front = dot(surface.point.normal, wo) >= 0.0;
@@ -22,14 +21,13 @@ vec3 passed_as_glass(SceneData scene, Ray ray, Surface surface, uint flags, vec3
     return passed_by_pane(bsdf, to_local(frame_about(normal), wo)) * glass_part(scene, surface, flags, factors.y);
 }
 
-void pass(Ray ray, vec3 contribution, uint pixel, Hit hit)
-{
+void pass(Ray ray, vec3 contribution, uint pixel, Hit hit) {
     SceneData scene = AT(wave.scene, 0);
     Surface surface = surface_of(scene, ray, hit);
     uint flags = AT(scene.materials, surface.material).flags;
     bool is_transparent = (flags & (MATERIAL_MASKED | MATERIAL_BLENDED)) != 0u;
-    bool is_glass = HAS_PANES && (flags & MATERIAL_UNLIT) == 0u &&
-        AT(scene.materials, surface.material).transmission > 0.0;
+    bool is_glass =
+        HAS_PANES && (flags & MATERIAL_UNLIT) == 0u && AT(scene.materials, surface.material).transmission > 0.0;
     if (!is_transparent && !is_glass) return;
     vec4 color = base_color(scene, surface, flags);
     float opaque = opacity(flags, AT(scene.materials, surface.material).alpha_cutoff, color.a);
@@ -43,18 +41,18 @@ void pass(Ray ray, vec3 contribution, uint pixel, Hit hit)
     AT(wave.next_shadows.pixel, slot) = pixel;
 }
 
-void main()
-{
+void main() {
     uint i = global_index();
     if (i >= args.count) return;
     wave = AT(args.wave, 0);
     Hit hit = AT(wave.hits, i);
     vec3 contribution = AT(wave.shadows.contribution, i);
     uint pixel = AT(wave.shadows.pixel, i);
-    if (hit.hit == 0u)
-    {
-        if (is_finite(contribution)) AT(wave.sums, pixel).rgb += contribution;
-        else atomicAdd(AT(wave.counters, 0).non_finite, 1u);
-    }
-    else if (HAS_ALPHA || HAS_PANES) pass(AT(wave.shadow_rays, i), contribution, pixel, hit);
+    if (hit.hit == 0u) {
+        if (is_finite(contribution))
+            AT(wave.sums, pixel).rgb += contribution;
+        else
+            atomicAdd(AT(wave.counters, 0).non_finite, 1u);
+    } else if (HAS_ALPHA || HAS_PANES)
+        pass(AT(wave.shadow_rays, i), contribution, pixel, hit);
 }

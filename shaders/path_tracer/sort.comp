@@ -8,21 +8,18 @@
 layout(local_size_x = PATH_GROUP) in;
 layout(push_constant, scalar) uniform Push { WaveArgs args; };
 
-uint kind_of(SceneData scene, Hit hit)
-{
+uint kind_of(SceneData scene, Hit hit) {
     SurfaceMesh mesh = AT(AT(scene.instances, hit.instance_index).mesh, 0);
     uint of_triangle = material_of_triangle(mesh, hit.primitive_index);
     return AT(scene.material_kinds, material_of(hit.custom_index, of_triangle));
 }
 
-void main()
-{
+void main() {
     uint i = global_index();
     if (i >= args.count) return;
     wave = AT(args.wave, 0);
     Hit hit = AT(wave.hits, i);
-    if (hit.hit == 0u)
-    {
+    if (hit.hit == 0u) {
         add_environment(load_path(i), AT(wave.rays, i));
         return;
     }

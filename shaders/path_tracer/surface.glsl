@@ -4,28 +4,25 @@
 #ifndef TWINRAY_PATH_TRACER_SURFACE_GLSL
 #define TWINRAY_PATH_TRACER_SURFACE_GLSL
 
-struct TextureCoordinates
-{
+struct TextureCoordinates {
     vec2 first;
-    vec2 second; // the first where a mesh has no others
+    vec2 second;  // the first where a mesh has no others
 };
 
-struct Surface
-{
+struct Surface {
     SurfacePoint point;
     Placement placement;
-    float t;            // along the ray that met it
-    vec3 normal;        // shading normal, unit, on the side of point.normal
-    vec3 tangent;       // world, for normal maps; not normalised
+    float t;       // along the ray that met it
+    vec3 normal;   // shading normal, unit, on the side of point.normal
+    vec3 tangent;  // world, for normal maps; not normalised
     vec3 bitangent;
     TextureCoordinates uv;
-    vec4 color;         // of the vertices, linear
+    vec4 color;  // of the vertices, linear
     uint material;
 };
 
 // An attribute that the mesh lacks is 0; the colour is 1, and the first texture coordinates replace the second.
-struct SurfaceVertex
-{
+struct SurfaceVertex {
     vec3 position;
     vec3 normal;
     vec2 uv;
@@ -34,14 +31,12 @@ struct SurfaceVertex
     vec4 color;
 };
 
-struct TriangleData
-{
+struct TriangleData {
     SurfaceVertex vertex[3];
     uint material;
 };
 
-SurfaceVertex load_vertex(SurfaceMesh mesh, uint index)
-{
+SurfaceVertex load_vertex(SurfaceMesh mesh, uint index) {
     SurfaceVertex vertex;
     vertex.position = load_position(mesh.packed.positions, index);
     vertex.normal = vec3(0.0);
@@ -57,14 +52,12 @@ SurfaceVertex load_vertex(SurfaceMesh mesh, uint index)
     return vertex;
 }
 
-uint material_of_triangle(SurfaceMesh mesh, uint primitive)
-{
+uint material_of_triangle(SurfaceMesh mesh, uint primitive) {
     if (is_absent(mesh.materials)) return 0u;
     return AT(mesh.materials, primitive);
 }
 
-TriangleData load_triangle_data(SceneData scene, uint instance, uint primitive)
-{
+TriangleData load_triangle_data(SceneData scene, uint instance, uint primitive) {
     SurfaceMesh mesh = AT(AT(scene.instances, instance).mesh, 0);
     uvec3 indices = load_indices(mesh.packed.indices, primitive);
     TriangleData data;
@@ -73,16 +66,14 @@ TriangleData load_triangle_data(SceneData scene, uint instance, uint primitive)
     return data;
 }
 
-Placement load_placement(REF(SurfaceInstance) instances, uint index)
-{
+Placement load_placement(REF(SurfaceInstance) instances, uint index) {
     Placement placement;
     placement.to_world = AT(instances, index).object_to_world;
     placement.to_object = AT(instances, index).world_to_object;
     return placement;
 }
 
-TriangleVertices vertices_of(TriangleData data)
-{
+TriangleVertices vertices_of(TriangleData data) {
     TriangleVertices vertices;
     vertices.a = data.vertex[0].position;
     vertices.b = data.vertex[1].position;
@@ -96,16 +87,14 @@ bool has_normal(SurfaceVertex vertex) { return vertex.normal != vec3(0.0); }
 
 vec3 vertex_normal(SurfaceVertex vertex, vec3 of_triangle) { return has_normal(vertex) ? vertex.normal : of_triangle; }
 
-vec3 vertex_normal(TriangleData data, SurfacePoint point, vec2 at)
-{
+vec3 vertex_normal(TriangleData data, SurfacePoint point, vec2 at) {
     vec3 weights = weights_of(at);
     return vertex_normal(data.vertex[0], point.normal_object) * weights.x +
            vertex_normal(data.vertex[1], point.normal_object) * weights.y +
            vertex_normal(data.vertex[2], point.normal_object) * weights.z;
 }
 
-TextureCoordinates interpolated_uv(TriangleData data, vec2 at)
-{
+TextureCoordinates interpolated_uv(TriangleData data, vec2 at) {
     vec3 weights = weights_of(at);
     TextureCoordinates uv;
     uv.first = data.vertex[0].uv * weights.x + data.vertex[1].uv * weights.y + data.vertex[2].uv * weights.z;
@@ -116,15 +105,13 @@ TextureCoordinates interpolated_uv(TriangleData data, vec2 at)
     return uv;
 }
 
-vec4 interpolated_color(TriangleData data, vec2 at)
-{
+vec4 interpolated_color(TriangleData data, vec2 at) {
     if (!HAS_COLORS) return vec4(1.0);
     vec3 weights = weights_of(at);
     return data.vertex[0].color * weights.x + data.vertex[1].color * weights.y + data.vertex[2].color * weights.z;
 }
 
-vec3 interpolated_normal(TriangleData data, SurfacePoint point, Placement placement, vec2 at)
-{
+vec3 interpolated_normal(TriangleData data, SurfacePoint point, Placement placement, vec2 at) {
     if (!has_normal(data.vertex[0]) && !has_normal(data.vertex[1]) && !has_normal(data.vertex[2])) return point.normal;
     vec3 normal = vertex_normal(data, point, at);
     if (dot(normal, normal) == 0.0) return point.normal;
@@ -135,15 +122,13 @@ vec3 interpolated_normal(TriangleData data, SurfacePoint point, Placement placem
 
 // Uses the file's tangents if there are any, else the derivatives of uv. glTF's bitangent points to smaller v (up in
 // the picture).
-void set_tangents(inout Surface surface, TriangleData data, uint flags, vec2 at)
-{
+void set_tangents(inout Surface surface, TriangleData data, uint flags, vec2 at) {
     vec3 weights = weights_of(at);
-    vec4 along = data.vertex[0].tangent * weights.x + data.vertex[1].tangent * weights.y +
-                 data.vertex[2].tangent * weights.z;
+    vec4 along =
+        data.vertex[0].tangent * weights.x + data.vertex[1].tangent * weights.y + data.vertex[2].tangent * weights.z;
     vec3 tangent = along.xyz;
     vec3 bitangent = cross(vertex_normal(data, surface.point, at), tangent) * (along.w < 0.0 ? -1.0 : 1.0);
-    if (dot(bitangent, bitangent) > 0.0)
-    {
+    if (dot(bitangent, bitangent) > 0.0) {
         surface.tangent = transform_vector(surface.placement.to_world, tangent);
         surface.bitangent = transform_vector(surface.placement.to_world, bitangent);
         return;
@@ -160,8 +145,7 @@ void set_tangents(inout Surface surface, TriangleData data, uint flags, vec2 at)
     surface.bitangent = transform_vector(surface.placement.to_world, (edge1 * dv.x - edge2 * du.x) * handedness);
 }
 
-Surface surface_at(TriangleData data, Placement placement, vec2 at)
-{
+Surface surface_at(TriangleData data, Placement placement, vec2 at) {
     Surface surface;
     surface.placement = placement;
     surface.point = surface_point(placement, vertices_of(data), at);
@@ -172,8 +156,7 @@ Surface surface_at(TriangleData data, Placement placement, vec2 at)
     return surface;
 }
 
-Surface surface_of(SceneData scene, Ray ray, Hit hit)
-{
+Surface surface_of(SceneData scene, Ray ray, Hit hit) {
     Placement placement = load_placement(scene.instances, hit.instance_index);
     TriangleData data = load_triangle_data(scene, hit.instance_index, hit.primitive_index);
     Crossing crossing = crossing_of(ray, placement, vertices_of(data));
@@ -186,8 +169,7 @@ Surface surface_of(SceneData scene, Ray ray, Hit hit)
 }
 
 // The ray continues behind a surface that it hit. Its t_min grows with each, so that every ray gets through.
-Ray behind(Ray ray, Surface surface)
-{
+Ray behind(Ray ray, Surface surface) {
     ray.t_min = passing_t(surface.point, surface.placement, ray, max(surface.t, ray.t_min));
     return ray;
 }

@@ -18,8 +18,7 @@ FUNC uint with_surface_met(uint progress) { return (progress & 0xffff0000u) | ((
 TWINRAY_SOA_VIEW(ShadowQueue, SHADOW_FIELDS)
 
 // The rays of a wave that hit materials of one kind. The last three are read by an indirect dispatch.
-struct KindQueue
-{
+struct KindQueue {
     uint count;
     uint groups_x;
     uint groups_y;
@@ -27,77 +26,70 @@ struct KindQueue
 };
 BUFFER_OF(KindQueue, 4);
 
-struct Counters
-{
-    uint paths;      // appended for the next wave
-    uint shadows;    // appended for the next shadow wave
-    uint non_finite; // contributions dropped as NaN or infinite
+struct Counters {
+    uint paths;       // appended for the next wave
+    uint shadows;     // appended for the next shadow wave
+    uint non_finite;  // contributions dropped as NaN or infinite
 };
 BUFFER_OF(Counters, 4);
 
 // The position of the pixels of a film in the whole picture. Random numbers belong to pixels of the whole picture, so
 // that a part of it is the same when it is rendered alone.
-struct FilmWindow
-{
-    uint width;         // of the film
+struct FilmWindow {
+    uint width;  // of the film
     uint picture_width;
-    uint first;         // index of the film's first pixel in the picture
+    uint first;  // index of the film's first pixel in the picture
 };
-FUNC uint picture_index(FilmWindow window, uint pixel)
-{
+FUNC uint picture_index(FilmWindow window, uint pixel) {
     return window.first + pixel + (pixel / window.width) * (window.picture_width - window.width);
 }
 
 // The first surfaces that the camera rays of a pixel see, summed over the rays.
-struct FirstSurface
-{
-    vec3 albedo;    // base color
-    vec3 normal;    // for shading, in world space, on the side of the camera
-    float distance; // from the camera
-    uint count;     // of the rays that see something
-    uint instance;  // 1 + that of sample 0; 0: it sees nothing
+struct FirstSurface {
+    vec3 albedo;     // base color
+    vec3 normal;     // for shading, in world space, on the side of the camera
+    float distance;  // from the camera
+    uint count;      // of the rays that see something
+    uint instance;   // 1 + that of sample 0; 0: it sees nothing
     uint primitive;
 };
 BUFFER_OF(FirstSurface, 8);
 
 // The addresses of the arrays of a wave. A wave of shadow rays has the same, with its rays in shadow_rays.
-struct WaveData
-{
+struct WaveData {
     REF(SceneData) scene;
     REF(Ray) rays;
     REF(Hit) hits;
     PathQueue paths;
     REF(Ray) next_rays;
     PathQueue next_paths;
-    Uints media;                      // of the paths: 1 + the material of the volume that it is in, 0: none; absent
-    Uints next_media;                 // without PT_HAS_MEDIA
-    Uints facings;                    // of the paths: how the surface lies that they left, see packed_facing; absent
-    Uints next_facings;               // without PT_HAS_LIGHT_TREE
+    Uints media;         // of the paths: 1 + the material of the volume that it is in, 0: none; absent
+    Uints next_media;    // without PT_HAS_MEDIA
+    Uints facings;       // of the paths: how the surface lies that they left, see packed_facing; absent
+    Uints next_facings;  // without PT_HAS_LIGHT_TREE
     REF(Ray) shadow_rays;
     ShadowQueue shadows;
     REF(Ray) next_shadow_rays;
     ShadowQueue next_shadows;
-    REF(KindQueue) kinds;             // absent where all materials are of one kind
-    Uints queues;                     // for each kind, `capacity` indices of rays
+    REF(KindQueue) kinds;  // absent where all materials are of one kind
+    Uints queues;          // for each kind, `capacity` indices of rays
     REF(Counters) counters;
     REF(Radiance) sums;
-    REF(FirstSurface) first_surfaces; // one per pixel; absent without PT_HAS_AOVS
+    REF(FirstSurface) first_surfaces;  // one per pixel; absent without PT_HAS_AOVS
     FilmWindow window;
-    uint capacity;                    // of the arrays
+    uint capacity;  // of the arrays
 };
 BUFFER_OF(WaveData, 8);
 
 // Arguments of the kernels that queue the rays of a wave, and that follow shadow rays.
-struct WaveArgs
-{
+struct WaveArgs {
     REF(WaveData) wave;
     uint count;
 };
 
-struct ShadeArgs
-{
+struct ShadeArgs {
     REF(WaveData) wave;
-    uint count; // of rays; those of a queue have theirs
+    uint count;  // of rays; those of a queue have theirs
     uint kind;
     uint sample_index;
     uint seed;
@@ -105,22 +97,20 @@ struct ShadeArgs
 };
 
 // A ray on which two accelerators name different hits.
-struct Disagreement
-{
+struct Disagreement {
     Ray ray;
     Hit first;
     Hit second;
     uint pixel;
-    uint is_any; // a query for any hit: only hit or miss counts
+    uint is_any;  // a query for any hit: only hit or miss counts
 };
 BUFFER_OF(Disagreement, 8);
 
-struct CompareArgs
-{
+struct CompareArgs {
     REF(Ray) rays;
     REF(Hit) first;
     REF(Hit) second;
-    Uints pixels;       // of the rays
+    Uints pixels;  // of the rays
     REF(Disagreement) found;
     Uints found_count;  // counts beyond the capacity too
     Uints marks;        // one per pixel, set to 1 where a ray disagrees

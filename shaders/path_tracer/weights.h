@@ -4,8 +4,7 @@
 #define TWINRAY_PATH_TRACER_WEIGHTS_H
 
 // Returns Veach's power heuristic with exponent 2, without overflow. Density 0 of `own` means that it needs no partner.
-FUNC float mis_weight(float own, float other)
-{
+FUNC float mis_weight(float own, float other) {
     if (own <= 0.0f) return 1.0f;
     float ratio = other / own;
     return 1.0f / (1.0f + ratio * ratio);

@@ -7,8 +7,7 @@
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { BoundaryArgs args; };
 
-void main()
-{
+void main() {
     uint i = args.first + global_index();
     if (i >= args.end) return;
     dvec3 point = AT(args.points, i).at;

@@ -10,21 +10,19 @@ layout(push_constant, scalar) uniform Push { PointSearchArgs args; };
 
 dvec3 point;
 PointBox point_box;
-TrianglePoint best; // its `squared` is the limit until an item is found
+TrianglePoint best;  // its `squared` is the limit until an item is found
 uint best_item = NO_ITEM;
-float best_above;   // best.squared in the form of bounds of boxes
+float best_above;  // best.squared in the form of bounds of boxes
 
-float nothing() { return uintBitsToFloat(0x7f800000u); } // the bound of an empty box
+float nothing() { return uintBitsToFloat(0x7f800000u); }  // the bound of an empty box
 
-float bound_of(uint node)
-{
+float bound_of(uint node) {
     if (node >= args.leaf_begin + args.leaf_count) return nothing();
     TreeBox box = AT(args.nodes, node);
     return is_empty(box) ? nothing() : squared_distance_below(point_box, box, args.scale);
 }
 
-void test(uint leaf)
-{
+void test(uint leaf) {
     uint item = AT(args.nodes, leaf).item;
     TrianglePoint found = closest_on_triangle(point, AT(args.triangles, item));
     if (found.squared > best.squared || (found.squared == best.squared && item > best_item)) return;
@@ -34,10 +32,8 @@ void test(uint leaf)
 }
 
 // Returns the next node that is near enough; 0: there is none.
-uint next_waiting(uint node, inout uint waiting)
-{
-    while (waiting != 0u)
-    {
+uint next_waiting(uint node, inout uint waiting) {
+    while (waiting != 0u) {
         int up = findLSB(waiting);
         node = (node >> up) ^ 1u;
         waiting = (waiting >> up) & ~1u;
@@ -46,14 +42,11 @@ uint next_waiting(uint node, inout uint waiting)
     return 0u;
 }
 
-void search()
-{
+void search() {
     uint node = bound_of(1u) <= best_above ? 1u : 0u;
     uint waiting = 0u;
-    while (node != 0u)
-    {
-        if (node >= args.leaf_begin)
-        {
+    while (node != 0u) {
+        if (node >= args.leaf_begin) {
             test(node);
             node = next_waiting(node, waiting);
             continue;
@@ -62,8 +55,7 @@ void search()
         float right = bound_of(2u * node + 1u);
         float near = min(left, right);
         float far = max(left, right);
-        if (near > best_above)
-        {
+        if (near > best_above) {
             node = next_waiting(node, waiting);
             continue;
         }
@@ -72,8 +64,7 @@ void search()
     }
 }
 
-void main()
-{
+void main() {
     uint position = args.first + global_index();
     if (position >= args.end) return;
     uint i = AT(args.order, position);

@@ -10,8 +10,7 @@
 #include "shaders/points/point_search.h"
 #include "shaders/points/point_winding.h"
 
-FUNC AngleSum no_angle()
-{
+FUNC AngleSum no_angle() {
     AngleSum none;
     none.x = double(1.0f);
     none.y = double(0.0f);
@@ -21,14 +20,13 @@ FUNC AngleSum no_angle()
 }
 
 // Adds the angle of (x, y), which is not (0, 0); of (x, 0) with x < 0, half a turn, back if `is_back`.
-FUNC AngleSum with_angle(AngleSum sum, double x, double y, bool is_back)
-{
+FUNC AngleSum with_angle(AngleSum sum, double x, double y, bool is_back) {
     if (is_back && y == double(0.0f) && x < double(0.0f)) sum.revolutions -= 1;
     double real = sum.x * x - sum.y * y;
     double imaginary = sum.x * y + sum.y * x;
     double size = sqrt(real * real + imaginary * imaginary);
     bool is_up = sum.y >= double(0.0f);
-    bool is_whole = is_up && x < double(0.0f) && imaginary == double(0.0f) && real > double(0.0f); // of two halves
+    bool is_whole = is_up && x < double(0.0f) && imaginary == double(0.0f) && real > double(0.0f);  // of two halves
     bool is_sum_up = imaginary >= double(0.0f) && !is_whole;
     if (is_up == (y >= double(0.0f)) && is_up != is_sum_up) sum.revolutions += is_up ? 1 : -1;
     sum.x = real / size;
@@ -38,8 +36,7 @@ FUNC AngleSum with_angle(AngleSum sum, double x, double y, bool is_back)
 
 // Returns (1 - x, y, z) of a unit vector without cancellation; of +x, as the line is moved, along -y, in units of the
 // line's move.
-FUNC dvec3 beside_line(dvec3 unit)
-{
+FUNC dvec3 beside_line(dvec3 unit) {
     double y2z2 = unit.y * unit.y + unit.z * unit.z;
     if (unit.x <= double(0.0f)) return dvec3(double(1.0f) - unit.x, unit.y, unit.z);
     if (y2z2 == double(0.0f)) return dvec3(double(0.0f), -double(1.0f), double(0.0f));
@@ -48,13 +45,12 @@ FUNC dvec3 beside_line(dvec3 unit)
 
 // Adds half of the solid angle, seen from the point, of the area that the edge sweeps (van Oosterom and Strackee 1983).
 // Adds nothing for a point on the edge, whose winding number is either side's.
-FUNC AngleSum with_edge(AngleSum sum, dvec3 point, OpenEdge edge)
-{
+FUNC AngleSum with_edge(AngleSum sum, dvec3 point, OpenEdge edge) {
     dvec3 a = edge.a - point;
     dvec3 b = edge.b - point;
     double length_a = sqrt(dot(a, a));
     double length_b = sqrt(dot(b, b));
-    int side = moved_side(edge.a, edge.b, point); // exact: it decides to which side half a sphere counts
+    int side = moved_side(edge.a, edge.b, point);  // exact: it decides to which side half a sphere counts
     if (length_a == double(0.0f) || length_b == double(0.0f) || side == 0) return sum;
     a = beside_line(a / length_a);
     b = beside_line(b / length_b);

@@ -10,8 +10,7 @@
 
 // Returns on which side of the edge from a to b, seen against +x, the moved line passes: 1: left. 0: the edge is seen
 // as a point.
-FUNC int moved_side(dvec3 a, dvec3 b, dvec3 p)
-{
+FUNC int moved_side(dvec3 a, dvec3 b, dvec3 p) {
     int side = area_sign(a, b, p, 0u);
     if (side != 0) return side;
     if (a.z != b.z) return a.z > b.z ? 1 : -1;
@@ -20,8 +19,7 @@ FUNC int moved_side(dvec3 a, dvec3 b, dvec3 p)
 }
 
 // Returns 1 or -1 if the moved line crosses the triangle, else 0, or UNKNOWN_SIGN. 0 for a point on the triangle.
-FUNC int crossing_of(dvec3 p, WorldTriangle t)
-{
+FUNC int crossing_of(dvec3 p, WorldTriangle t) {
     int ab = moved_side(t.a, t.b, p);
     int bc = moved_side(t.b, t.c, p);
     int ca = moved_side(t.c, t.a, p);

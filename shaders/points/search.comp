@@ -10,8 +10,7 @@
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PointSearchArgs args; };
 
-void append(PointSearchArgs args, uint point, uint item, double distance)
-{
+void append(PointSearchArgs args, uint point, uint item, double distance) {
     uint slot = append_to(args.total);
     if (slot >= args.capacity) return;
     AT(args.found, slot).point = point;
@@ -20,16 +19,14 @@ void append(PointSearchArgs args, uint point, uint item, double distance)
 }
 
 #ifdef KERNEL_BOXES
-void main()
-{
+void main() {
     uint i = global_index();
     if (i < args.end) AT(args.boxes, i) = tree_box_of(AT(args.points, i).at, i);
 }
 #endif
 
 #ifdef KERNEL_WITHIN
-void main()
-{
+void main() {
     uint position = args.first + global_index();
     if (position >= args.end) return;
     uint i = AT(args.order, position);
@@ -40,13 +37,10 @@ void main()
     float limit_above = squared_distance_above(squared_limit, args.scale);
     uint end = args.leaf_begin + args.leaf_count;
     uint node = 1u;
-    while (node != 0u && node < end)
-    {
+    while (node != 0u && node < end) {
         TreeBox box = AT(args.nodes, node);
-        if (!is_empty(box) && squared_distance_below(point_box, box, args.scale) <= limit_above)
-        {
-            if (node < args.leaf_begin)
-            {
+        if (!is_empty(box) && squared_distance_below(point_box, box, args.scale) <= limit_above) {
+            if (node < args.leaf_begin) {
                 node = 2u * node;
                 continue;
             }
@@ -59,14 +53,12 @@ void main()
 #endif
 
 #ifdef KERNEL_WINDING
-bool is_on_line(PointBox p, TreeBox box)
-{
+bool is_on_line(PointBox p, TreeBox box) {
     return p.min.x <= box.max.x && p.min.y <= box.max.y && box.min.y <= p.max.y && p.min.z <= box.max.z &&
            box.min.z <= p.max.z;
 }
 
-void main()
-{
+void main() {
     uint position = args.first + global_index();
     if (position >= args.end) return;
     uint i = AT(args.order, position);
@@ -75,20 +67,20 @@ void main()
     int winding = 0;
     uint end = args.leaf_begin + args.leaf_count;
     uint node = is_finite_point(point) ? 1u : 0u;
-    while (node != 0u && node < end)
-    {
+    while (node != 0u && node < end) {
         TreeBox box = AT(args.nodes, node);
-        if (is_on_line(point_box, box))
-        {
-            if (node < args.leaf_begin)
-            {
+        if (is_on_line(point_box, box)) {
+            if (node < args.leaf_begin) {
                 node = 2u * node;
                 continue;
             }
             int crossing = crossing_of(point, AT(args.triangles, box.item));
-            if (crossing == UNKNOWN_SIGN) append(args, i, box.item, double(0.0f));
-            else if (AT(args.runs, box.group).is_mirrored != 0u) winding -= crossing;
-            else winding += crossing;
+            if (crossing == UNKNOWN_SIGN)
+                append(args, i, box.item, double(0.0f));
+            else if (AT(args.runs, box.group).is_mirrored != 0u)
+                winding -= crossing;
+            else
+                winding += crossing;
         }
         node = next_subtree(node);
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Traces one ray by a ray query, as programs that show a driver's fault do: see report/reproducer/reproducer.c; and by a
-// ray tracing pipeline, for drivers without ray queries and for faults of pipelines.
+// Traces one ray by a ray query, as programs that show a driver's fault do: see report/reproducer/reproducer.c; and by
+// a ray tracing pipeline, for drivers without ray queries and for faults of pipelines.
 #version 460
 #if defined(KERNEL_QUERY)
 #extension GL_EXT_ray_query : require
@@ -10,21 +10,18 @@
 #if defined(KERNEL_QUERY) || defined(STAGE_RGEN)
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
-layout(buffer_reference) buffer Answer
-{
+layout(buffer_reference) buffer Answer {
     uint is_hit, instance, triangle;
     float t, u, v;
 };
-layout(push_constant) uniform Push
-{
+layout(push_constant) uniform Push {
     vec4 origin_t_min, direction_t_max;
-    uvec2 scene; // address of the top level
+    uvec2 scene;  // address of the top level
     Answer answer;
 };
 #endif
 
-struct Payload
-{
+struct Payload {
     uint is_hit, instance, triangle;
     float t, u, v;
 };
@@ -32,8 +29,7 @@ struct Payload
 #ifdef KERNEL_QUERY
 layout(local_size_x = 1) in;
 
-void main()
-{
+void main() {
     rayQueryEXT query;
     rayQueryInitializeEXT(query, accelerationStructureEXT(scene), gl_RayFlagsOpaqueEXT, 0xff, origin_t_min.xyz,
                           origin_t_min.w, direction_t_max.xyz, direction_t_max.w);
@@ -53,8 +49,7 @@ void main()
 #ifdef STAGE_RGEN
 layout(location = 0) rayPayloadEXT Payload payload;
 
-void main()
-{
+void main() {
     traceRayEXT(accelerationStructureEXT(scene), gl_RayFlagsOpaqueEXT, 0xff, 0, 0, 0, origin_t_min.xyz, origin_t_min.w,
                 direction_t_max.xyz, direction_t_max.w, 0);
     answer.is_hit = payload.is_hit;

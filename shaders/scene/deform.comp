@@ -11,34 +11,29 @@ layout(push_constant, scalar) uniform Push { DeformArgs args; };
 
 vec3 load_vec3(Floats from, uint at) { return vec3(AT(from, at), AT(from, at + 1u), AT(from, at + 2u)); }
 
-void store_vec3(Floats to, uint at, vec3 value)
-{
+void store_vec3(Floats to, uint at, vec3 value) {
     AT(to, at) = value.x;
     AT(to, at + 1u) = value.y;
     AT(to, at + 2u) = value.z;
 }
 
-vec3 displaced(vec3 value, Floats displacements, uint vertex)
-{
+vec3 displaced(vec3 value, Floats displacements, uint vertex) {
     if (is_absent(displacements)) return value;
-    for (uint i = 0u; i < args.target_count; ++i)
-    {
+    for (uint i = 0u; i < args.target_count; ++i) {
         float weight = AT(args.target_weights, i);
         if (weight != 0.0) value += weight * load_vec3(displacements, 3u * (i * args.vertex_count + vertex));
     }
     return value;
 }
 
-Rows blend_of(uint vertex)
-{
+Rows blend_of(uint vertex) {
     Rows blend;
     blend.r0 = vec4(0.0);
     blend.r1 = vec4(0.0);
     blend.r2 = vec4(0.0);
-    for (uint i = vertex * args.influences; i < (vertex + 1u) * args.influences; ++i)
-    {
+    for (uint i = vertex * args.influences; i < (vertex + 1u) * args.influences; ++i) {
         float weight = AT(args.joint_weights, i);
-        if (weight == 0.0) continue; // of unused joints, which may be infinite
+        if (weight == 0.0) continue;  // of unused joints, which may be infinite
         uint row = 3u * AT(args.joints, i);
         blend.r0 += weight * AT(args.joint_rows, row);
         blend.r1 += weight * AT(args.joint_rows, row + 1u);
@@ -49,15 +44,13 @@ Rows blend_of(uint vertex)
 
 float largest_of(vec3 v) { return max(max(abs(v.x), abs(v.y)), abs(v.z)); }
 
-vec3 unit_or_zero(vec3 v)
-{
+vec3 unit_or_zero(vec3 v) {
     float largest = largest_of(v);
     return largest > 0.0 && is_finite(v) ? normalize(v / largest) : vec3(0.0);
 }
 
 // Returns the linear part in units of its largest entry, for directions: products of entries then stay within float.
-Rows scaled(Rows m)
-{
+Rows scaled(Rows m) {
     float unit = power_of_two_below(max(max(largest_of(m.r0.xyz), largest_of(m.r1.xyz)), largest_of(m.r2.xyz)));
     float factor = unit > 0.0 ? 1.0 / unit : 0.0;
     m.r0 *= factor;
@@ -66,23 +59,19 @@ Rows scaled(Rows m)
     return m;
 }
 
-vec3 times_cofactors(Rows m, vec3 v)
-{
+vec3 times_cofactors(Rows m, vec3 v) {
     return vec3(dot(cross(m.r1.xyz, m.r2.xyz), v), dot(cross(m.r2.xyz, m.r0.xyz), v),
                 dot(cross(m.r0.xyz, m.r1.xyz), v));
 }
 
-void move_directions(Rows blend, bool is_skinned, uint vertex)
-{
+void move_directions(Rows blend, bool is_skinned, uint vertex) {
     Rows m = scaled(blend);
-    if (!is_absent(args.normals))
-    {
+    if (!is_absent(args.normals)) {
         vec3 normal = displaced(load_vec3(args.normals, 3u * vertex), args.target_normals, vertex);
         if (is_skinned) normal = times_cofactors(m, normal);
         store_vec3(args.moved_normals, 3u * vertex, unit_or_zero(normal));
     }
-    if (!is_absent(args.tangents))
-    {
+    if (!is_absent(args.tangents)) {
         vec3 tangent = displaced(load_vec3(args.tangents, 4u * vertex), args.target_tangents, vertex);
         if (is_skinned) tangent = transform_vector(m, tangent);
         store_vec3(args.moved_tangents, 4u * vertex, unit_or_zero(tangent));
@@ -90,8 +79,7 @@ void move_directions(Rows blend, bool is_skinned, uint vertex)
     }
 }
 
-void main()
-{
+void main() {
     uint vertex = global_index();
     if (vertex >= args.vertex_count) return;
     bool is_skinned = args.influences > 0u;

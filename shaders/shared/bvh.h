@@ -14,33 +14,29 @@
 #include "twinray/glsl/accel_header.h"
 
 const uint LEAF_BIT = 0x80000000u;
-const uint INSTANCE_BIT = 0x40000000u; // in records of leaves
-const uint PAIR_BIT = 0x20000000u;     // in records of leaves of two triangles
-const uint WIDE_BIT = INSTANCE_BIT;    // in other records
+const uint INSTANCE_BIT = 0x40000000u;  // in records of leaves
+const uint PAIR_BIT = 0x20000000u;      // in records of leaves of two triangles
+const uint WIDE_BIT = INSTANCE_BIT;     // in other records
 const uint NOTHING = 0xffffffffu;
 
 // Inner nodes on a path split on ever lower bits of (60-bit Morton code, 25-bit position).
 const uint DEEPEST_TREE = 85u;
-const uint DEEPEST_RECORDS = (DEEPEST_TREE + 1u) / 2u; // inner nodes on a path of records, see collapse.h
+const uint DEEPEST_RECORDS = (DEEPEST_TREE + 1u) / 2u;  // inner nodes on a path of records, see collapse.h
 
-struct LeafBox
-{
-    vec3 lo; // lo > hi: empty
+struct LeafBox {
+    vec3 lo;  // lo > hi: empty
     vec3 hi;
 };
 BUFFER_OF(LeafBox, 8);
 
 // Comparisons give the same bits everywhere: min() and max() may give either of two zeros.
-FUNC vec3 min_by_comparison(vec3 a, vec3 b)
-{
+FUNC vec3 min_by_comparison(vec3 a, vec3 b) {
     return vec3(a.x < b.x ? a.x : b.x, a.y < b.y ? a.y : b.y, a.z < b.z ? a.z : b.z);
 }
-FUNC vec3 max_by_comparison(vec3 a, vec3 b)
-{
+FUNC vec3 max_by_comparison(vec3 a, vec3 b) {
     return vec3(a.x > b.x ? a.x : b.x, a.y > b.y ? a.y : b.y, a.z > b.z ? a.z : b.z);
 }
-FUNC LeafBox around_both(LeafBox a, LeafBox b)
-{
+FUNC LeafBox around_both(LeafBox a, LeafBox b) {
     LeafBox box;
     box.lo = min_by_comparison(a.lo, b.lo);
     box.hi = max_by_comparison(a.hi, b.hi);
@@ -48,12 +44,11 @@ FUNC LeafBox around_both(LeafBox a, LeafBox b)
 }
 
 // 64 bytes. Child boxes are in the parent, so that one fetch decides both. A box is empty if lo > hi.
-struct BvhNode
-{
+struct BvhNode {
     vec3 lo0;
     uint child0;
     vec3 hi0;
-    uint subtree0; // of child0, see subtree_info; in finished trees of layout bvh2 the node's own edge, see make_edge
+    uint subtree0;  // of child0, see subtree_info; in finished trees of layout bvh2 the node's own edge, see make_edge
     vec3 lo1;
     uint child1;
     vec3 hi1;
@@ -62,16 +57,14 @@ struct BvhNode
 BUFFER_OF(BvhNode, 16);
 
 // Each half of a node, as others write it alone.
-struct BvhChild
-{
+struct BvhChild {
     vec3 lo;
     uint child;
     vec3 hi;
     uint subtree;
 };
 
-FUNC BvhChild child_of(BvhNode node, uint side)
-{
+FUNC BvhChild child_of(BvhNode node, uint side) {
     BvhChild child;
     child.lo = side == 0u ? node.lo0 : node.lo1;
     child.child = side == 0u ? node.child0 : node.child1;
@@ -82,8 +75,7 @@ FUNC BvhChild child_of(BvhNode node, uint side)
 
 // 40 bytes; all vertices are 0 for a triangle that is not active (see triangle.h), which is never hit. For a box, v0
 // and v1 are its lowest and highest corner.
-struct BvhTriangle
-{
+struct BvhTriangle {
     vec3 v0;
     vec3 v1;
     vec3 v2;
@@ -105,39 +97,35 @@ BUFFER_OF(BvhTriangle, 8);
 //            b.x, b.y: the third vertex of the first, of the second; z: see LeafVertices::corners
 // instance   a.w: LEAF_BIT | INSTANCE_BIT | index
 // none       a.w: 0
-struct CompressedRecord
-{
+struct CompressedRecord {
     uvec4 a;
     uvec4 b;
     uvec2 c;
 };
 BUFFER_OF(CompressedRecord, 8);
 
-struct Bvh
-{
-    vec3 lo; // around all active leaves; lo > hi: there are none
+struct Bvh {
+    vec3 lo;  // around all active leaves; lo > hi: there are none
     vec3 hi;
-    REF(BvhNode) nodes; // of layout bvh2, else absent
+    REF(BvhNode) nodes;  // of layout bvh2, else absent
     uint root;
     uint leaf_count;
 };
 BUFFER_OF(Bvh, 8);
 
 // The target of InstanceRecord::geometry for the software accelerator. Begins with a GeometryBox.
-struct SwGeometry
-{
+struct SwGeometry {
     Bvh bvh;
-    REF(BvhTriangle) triangles;    // of layout bvh2, else absent
-    REF(CompressedRecord) records; // of all other layouts, else absent
-    Floats vertices; // 3 each, of leaves of two triangles, else absent
-    uint kind; // GEOMETRY_*
+    REF(BvhTriangle) triangles;     // of layout bvh2, else absent
+    REF(CompressedRecord) records;  // of all other layouts, else absent
+    Floats vertices;                // 3 each, of leaves of two triangles, else absent
+    uint kind;                      // GEOMETRY_*
     uint reserved;
 };
 BUFFER_OF(SwGeometry, 8);
 
 // An instance as traversal reads it.
-struct SwInstance
-{
+struct SwInstance {
     Rows world_to_object;
     REF(BvhNode) nodes;
     REF(BvhTriangle) triangles;
@@ -145,18 +133,17 @@ struct SwInstance
     Floats vertices;
     uint root;
     uint custom_index_mask;
-    uint flags; // of the instance: INSTANCE_*
-    uint kind;  // of its geometry
-    float extent; // the largest coordinate of the geometry's box
+    uint flags;    // of the instance: INSTANCE_*
+    uint kind;     // of its geometry
+    float extent;  // the largest coordinate of the geometry's box
     uint reserved;
 };
 BUFFER_OF(SwInstance, 8);
 
-struct SwTlasHeader
-{
+struct SwTlasHeader {
     AccelHeader accel;
     Bvh bvh;
-    REF(CompressedRecord) records; // as in SwGeometry
+    REF(CompressedRecord) records;  // as in SwGeometry
     REF(SwInstance) instances;
     Uint64 instance_count;
 };
@@ -172,17 +159,14 @@ FUNC uint height_in(uint subtree) { return subtree >> 25u; }
 FUNC uint make_edge(uint node, uint side) { return (node + 1u) << 1u | side; }
 FUNC uint parent_of_edge(uint edge) { return (edge >> 1u) - 1u; }
 FUNC uint edge_of(REF(BvhNode) nodes, uint node) { return AT(nodes, node).subtree0; }
-FUNC void set_edge(REF(BvhNode) nodes, uint child, uint edge)
-{
+FUNC void set_edge(REF(BvhNode) nodes, uint child, uint edge) {
     if ((child & LEAF_BIT) == 0u) AT(nodes, child).subtree0 = edge;
 }
-FUNC void link_children(REF(BvhNode) nodes, uint node)
-{
+FUNC void link_children(REF(BvhNode) nodes, uint node) {
     set_edge(nodes, AT(nodes, node).child0, make_edge(node, 0u));
     set_edge(nodes, AT(nodes, node).child1, make_edge(node, 1u));
 }
-FUNC uint child_at(REF(BvhNode) nodes, uint edge)
-{
+FUNC uint child_at(REF(BvhNode) nodes, uint edge) {
     uint node = parent_of_edge(edge);
     return (edge & 1u) == 0u ? AT(nodes, node).child0 : AT(nodes, node).child1;
 }

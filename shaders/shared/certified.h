@@ -16,8 +16,7 @@
 #include "shaders/shared/refine.h"
 
 // The traced ray in object space.
-struct CertifiedRay
-{
+struct CertifiedRay {
     vec3 origin;
     vec3 direction;
     // How far it may run from the exact one, in any coordinate anywhere in the geometry, and a vertex of it be sheared
@@ -31,10 +30,9 @@ struct CertifiedRay
 // of the geometry is at most (|o'| + extent) / |d'| away. The shear along the longest axis doubles what is off, and
 // rounds at most 12 times; another factor of 2 is slack for the roundings in this bound. `is_moved`: the ray is one of
 // advanced(), whose origin is off by a rounding itself.
-FUNC CertifiedRay certified_ray(RefineInstance instance, Ray ray, bool is_moved)
-{
-    const float UNKNOWN = 1e37f;                    // larger than any mesh in built units: nothing is refused
-    const double MAPPING = double(3.5527136788005009e-15f); // 2^-48
+FUNC CertifiedRay certified_ray(RefineInstance instance, Ray ray, bool is_moved) {
+    const float UNKNOWN = 1e37f;                             // larger than any mesh in built units: nothing is refused
+    const double MAPPING = double(3.5527136788005009e-15f);  // 2^-48
     const double MOVING = double(HALF_ULP);
     RowsDouble to_object = instance.world_to_object;
     RowsDouble magnitude = absolute(to_object);
@@ -52,8 +50,8 @@ FUNC CertifiedRay certified_ray(RefineInstance instance, Ray ray, bool is_moved)
     mapped.direction = vec3(float(direction.x), float(direction.y), float(direction.z));
     float reach = largest_entry(mapped.origin) + instance.extent;
     float moved = (instance.residual + HALF_ULP) * largest_entry(mapped.origin) + largest_entry_double(origin_error);
-    float rotated = instance.residual + HALF_ULP +
-                   largest_entry_double(direction_error) / largest_entry(mapped.direction);
+    float rotated =
+        instance.residual + HALF_ULP + largest_entry_double(direction_error) / largest_entry(mapped.direction);
     float error = 4.0f * (moved + reach * rotated + reach * (6.0f * HALF_ULP));
     mapped.error = error < UNKNOWN ? error : UNKNOWN;
     return mapped;
@@ -61,10 +59,9 @@ FUNC CertifiedRay certified_ray(RefineInstance instance, Ray ray, bool is_moved)
 
 // Returns 1 or -1 if the edge function of two sheared vertices, each off by at most `error` in x and y, has that sign
 // for certain, else 0.
-FUNC int certain_side(vec3 a, vec3 b, float error)
-{
-    const float ROUNDINGS = 2.384185791015625e-07f; // 4 of 2^-24
-    const float LEAST_PRODUCT = 7.888609052210118e-31f; // 2^-100: below, products may have been flushed
+FUNC int certain_side(vec3 a, vec3 b, float error) {
+    const float ROUNDINGS = 2.384185791015625e-07f;      // 4 of 2^-24
+    const float LEAST_PRODUCT = 7.888609052210118e-31f;  // 2^-100: below, products may have been flushed
     PRECISE float p = a.x * b.y;
     PRECISE float q = a.y * b.x;
     PRECISE float area = p - q;
@@ -74,27 +71,28 @@ FUNC int certain_side(vec3 a, vec3 b, float error)
 }
 
 // Does the work of exact_side and accurate_edge_function of intersect.h in float64.
-FUNC double exact_edge_function_double(dvec3 a, dvec3 b, INOUT(int) side)
-{
+FUNC double exact_edge_function_double(dvec3 a, dvec3 b, INOUT(int) side) {
     PRECISE double p = a.x * b.y;
     PRECISE double q = a.y * b.x;
     PRECISE double area = p - q;
     if (p == q) area = product_error_double(a.x, b.y, p) - product_error_double(a.y, b.x, q);
-    if (p != q) side = p > q ? 1 : -1;
-    else if (area != double(0.0f)) side = area > double(0.0f) ? 1 : -1;
-    else if (a.y != b.y) side = a.y > b.y ? 1 : -1;
-    else side = b.x > a.x ? 1 : (b.x < a.x ? -1 : 0);
+    if (p != q)
+        side = p > q ? 1 : -1;
+    else if (area != double(0.0f))
+        side = area > double(0.0f) ? 1 : -1;
+    else if (a.y != b.y)
+        side = a.y > b.y ? 1 : -1;
+    else
+        side = b.x > a.x ? 1 : (b.x < a.x ? -1 : 0);
     return area;
 }
 
-FUNC dvec3 dominant_last_double(dvec3 v, uint axis)
-{
+FUNC dvec3 dominant_last_double(dvec3 v, uint axis) {
     return axis == 0u ? dvec3(v.y, v.z, v.x) : (axis == 1u ? dvec3(v.z, v.x, v.y) : v);
 }
 
 // Returns a vertex, relative to the ray's origin, seen along the direction d, whose dominant axis is the last.
-FUNC dvec3 sheared_double(dvec3 vertex, dvec3 d, uint axis)
-{
+FUNC dvec3 sheared_double(dvec3 vertex, dvec3 d, uint axis) {
     dvec3 p = dominant_last_double(vertex, axis);
     PRECISE double x = p.x - d.x / d.z * p.z;
     PRECISE double y = p.y - d.y / d.z * p.z;
@@ -102,9 +100,8 @@ FUNC dvec3 sheared_double(dvec3 vertex, dvec3 d, uint axis)
 }
 
 // Does the work of may_begin_in_plane() of intersect.h in float64.
-FUNC bool may_begin_in_plane_double(dvec3 a, dvec3 b, dvec3 c, double mean)
-{
-    const double ROUNDINGS = double(7.1054273576010019e-15f); // 64 u = 2^-47
+FUNC bool may_begin_in_plane_double(dvec3 a, dvec3 b, dvec3 c, double mean) {
+    const double ROUNDINGS = double(7.1054273576010019e-15f);  // 64 u = 2^-47
     dvec3 size = abs(a) + abs(b) + abs(c);
     double across = size.x + size.y;
     bool is_around = min(a.z, min(b.z, c.z)) <= double(0.0f) && max(a.z, max(b.z, c.z)) >= double(0.0f);
@@ -115,10 +112,9 @@ FUNC bool may_begin_in_plane_double(dvec3 a, dvec3 b, dvec3 c, double mean)
 // which begins `advance` behind the given one, as t + t_low. Returns false with sign_of_t asked if float64 is not
 // certain of it: told_sign() then tells it in object space.
 FUNC bool intersect_in_world(uint primitive_index, uint instance_index, TraceOptions options, INOUT(uint) sign_of_t,
-                             INOUT(TriangleHit) hit)
-{
+                             INOUT(TriangleHit) hit) {
     const double LEAST_NORMAL = double(uintBitsToFloat(0x00800000u));
-    const double ROUNDINGS = double(1.4210854715202004e-14f); // 2^-46
+    const double ROUNDINGS = double(1.4210854715202004e-14f);  // 2^-46
     InstancedMesh placed = AT(options.instances, instance_index).placed;
     vec3 o = options.given.origin;
     vec3 w = options.given.direction;
@@ -140,8 +136,7 @@ FUNC bool intersect_in_world(uint primitive_index, uint instance_index, TraceOpt
     PRECISE double given_t = z / d.z;
     bool along_in_world = (det > double(0.0f)) == (d.z > double(0.0f));
     bool along_in_object = along_in_world != (AT(options.instances, instance_index).is_mirrored != 0u);
-    if (sign_of_t == SIGN_UNASKED && may_begin_in_plane_double(a, b, c, z * det))
-    {
+    if (sign_of_t == SIGN_UNASKED && may_begin_in_plane_double(a, b, c, z * det)) {
         sign_of_t = asked_sign(along_in_object);
         return false;
     }
@@ -157,7 +152,7 @@ FUNC bool intersect_in_world(uint primitive_index, uint instance_index, TraceOpt
     hit.u = float(area_b / det);
     hit.v = float(area_c / det);
     hit.along = along_in_object;
-    return abs(hit.t) <= 3.402823466e+38f; // no t beyond the largest float can be reported
+    return abs(hit.t) <= 3.402823466e+38f;  // no t beyond the largest float can be reported
 }
 
 #endif

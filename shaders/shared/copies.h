@@ -4,16 +4,14 @@
 #define TWINRAY_SHARED_COPIES_H
 #include "twinray/glsl/instance.h"
 
-struct CopyWordsArgs
-{
+struct CopyWordsArgs {
     Uints from;
     Uints to;
     uint count;
     uint reserved;
 };
 
-struct CopyFloatsArgs
-{
+struct CopyFloatsArgs {
     Floats from;
     Floats to;
     uint count;
@@ -21,17 +19,15 @@ struct CopyFloatsArgs
 };
 
 // Transforms go into instance records; ids, masks and flags stay.
-struct CopyTransformsArgs
-{
+struct CopyTransformsArgs {
     REF(InstanceRecord) records;
-    Vec4s rows; // three a transform, 48 bytes
+    Vec4s rows;  // three a transform, 48 bytes
     uint count;
     uint reserved;
 };
 
 // Items have `words_per_item` words each.
-struct CopyItemsArgs
-{
+struct CopyItemsArgs {
     Uints from;
     Uints to;
     uint count;

@@ -5,27 +5,24 @@
 #include "shaders/shared/refine.h"
 #include "twinray/glsl/ray64.h"
 
-struct HitDouble
-{
+struct HitDouble {
     double t;
     double u;
     double v;
 };
 BUFFER_OF(HitDouble, 8);
 
-struct ExactHitsArgs
-{
+struct ExactHitsArgs {
     REF(RefineScene) scene;
     REF(Ray64) rays;
     REF(Hit) hits;
-    REF(HitDouble) results; // of hits alone
+    REF(HitDouble) results;  // of hits alone
     uint count;
     uint reserved;
 };
 
 // Returns the float64 result for the triangle that a hit names; the hit's own if the triangle's plane contains the ray.
-FUNC HitDouble exact_hit(REF(RefineInstance) instances, Ray64 ray, Hit hit)
-{
+FUNC HitDouble exact_hit(REF(RefineInstance) instances, Ray64 ray, Hit hit) {
     HitDouble exact;
     exact.t = double(hit.t);
     exact.u = double(hit.u);

@@ -8,8 +8,7 @@
 #include "twinray/glsl/triangle.h"
 
 // Morton codes of the instances' centers, for drivers that build in input order.
-struct HwCodesArgs
-{
+struct HwCodesArgs {
     REF(InstanceRecord) records;
     REF(WorldBound) bound;
     Uints keys;
@@ -18,10 +17,9 @@ struct HwCodesArgs
 };
 
 // The driver's input: the records in their build order, each with the address of its bottom-level structure.
-struct HwGatherArgs
-{
+struct HwGatherArgs {
     REF(InstanceRecord) records;
-    Uints order;                // absent: the order that `instances` has already
+    Uints order;  // absent: the order that `instances` has already
     REF(InstanceRecord) driver_records;
     REF(HwInstance) instances;  // absent: the records keep their order
     uint count;
@@ -29,27 +27,25 @@ struct HwGatherArgs
 };
 
 // The boxes of instances in the world, in build order.
-struct HwAreasArgs
-{
+struct HwAreasArgs {
     REF(InstanceRecord) records;
-    REF(HwInstance) instances; // absent: the records keep their order
+    REF(HwInstance) instances;  // absent: the records keep their order
     REF(AreaItem) areas;
     uint count;
     uint reserved;
 };
 
 // A mesh whose vertices move: three vertices a triangle, in the order in which they are built.
-struct HwTrianglesArgs
-{
+struct HwTrianglesArgs {
     Floats positions;
     Uints indices;
-    REF(HwGeometry) geometry; // its box: written by triangle_bound, read by the others
+    REF(HwGeometry) geometry;  // its box: written by triangle_bound, read by the others
     REF(WorldBoundBits) bits;
-    Uints keys;               // Morton codes, written by triangle_codes
-    Uints order;              // position -> triangle of the mesh; absent: the order that `table` has already
-    Uints table;              // the same, kept for the trace kernels; absent: the mesh's order
-    Floats vertices;           // 9 a triangle, by position
-    REF(AreaItem) areas;      // their boxes
+    Uints keys;           // Morton codes, written by triangle_codes
+    Uints order;          // position -> triangle of the mesh; absent: the order that `table` has already
+    Uints table;          // the same, kept for the trace kernels; absent: the mesh's order
+    Floats vertices;      // 9 a triangle, by position
+    REF(AreaItem) areas;  // their boxes
     uint count;
     uint group_count;
 };

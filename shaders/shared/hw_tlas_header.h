@@ -5,11 +5,10 @@
 #include "twinray/glsl/accel_header.h"
 
 // The target of InstanceRecord::geometry for the hardware accelerator. Begins with a GeometryBox.
-struct HwGeometry
-{
+struct HwGeometry {
     vec3 lo;
     vec3 hi;
-    Address blas;    // device address of the bottom-level structure; 0: nothing can be hit
+    Address blas;     // device address of the bottom-level structure; 0: nothing can be hit
     Uints triangles;  // primitive of the built geometry -> the user's; absent: the same
     uint kind;        // GEOMETRY_*
     uint reserved;
@@ -17,18 +16,16 @@ struct HwGeometry
 BUFFER_OF(HwGeometry, 8);
 
 // Maps one instance in the driver's numbering back to the user's numbering.
-struct HwInstance
-{
+struct HwInstance {
     Uints triangles;      // primitive of the built geometry -> the user's
     uint instance_index;  // position in the accelerator's instance array
     uint pad;
 };
 BUFFER_OF(HwInstance, 8);
 
-struct HwTlasHeader
-{
+struct HwTlasHeader {
     AccelHeader accel;
-    Address tlas;              // device address of the top-level acceleration structure
+    Address tlas;               // device address of the top-level acceleration structure
     REF(HwInstance) instances;  // by InstanceId; absent without FEATURE_REMAP
 };
 BUFFER_OF(HwTlasHeader, 8);

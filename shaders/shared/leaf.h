@@ -4,15 +4,13 @@
 #define TWINRAY_SHARED_LEAF_H
 
 // A primitive, which is both, or two triangles.
-struct Leaf
-{
+struct Leaf {
     uint first;
     uint second;
 };
 BUFFER_OF(Leaf, 4);
 
-FUNC Leaf make_leaf(uint first, uint second)
-{
+FUNC Leaf make_leaf(uint first, uint second) {
     Leaf leaf;
     leaf.first = first;
     leaf.second = second;

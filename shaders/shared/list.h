@@ -4,8 +4,7 @@
 #ifndef TWINRAY_SHARED_LIST_H
 #define TWINRAY_SHARED_LIST_H
 
-struct ListTotal
-{
+struct ListTotal {
     uint low;
     uint high;
 };

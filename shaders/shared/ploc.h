@@ -16,35 +16,31 @@
 #include "shaders/shared/node_child.h"
 #include "shaders/shared/splits.h"
 
-const uint KEPT_CLUSTERS = 16u; // of a range, at most, for the one above it
+const uint KEPT_CLUSTERS = 16u;  // of a range, at most, for the one above it
 const uint MOST_CLUSTERS = 2u * KEPT_CLUSTERS;
-const uint SEARCH_RADIUS = 8u; // how far apart in order two clusters may be that are joined
+const uint SEARCH_RADIUS = 8u;  // how far apart in order two clusters may be that are joined
 
-struct Cluster
-{
+struct Cluster {
     NodeChild top;
-    uint last_leaf; // position of one of its leaves in the tree's order
+    uint last_leaf;  // position of one of its leaves in the tree's order
 };
 
 // A cluster's best partner so far among those near it.
-struct Nearest
-{
+struct Nearest {
     uint cluster;
-    float area; // of the joint box
-    uint rank;  // of the pair, among those of equal area
+    float area;  // of the joint box
+    uint rank;   // of the pair, among those of equal area
 };
 
 // Ranks pairs of equal area: the pair whose clusters are closer in order comes first, then the one that begins at an
 // even position: clusters that are all alike are joined two by two. Because no two pairs are equal, the first of all
 // pairs is chosen by both, and each round has one.
-FUNC uint pair_rank(uint i, uint j)
-{
+FUNC uint pair_rank(uint i, uint j) {
     uint first = min(i, j);
     return (max(i, j) - first) << 6u | (first & 1u) << 5u | first;
 }
 
-FUNC Nearest nothing_near(uint i)
-{
+FUNC Nearest nothing_near(uint i) {
     Nearest nearest;
     nearest.cluster = i;
     nearest.area = uintBitsToFloat(0x7f800000u);
@@ -53,8 +49,7 @@ FUNC Nearest nothing_near(uint i)
 }
 
 // Updates cluster i's nearest with cluster j. Areas that are too large for a float are all the same.
-FUNC Nearest nearer_of(Nearest nearest, uint i, NodeChild own, uint j, NodeChild other, float scale)
-{
+FUNC Nearest nearer_of(Nearest nearest, uint i, NodeChild own, uint j, NodeChild other, float scale) {
     const float LARGEST = 3.402823466e+38f;
     float around = area_around(own, other, scale);
     float area = around < LARGEST ? around : LARGEST;
@@ -67,8 +62,7 @@ FUNC Nearest nearer_of(Nearest nearest, uint i, NodeChild own, uint j, NodeChild
 }
 
 // Joins two clusters, the earlier first, and names their node.
-FUNC Cluster joined_cluster(Cluster a, Cluster b)
-{
+FUNC Cluster joined_cluster(Cluster a, Cluster b) {
     Cluster both;
     both.top = joined_child(a.top, b.top, min(a.last_leaf, b.last_leaf));
     both.last_leaf = max(a.last_leaf, b.last_leaf);
@@ -81,8 +75,7 @@ FUNC uint levels_for(uint count) { return count < 2u ? 0u : uint(findMSB(count -
 // Returns the greatest height that the tree of a range with this split may get. Because no two splits on a way down are
 // the same, there are enough levels above it. Positions have 25 bits; the bits that a smaller tree does not need are
 // left for its clusters.
-FUNC uint height_limit(uvec2 split, uint leaf_count)
-{
+FUNC uint height_limit(uvec2 split, uint leaf_count) {
     bool is_of_positions = split.y == 0u && split.x >> 25u == 0u;
     return highest_below(split) + (is_of_positions ? 25u - levels_for(leaf_count) : 0u);
 }

@@ -14,61 +14,52 @@
 //    the space is beyond 2^80 in t, or within 2^-40, t of boxes is taken times a power of two, so that no product of
 //    a box with them overflows or is denormal.
 //  - Triangles: shear constants of Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", 2013.
-struct RaySpace
-{
+struct RaySpace {
     vec3 origin;
     vec3 direction;
-    vec3 inverse; // of the direction, within the limit, times t_scale
+    vec3 inverse;  // of the direction, within the limit, times t_scale
     float pad;
-    float t_scale; // of t of boxes
-    uint axis; // the dominant axis of the direction
+    float t_scale;  // of t of boxes
+    uint axis;      // the dominant axis of the direction
     float shear_x;
     float shear_y;
     float shear_z;
 };
 
 // Tests of boxes take this from a RaySpace. Made at each node: carried through the loop it holds 13 registers.
-struct BoxRay
-{
+struct BoxRay {
     vec3 near_origin;
     vec3 far_origin;
-    vec3 near_inverse; // times t_scale
+    vec3 near_inverse;  // times t_scale
     vec3 far_inverse;
     float t_scale;
 };
 
-FUNC float reciprocal(float d)
-{
+FUNC float reciprocal(float d) {
     // 1/0 is written out: Vulkan leaves the division undefined. It is positive for either zero, because compilers may
     // turn one into the other, and the order of children depends on it.
     return d == 0.0f ? uintBitsToFloat(0x7f800000u) : 1.0f / d;
 }
 
-FUNC uint dominant_axis(vec3 direction)
-{
+FUNC uint dominant_axis(vec3 direction) {
     vec3 size = abs(direction);
     return size.x >= size.y ? (size.x >= size.z ? 0u : 2u) : (size.y >= size.z ? 1u : 2u);
 }
 
-FUNC vec3 dominant_last(vec3 v, uint axis)
-{
+FUNC vec3 dominant_last(vec3 v, uint axis) {
     return axis == 0u ? vec3(v.y, v.z, v.x) : (axis == 1u ? vec3(v.z, v.x, v.y) : v);
 }
 
 // Returns x, or the nearest of -limit and limit.
-FUNC float within(float x, float limit)
-{
-    return min_no_nan(max_no_nan(x, -limit), limit);
-}
+FUNC float within(float x, float limit) { return min_no_nan(max_no_nan(x, -limit), limit); }
 
-FUNC BoxRay box_ray(RaySpace space)
-{
-#ifdef TWINRAY_NO_PADDING // a negative control: shows why the padding is needed
+FUNC BoxRay box_ray(RaySpace space) {
+#ifdef TWINRAY_NO_PADDING  // a negative control: shows why the padding is needed
     const float NEAR_FACTOR = 1.0f;
     const float FAR_FACTOR = 1.0f;
 #else
-    const float NEAR_FACTOR = 0.99999904632568359375f; // 1 - 2^-20
-    const float FAR_FACTOR = 1.00000095367431640625f;  // 1 + 2^-20
+    const float NEAR_FACTOR = 0.99999904632568359375f;  // 1 - 2^-20
+    const float FAR_FACTOR = 1.00000095367431640625f;   // 1 + 2^-20
 #endif
     vec3 inverse = space.inverse;
     float pad = space.pad;
@@ -90,8 +81,7 @@ FUNC BoxRay box_ray(RaySpace space)
 
 // Returns 1, or the power of two that brings the largest t at which a ray may meet something between 2^-40 and 2^80.
 // That is 2^38 pads at most times the reciprocal of the direction's dominant entry.
-FUNC float scale_of_reach(float pad, float along)
-{
+FUNC float scale_of_reach(float pad, float along) {
     const int LOWEST = -40 - 38;
     const int HIGHEST = 80 - 38;
     int exponent = int(floatBitsToUint(pad) >> 23u) + int(floatBitsToUint(along) >> 23u) - 254;
@@ -100,13 +90,12 @@ FUNC float scale_of_reach(float pad, float along)
 }
 
 // pad: see above; 2^-38 of the coordinates of the origin and of all boxes at least.
-FUNC RaySpace make_ray_space(vec3 origin, vec3 direction, float pad)
-{
+FUNC RaySpace make_ray_space(vec3 origin, vec3 direction, float pad) {
 #ifdef TWINRAY_NO_PADDING
     pad = 0.0f;
 #endif
     const float LARGEST_FLOAT = uintBitsToFloat(0x7f7fffffu);
-    const float STEEPEST = 1099511627776.0f; // 2^40
+    const float STEEPEST = 1099511627776.0f;  // 2^40
     RaySpace space;
     space.origin = origin;
     space.direction = direction;
@@ -134,19 +123,16 @@ FUNC float vertex_pad(vec3 origin, float extent) { return (largest_entry(origin)
 
 // Return the ends of the interval in which a ray is inside of all three slabs, begun with its own, which a NaN (of
 // products out of range) leaves as it was.
-FUNC float latest_of(float enter, float near_x, float near_y, float near_z)
-{
+FUNC float latest_of(float enter, float near_x, float near_y, float near_z) {
     return max_no_nan(near_z, max_no_nan(near_y, max_no_nan(near_x, enter)));
 }
-FUNC float earliest_of(float leave, float far_x, float far_y, float far_z)
-{
+FUNC float earliest_of(float leave, float far_x, float far_y, float far_z) {
     return min_no_nan(far_z, min_no_nan(far_y, min_no_nan(far_x, leave)));
 }
 
 // Returns the interval in which the ray is inside the box within [t_min, t_max], in t * ray.t_scale: the first is
 // greater if it does not meet the box.
-FUNC vec2 cross_box(vec3 lo, vec3 hi, BoxRay ray, float t_min, float t_max)
-{
+FUNC vec2 cross_box(vec3 lo, vec3 hi, BoxRay ray, float t_min, float t_max) {
     bool flip_x = ray.near_inverse.x < 0.0f;
     bool flip_y = ray.near_inverse.y < 0.0f;
     bool flip_z = ray.near_inverse.z < 0.0f;
@@ -161,8 +147,7 @@ FUNC vec2 cross_box(vec3 lo, vec3 hi, BoxRay ray, float t_min, float t_max)
     return vec2(latest_of(first, near_x, near_y, near_z), earliest_of(last, far_x, far_y, far_z));
 }
 
-FUNC bool enter_box(vec3 lo, vec3 hi, RaySpace space, float t_min, float t_max, INOUT(float) enter)
-{
+FUNC bool enter_box(vec3 lo, vec3 hi, RaySpace space, float t_min, float t_max, INOUT(float) enter) {
     vec2 crossing = cross_box(lo, hi, box_ray(space), t_min, t_max);
     enter = crossing.x;
     return crossing.x <= crossing.y;

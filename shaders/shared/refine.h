@@ -10,8 +10,7 @@
 #include "shaders/shared/trace.h"
 
 // Returns the t at which the line o + t d enters the slab between lo and hi; d is not 0.
-FUNC double slab_entry(float o, float d, float lo, float hi)
-{
+FUNC double slab_entry(float o, float d, float lo, float hi) {
     double near = d > 0.0f ? double(lo) : double(hi);
     PRECISE double way = near - double(o);
     PRECISE double t = way / double(d);
@@ -21,8 +20,7 @@ FUNC double slab_entry(float o, float d, float lo, float hi)
 // The same ray from nearer to the box, if it comes from more than five times as far as the box's largest coordinate: t
 // of the result plus `advance` is t of `ray`. It stops about that coordinate short of the box, so nothing is jumped
 // over. Nearer rays pay for one comparison.
-FUNC Ray advanced(Ray ray, vec3 lo, vec3 hi, INOUT(double) advance)
-{
+FUNC Ray advanced(Ray ray, vec3 lo, vec3 hi, INOUT(double) advance) {
     const float FAR_IN_SIZES = 4.0f;
     advance = double(0.0f);
     float size = max(largest_entry(lo), largest_entry(hi));
@@ -53,9 +51,8 @@ FUNC Ray advanced(Ray ray, vec3 lo, vec3 hi, INOUT(double) advance)
 
 // Returns the ray to trace for options.given: advanced(), with a margin at both ends, since float64 tells what lies
 // between them. Filters see hits before float64 does, so that their rays have none below certified.
-FUNC Ray searched_ray(vec3 lo, vec3 hi, INOUT(TraceOptions) options)
-{
-    const float MARGIN = 3.814697265625e-06f; // 2^-18
+FUNC Ray searched_ray(vec3 lo, vec3 hi, INOUT(TraceOptions) options) {
+    const float MARGIN = 3.814697265625e-06f;  // 2^-18
     Ray ray = advanced(options.given, lo, hi, options.advance);
     if (options.level != LEVEL_CERTIFIED && (options.features & FEATURE_FILTERS) != 0u) return ray;
     PRECISE float t_min = ray.t_min - MARGIN * ray.t_min;
@@ -66,10 +63,9 @@ FUNC Ray searched_ray(vec3 lo, vec3 hi, INOUT(TraceOptions) options)
 }
 
 // Returns a vertex in world space, seen from the origin.
-FUNC dvec3 vertex_from(dvec3 origin, InstancedMesh placed, uint vertex)
-{
+FUNC dvec3 vertex_from(dvec3 origin, InstancedMesh placed, uint vertex) {
     Floats positions = placed.mesh.positions;
-    uint at = 3u * AT(placed.mesh.indices, vertex); // load_position costs AMD's compilers up to 40 registers here
+    uint at = 3u * AT(placed.mesh.indices, vertex);  // load_position costs AMD's compilers up to 40 registers here
     dvec3 v = dvec3(double(AT(positions, at)), double(AT(positions, at + 1u)), double(AT(positions, at + 2u)));
     vec4 r0 = placed.object_to_world.r0;
     vec4 r1 = placed.object_to_world.r1;
@@ -81,8 +77,7 @@ FUNC dvec3 vertex_from(dvec3 origin, InstancedMesh placed, uint vertex)
 }
 
 // Returns t in float32, within the interval that the hit was accepted in.
-FUNC float rounded_within(double t, Ray ray)
-{
+FUNC float rounded_within(double t, Ray ray) {
     float rounded = float(t);
     float t_min = max(ray.t_min, 0.0f);
     if (!(rounded > t_min)) rounded = uintBitsToFloat(floatBitsToUint(t_min) + 1u);
@@ -92,8 +87,7 @@ FUNC float rounded_within(double t, Ray ray)
 
 // Returns whether a hit at t, which is off by up to `rounding`, lies between the ends of a ray. A surface so near to an
 // end is at the end, which does not count. Signs of t have been decided, so the origin is no end.
-FUNC bool is_between_ends(double t, double rounding, Ray ray)
-{
+FUNC bool is_between_ends(double t, double rounding, Ray ray) {
     PRECISE double after_begin = double(ray.t_min) + rounding;
     PRECISE double before_end = double(ray.t_max) - rounding;
     bool is_behind = ray.t_min > 0.0f && t <= after_begin;
@@ -102,8 +96,7 @@ FUNC bool is_between_ends(double t, double rounding, Ray ray)
 
 // Returns the point nearest to 0. Of a triangle's vertices, it is the one from which the distance of its plane cancels
 // least: in a mesh with coordinates of 1e-6 and 1e6, another one cost 20 units in the last place of t.
-FUNC dvec3 nearest_of(dvec3 a, dvec3 b, dvec3 c)
-{
+FUNC dvec3 nearest_of(dvec3 a, dvec3 b, dvec3 c) {
     dvec3 nearest = a;
     if (product_sum(b, b) < product_sum(nearest, nearest)) nearest = b;
     if (product_sum(c, c) < product_sum(nearest, nearest)) nearest = c;
@@ -111,24 +104,21 @@ FUNC dvec3 nearest_of(dvec3 a, dvec3 b, dvec3 c)
 }
 
 // The point at which a line meets the plane of a triangle.
-struct PlaneHit
-{
-    double det; // 0: the plane contains the line, and the others are no numbers
+struct PlaneHit {
+    double det;  // 0: the plane contains the line, and the others are no numbers
     double t;
-    double rounding; // of t
+    double rounding;  // of t
     double u;
     double v;
 };
 
-FUNC double sum_of_sizes(dvec3 v)
-{
+FUNC double sum_of_sizes(dvec3 v) {
     PRECISE double sum = abs(v.x) + abs(v.y) + abs(v.z);
     return sum;
 }
 
-FUNC PlaneHit meet_plane(dvec3 origin, dvec3 direction, InstancedMesh placed, uint primitive)
-{
-    const double ROUNDINGS = double(1.4210854715202004e-14f); // 2^-46
+FUNC PlaneHit meet_plane(dvec3 origin, dvec3 direction, InstancedMesh placed, uint primitive) {
+    const double ROUNDINGS = double(1.4210854715202004e-14f);  // 2^-46
     PlaneHit met;
     dvec3 a = vertex_from(origin, placed, 3u * primitive);
     dvec3 b = vertex_from(origin, placed, 3u * primitive + 1u);
@@ -155,27 +145,27 @@ FUNC PlaneHit meet_plane(dvec3 origin, dvec3 direction, InstancedMesh placed, ui
     return met;
 }
 
-const float REFINING_STEP = 2.384185791015625e-07f; // 2^-22
+const float REFINING_STEP = 2.384185791015625e-07f;  // 2^-22
 
 // Shortens the ray, so that a triangle at one of its ends is not found again: by a share of t, at first
 // REFINING_STEP.
-FUNC void leave_out(float t, INOUT(Ray) ray, INOUT(float) step)
-{
+FUNC void leave_out(float t, INOUT(Ray) ray, INOUT(float) step) {
     PRECISE float gap = step * abs(t);
     PRECISE float from_begin = abs(t - ray.t_min);
     PRECISE float to_end = abs(ray.t_max - t);
     PRECISE float before = min(ray.t_max, t) - gap;
     PRECISE float after = max(ray.t_min, t) + gap;
-    if (to_end <= from_begin) ray.t_max = before;
-    else ray.t_min = after;
+    if (to_end <= from_begin)
+        ray.t_max = before;
+    else
+        ray.t_min = after;
     PRECISE float next = 4.0f * step;
     step = next;
 }
 
 // Makes a hit of the traced ray, `near`, one of the given ray: t, u and v are those of float64, rounded once. Returns
 // false if it is at an end of that; `near` is then shorter, and to be traced again.
-FUNC bool refine(INOUT(Hit) hit, INOUT(Ray) near, INOUT(float) step, TraceOptions options)
-{
+FUNC bool refine(INOUT(Hit) hit, INOUT(Ray) near, INOUT(float) step, TraceOptions options) {
     Ray ray = options.given;
     PRECISE double moved = double(hit.t) + options.advance;
     // Float32 has the last word in boxes, and if the plane contains the ray.
@@ -191,8 +181,7 @@ FUNC bool refine(INOUT(Hit) hit, INOUT(Ray) near, INOUT(float) step, TraceOption
     dvec3 direction = dvec3(double(ray.direction.x), double(ray.direction.y), double(ray.direction.z));
     if (!is_absent(placed.mesh.indices)) met = meet_plane(origin, direction, placed, hit.primitive_index);
     if (met.det == double(0.0f)) met = traced;
-    if (options.level != LEVEL_CERTIFIED && !is_between_ends(met.t, met.rounding, ray))
-    {
+    if (options.level != LEVEL_CERTIFIED && !is_between_ends(met.t, met.rounding, ray)) {
         PRECISE double t = met.t - options.advance;
         leave_out(float(t), near, step);
         return false;

@@ -6,26 +6,23 @@
 #include "shaders/shared/world_bound.h"
 
 // The data of an instance that refining needs.
-struct RefineInstance
-{
-    InstancedMesh placed; // as given, in units of a power of two, which the map contains; absent: boxes
+struct RefineInstance {
+    InstancedMesh placed;  // as given, in units of a power of two, which the map contains; absent: boxes
     RowsDouble world_to_object;
-    float residual;   // the relative error of vectors that it maps, at most
-    float extent;     // the largest coordinate of the geometry's box
-    uint is_mirrored; // 1 where the map's determinant is negative
+    float residual;    // the relative error of vectors that it maps, at most
+    float extent;      // the largest coordinate of the geometry's box
+    uint is_mirrored;  // 1 where the map's determinant is negative
     uint reserved;
 };
 BUFFER_OF(RefineInstance, 16);
 
-struct RefineScene
-{
+struct RefineScene {
     REF(WorldBound) bound;
-    REF(RefineInstance) instances; // in the order of Hit::instance_index
+    REF(RefineInstance) instances;  // in the order of Hit::instance_index
 };
 BUFFER_OF(RefineScene, 8);
 
-struct RefineGatherArgs
-{
+struct RefineGatherArgs {
     REF(InstanceRecord) records;
     REF(RefineInstance) instances;
     uint count;
@@ -34,17 +31,15 @@ struct RefineGatherArgs
 
 // Returns the data of an instance that refining needs; its record is in built units. `absent` is the address that
 // replaces that of a missing mesh.
-FUNC RefineInstance refine_instance(InstanceRecord record, Address absent)
-{
-    const float UP = 1.00000095367431640625f; // 1 + 2^-20: more than rounding to float32 takes
+FUNC RefineInstance refine_instance(InstanceRecord record, Address absent) {
+    const float UP = 1.00000095367431640625f;  // 1 + 2^-20: more than rounding to float32 takes
     Rows to_world = to_world_of(record);
     RefineInstance instance;
     instance.placed.object_to_world = to_world;
     instance.placed.mesh.positions = Floats(absent);
     instance.placed.mesh.indices = Uints(absent);
     instance.extent = 0.0f;
-    if (has_geometry(record))
-    {
+    if (has_geometry(record)) {
         instance.placed.mesh = AT(REF(GeometrySource)(address_after(record.geometry, GEOMETRY_SOURCE_OFFSET)), 0).mesh;
         GeometryBox box = AT(REF(GeometryBox)(record.geometry), 0);
         instance.extent = box.lo.x <= box.hi.x ? max(largest_entry(box.lo), largest_entry(box.hi)) : 0.0f;

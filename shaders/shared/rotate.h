@@ -7,15 +7,14 @@
 #define TWINRAY_SHARED_ROTATE_H
 #include "shaders/shared/node_child.h"
 
-const uint ROTATE_LEVELS = 4u; // that changes are followed down
+const uint ROTATE_LEVELS = 4u;  // that changes are followed down
 
 // A subtree of four leaves becomes one node of four children, whatever its shape.
 const uint FEWEST_ROTATED = 5u;
 
 FUNC bool is_rotated(NodeChild tree) { return leaves_in(tree.subtree) >= FEWEST_ROTATED; }
 
-FUNC NodeChild select_child(bool is_first, NodeChild a, NodeChild b)
-{
+FUNC NodeChild select_child(bool is_first, NodeChild a, NodeChild b) {
     NodeChild chosen;
     chosen.box.lo = is_first ? a.box.lo : b.box.lo;
     chosen.box.hi = is_first ? a.box.hi : b.box.hi;
@@ -25,16 +24,14 @@ FUNC NodeChild select_child(bool is_first, NodeChild a, NodeChild b)
 }
 
 // The nodes below that a rotation changed; NOTHING if it changed none.
-struct Rotated
-{
+struct Rotated {
     uint node0;
     uint node1;
 };
 
 FUNC uint height_above(NodeChild p, NodeChild q) { return 1u + max(height_in(p.subtree), height_in(q.subtree)); }
 
-FUNC void keep_better(INOUT(float) best, INOUT(uint) best_move, float gain, uint move, bool is_allowed)
-{
+FUNC void keep_better(INOUT(float) best, INOUT(uint) best_move, float gain, uint move, bool is_allowed) {
     bool is_better = is_allowed && gain > best;
     best = is_better ? gain : best;
     best_move = is_better ? move : best_move;
@@ -42,15 +39,13 @@ FUNC void keep_better(INOUT(float) best, INOUT(uint) best_move, float gain, uint
 
 // Rotates a node with children a and b by the best rotation, if it gains and leaves the node within `limit` nodes of
 // height. It is one function of six like cases, which share their loads: split up it would be no clearer.
-FUNC Rotated rotate_node(BvhChildren nodes, uint node, NodeChild a, NodeChild b, uint limit, float scale)
-{
+FUNC Rotated rotate_node(BvhChildren nodes, uint node, NodeChild a, NodeChild b, uint limit, float scale) {
     NodeChild a0 = a, a1 = a, b0 = b, b1 = b;
     float area_a = area_of(a.box, scale);
     float area_b = area_of(b.box, scale);
     float best = 0.0f;
     uint move = NOTHING;
-    if (is_inner(b))
-    {
+    if (is_inner(b)) {
         b0 = get_child(nodes, b.child, 0u);
         b1 = get_child(nodes, b.child, 1u);
         keep_better(best, move, area_b - area_around(a, b1, scale), 0u,
@@ -58,8 +53,7 @@ FUNC Rotated rotate_node(BvhChildren nodes, uint node, NodeChild a, NodeChild b,
         keep_better(best, move, area_b - area_around(a, b0, scale), 1u,
                     max(height_in(b1.subtree), height_above(a, b0)) < limit);
     }
-    if (is_inner(a))
-    {
+    if (is_inner(a)) {
         a0 = get_child(nodes, a.child, 0u);
         a1 = get_child(nodes, a.child, 1u);
         keep_better(best, move, area_a - area_around(b, a1, scale), 2u,
@@ -67,8 +61,7 @@ FUNC Rotated rotate_node(BvhChildren nodes, uint node, NodeChild a, NodeChild b,
         keep_better(best, move, area_a - area_around(b, a0, scale), 3u,
                     max(height_in(a1.subtree), height_above(b, a0)) < limit);
     }
-    if (is_inner(a) && is_inner(b))
-    {
+    if (is_inner(a) && is_inner(b)) {
         float both = area_a + area_b;
         keep_better(best, move, both - area_around(a1, b0, scale) - area_around(a0, b1, scale), 4u,
                     max(height_above(a1, b0), height_above(a0, b1)) < limit);
@@ -92,8 +85,7 @@ FUNC Rotated rotate_node(BvhChildren nodes, uint node, NodeChild a, NodeChild b,
     done.node0 = is_of_b ? b.child : a.child;
     put_child(nodes, done.node0, side, down);
     put_child(nodes, node, is_of_b ? 1u : 0u, joined_child(down, stays, done.node0));
-    if (is_exchange)
-    {
+    if (is_exchange) {
         done.node1 = b.child;
         put_child(nodes, b.child, 0u, up);
         up = joined_child(up, b1, b.child);
@@ -104,19 +96,17 @@ FUNC Rotated rotate_node(BvhChildren nodes, uint node, NodeChild a, NodeChild b,
 
 // A rotation of `node` and of the nodes that it changes below. It is done one node at a time, so that where invocations
 // go through a program together none waits for one that has more nodes to rotate.
-struct Rotation
-{
+struct Rotation {
     uint node;
-    uint limit;  // of the node's height
-    uint turns;  // in which the node itself was rotated
-    uint next;   // the node to rotate next; NOTHING: all are
-    uint levels; // that changes of the next one are followed down
+    uint limit;   // of the node's height
+    uint turns;   // in which the node itself was rotated
+    uint next;    // the node to rotate next; NOTHING: all are
+    uint levels;  // that changes of the next one are followed down
     // node | levels << 28, the next first; NOTHING: no more. Indexed by constants alone
     uint waiting[ROTATE_LEVELS + 1u];
 };
 
-FUNC Rotation no_rotation()
-{
+FUNC Rotation no_rotation() {
     Rotation rotation;
     rotation.node = NOTHING;
     rotation.limit = 0u;
@@ -129,8 +119,7 @@ FUNC Rotation no_rotation()
 
 // Rotates a node with both its halves, whose subtrees are finished; it then has a height of at most `limit`, if it had.
 // Below the node no subtree becomes higher; the given heights are upper bounds.
-FUNC Rotation rotation_of(uint node, uint limit)
-{
+FUNC Rotation rotation_of(uint node, uint limit) {
     Rotation rotation = no_rotation();
     rotation.node = node;
     rotation.limit = limit;
@@ -139,47 +128,38 @@ FUNC Rotation rotation_of(uint node, uint limit)
     return rotation;
 }
 
-FUNC void wait_for(INOUT(Rotation) rotation, uint node)
-{
+FUNC void wait_for(INOUT(Rotation) rotation, uint node) {
     uint moved = node | rotation.levels << 28u;
-    UNROLL for (uint i = 0u; i < ROTATE_LEVELS + 1u; i = i + 1u)
-    {
+    UNROLL for (uint i = 0u; i < ROTATE_LEVELS + 1u; i = i + 1u) {
         uint here = rotation.waiting[i];
         rotation.waiting[i] = moved;
         moved = here;
     }
 }
 
-FUNC void choose_next(INOUT(Rotation) rotation)
-{
+FUNC void choose_next(INOUT(Rotation) rotation) {
     uint waiting = rotation.waiting[0];
-    if (waiting != NOTHING)
-    {
+    if (waiting != NOTHING) {
         rotation.next = waiting & 0xfffffffu;
         rotation.levels = (waiting >> 28u) - 1u;
         UNROLL for (uint i = 0u; i < ROTATE_LEVELS; i = i + 1u) rotation.waiting[i] = rotation.waiting[i + 1u];
         rotation.waiting[ROTATE_LEVELS] = NOTHING;
-    }
-    else if (rotation.turns == 1u)
-    {
+    } else if (rotation.turns == 1u) {
         rotation.next = rotation.node;
         rotation.levels = ROTATE_LEVELS;
         rotation.turns = 2u;
-    }
-    else rotation.next = NOTHING;
+    } else
+        rotation.next = NOTHING;
 }
 
-FUNC void rotate_next(BvhChildren nodes, INOUT(Rotation) rotation, float scale)
-{
+FUNC void rotate_next(BvhChildren nodes, INOUT(Rotation) rotation, float scale) {
     NodeChild a = get_child(nodes, rotation.next, 0u);
     NodeChild b = get_child(nodes, rotation.next, 1u);
     bool is_top = rotation.next == rotation.node;
     Rotated done = rotate_node(nodes, rotation.next, a, b, is_top ? rotation.limit : height_above(a, b), scale);
-    if (done.node0 != NOTHING)
-    {
+    if (done.node0 != NOTHING) {
         rotation.turns = rotation.turns + (is_top ? 1u : 0u);
-        if (rotation.levels > 0u)
-        {
+        if (rotation.levels > 0u) {
             wait_for(rotation, done.node0);
             if (done.node1 != NOTHING) wait_for(rotation, done.node1);
         }
@@ -188,8 +168,7 @@ FUNC void rotate_next(BvhChildren nodes, INOUT(Rotation) rotation, float scale)
 }
 
 // Does all steps at once. Returns the node's height.
-FUNC uint rotate(BvhChildren nodes, uint node, uint limit, float scale)
-{
+FUNC uint rotate(BvhChildren nodes, uint node, uint limit, float scale) {
     Rotation rotation = rotation_of(node, limit);
     while (rotation.next != NOTHING) rotate_next(nodes, rotation, scale);
     return height_of(nodes, node);

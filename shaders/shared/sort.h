@@ -11,17 +11,16 @@ const uint DIGIT_BITS_CONSTANT = 0u;
 const uint IOTA_CONSTANT = 3u;
 const uint SORT_GPU_GROUP = 64u;
 const uint SORT_GPU_DIGIT_BITS = 6u;
-const uint SORT_GPU_BLOCK = 2048u; // items of a group
+const uint SORT_GPU_BLOCK = 2048u;  // items of a group
 const uint SORT_CPU_DIGIT_BITS = 10u;
-const uint SORT_CPU_BLOCK = 8192u; // items of a group, of two or more at least half as many
+const uint SORT_CPU_BLOCK = 8192u;  // items of a group, of two or more at least half as many
 const uint SORT_LONGEST_RUN = 8192u;
 const uint SCAN_GPU_GROUP = 256u;
 
 // counts[digit * block_count + block]: how often a digit occurs in a block; after the scan, its items' destination.
-struct SortArgs
-{
+struct SortArgs {
     Uints keys_in;
-    Uints values_in; // not read where the values are the items' indices
+    Uints values_in;  // not read where the values are the items' indices
     Uints keys_out;
     Uints values_out;
     Uints counts;
@@ -30,12 +29,11 @@ struct SortArgs
     uint count;
     uint shift;
     uint block_count;
-    uint run; // items of a thread
+    uint run;  // items of a thread
 };
 
 // In-place exclusive prefix sum by one group.
-struct ScanArgs
-{
+struct ScanArgs {
     Uints values;
     uint count;
     uint reserved;

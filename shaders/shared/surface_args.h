@@ -4,20 +4,18 @@
 #define TWINRAY_SHARED_SURFACE_ARGS_H
 #include "twinray/glsl/surface_at.h"
 
-struct SurfaceArgs
-{
+struct SurfaceArgs {
     REF(SurfaceTable) table;
     REF(Ray) rays;
     REF(Hit) hits;
-    Address results; // by hit: a Surface, or the four components of the attribute
+    Address results;  // by hit: a Surface, or the four components of the attribute
     uint count;
     uint reserved;
 };
 
-struct InterpolateArgs
-{
+struct InterpolateArgs {
     SurfaceArgs of;
-    vec4 missing; // of misses and of meshes that do not have it
+    vec4 missing;  // of misses and of meshes that do not have it
     uint number;
     uint reserved;
 };

@@ -13,14 +13,13 @@
 // NoOpaque.
 const uint ALL_NON_OPAQUE = 2u;
 
-struct TraceOptions
-{
-    uint mask;  // sees the instances that share a bit of its low 8
-    uint flags; // CULL_BACK, CULL_FRONT, ALL_NON_OPAQUE
+struct TraceOptions {
+    uint mask;   // sees the instances that share a bit of its low 8
+    uint flags;  // CULL_BACK, CULL_FRONT, ALL_NON_OPAQUE
     // The rest is constant in a kernel, so that it is compiled for it.
-    uint query;    // QUERY_*
-    uint level;    // LEVEL_*
-    uint features; // FEATURE_*
+    uint query;     // QUERY_*
+    uint level;     // LEVEL_*
+    uint features;  // FEATURE_*
     Address user_data;
 #ifdef TWINRAY_REFINED
     // The given ray, at LEVEL_REFINED and above; the traced one begins `advance` ahead of it.
@@ -31,26 +30,24 @@ struct TraceOptions
 };
 
 // Returns t of the given ray for t of the traced ray.
-FUNC float t_of_given(float t, TraceOptions options)
-{
+FUNC float t_of_given(float t, TraceOptions options) {
 #ifdef TWINRAY_REFINED
     if (options.level >= LEVEL_REFINED) return float(double(t) + options.advance);
 #endif
     return t;
 }
 
-struct TraceArgs
-{
-    Address scene; // AccelView::scene
+struct TraceArgs {
+    Address scene;  // AccelView::scene
     REF(Ray) rays;
     REF(Hit) hits;
-    Uints indirect_count; // absent, or the address of a count that may be smaller
+    Uints indirect_count;  // absent, or the address of a count that may be smaller
     Address user_data;
-    Uints order; // absent, or the ray that each invocation traces
-    uint count; // the end of the rays of this launch
+    Uints order;  // absent, or the ray that each invocation traces
+    uint count;   // the end of the rays of this launch
     uint mask;
     uint flags;
-    uint first; // ray that the launch begins with
+    uint first;  // ray that the launch begins with
 };
 
 FUNC uint ray_at(Uints order, uint position) { return is_absent(order) ? position : AT(order, position); }

@@ -5,8 +5,7 @@
 #include "shaders/shared/exact_double.h"
 #include "twinray/glsl/transform.h"
 
-struct RowsDouble
-{
+struct RowsDouble {
     dvec4 r0;
     dvec4 r1;
     dvec4 r2;
@@ -15,15 +14,13 @@ struct RowsDouble
 FUNC dvec3 linear_double(vec4 row) { return dvec3(double(row.x), double(row.y), double(row.z)); }
 FUNC dvec3 linear_double(dvec4 row) { return dvec3(row.x, row.y, row.z); }
 
-FUNC dvec3 transform_vector_double(RowsDouble m, dvec3 v)
-{
+FUNC dvec3 transform_vector_double(RowsDouble m, dvec3 v) {
     return dvec3(product_sum(linear_double(m.r0), v), product_sum(linear_double(m.r1), v),
                  product_sum(linear_double(m.r2), v));
 }
 FUNC dvec3 offset_double(RowsDouble m) { return dvec3(m.r0.w, m.r1.w, m.r2.w); }
 
-FUNC RowsDouble absolute(RowsDouble m)
-{
+FUNC RowsDouble absolute(RowsDouble m) {
     RowsDouble magnitudes;
     magnitudes.r0 = abs(m.r0);
     magnitudes.r1 = abs(m.r1);
@@ -34,8 +31,7 @@ FUNC RowsDouble absolute(RowsDouble m)
 FUNC float largest_entry_double(dvec3 v) { return float(max(abs(v.x), max(abs(v.y), abs(v.z)))); }
 
 // Returns the inverse of an invertible map of float32 entries: cofactors, with exact products, over the determinant.
-FUNC RowsDouble inverse_double(Rows m)
-{
+FUNC RowsDouble inverse_double(Rows m) {
     dvec3 a0 = linear_double(m.r0);
     dvec3 a1 = linear_double(m.r1);
     dvec3 a2 = linear_double(m.r2);
@@ -58,15 +54,13 @@ FUNC RowsDouble inverse_double(Rows m)
 }
 
 // Returns the sum of a row of |W m - 1|, where `row` is that of W and `unit` of 1.
-FUNC double residual_row(dvec4 row, dvec3 unit, Rows m)
-{
+FUNC double residual_row(dvec4 row, dvec3 unit, Rows m) {
     dvec3 product = row.x * linear_double(m.r0) + row.y * linear_double(m.r1) + row.z * linear_double(m.r2) - unit;
     return abs(product.x) + abs(product.y) + abs(product.z);
 }
 
 // Returns the largest row sum of |inverse m - 1|: the relative error of vectors that the inverse maps.
-FUNC double residual_of(RowsDouble inverse, Rows m)
-{
+FUNC double residual_of(RowsDouble inverse, Rows m) {
     return max(residual_row(inverse.r0, dvec3(1.0f, 0.0f, 0.0f), m),
                max(residual_row(inverse.r1, dvec3(0.0f, 1.0f, 0.0f), m),
                    residual_row(inverse.r2, dvec3(0.0f, 0.0f, 1.0f), m)));

@@ -20,17 +20,15 @@ const uint NO_STACK_ENTRY = 0u;
 //
 // Below `last`, which may be NO_STACK_ENTRY, are entries bottom to top - 1, each in the slot of its number modulo the
 // stack's capacity. Those below `bottom` are lost.
-struct ShortStack
-{
+struct ShortStack {
     uint last;
-    uint second; // its other word, where entries have two
+    uint second;  // its other word, where entries have two
     uint top;
     uint bottom;
 };
 
 // `has_lost`: as if entries had been lost.
-FUNC ShortStack empty_stack(bool has_lost)
-{
+FUNC ShortStack empty_stack(bool has_lost) {
     ShortStack stack;
     stack.last = NO_STACK_ENTRY;
     stack.second = 0u;
@@ -41,11 +39,9 @@ FUNC ShortStack empty_stack(bool has_lost)
 
 FUNC uint stack_capacity(bool has_two_words) { return has_two_words ? stack_size() / 2u : stack_size(); }
 
-FUNC void push_entry(INOUT(ShortStack) stack, uint entry, uint second, bool has_two_words)
-{
+FUNC void push_entry(INOUT(ShortStack) stack, uint entry, uint second, bool has_two_words) {
     uint capacity = stack_capacity(has_two_words);
-    if (stack.last != NO_STACK_ENTRY)
-    {
+    if (stack.last != NO_STACK_ENTRY) {
         uint slot = stack.top & (capacity - 1u);
         store_entry(slot, stack.last);
         if (has_two_words) store_entry(slot + capacity, stack.second);
@@ -58,10 +54,8 @@ FUNC void push_entry(INOUT(ShortStack) stack, uint entry, uint second, bool has_
 }
 
 // Fetches the entry below if there is no last one.
-FUNC void fetch_last(INOUT(ShortStack) stack, bool has_two_words)
-{
-    if (stack.last == NO_STACK_ENTRY && stack.top != stack.bottom)
-    {
+FUNC void fetch_last(INOUT(ShortStack) stack, bool has_two_words) {
+    if (stack.last == NO_STACK_ENTRY && stack.top != stack.bottom) {
         stack.top = stack.top - 1u;
         uint capacity = stack_capacity(has_two_words);
         uint slot = stack.top & (capacity - 1u);
@@ -70,31 +64,26 @@ FUNC void fetch_last(INOUT(ShortStack) stack, bool has_two_words)
     }
 }
 
-const uint LEAVE_INSTANCE = 1u; // an entry of the stack that no group and no edge is
+const uint LEAVE_INSTANCE = 1u;  // an entry of the stack that no group and no edge is
 
 // The position of a ray in the trees, and its remaining visits.
-struct Traversal
-{
+struct Traversal {
     SwTree tree;
     TreePosition at;
     InInstance inside;
     RaySpace space;     // of the tree
     bool is_elsewhere;  // the ray is still to be prepared for the tree
     ShortStack stack;
-    uint outside;       // the edge of the instance that the ray is in, or NOTHING
-    uint target;        // the edge that the ray is on its way back to, or NOTHING
+    uint outside;  // the edge of the instance that the ray is in, or NOTHING
+    uint target;   // the edge that the ray is on its way back to, or NOTHING
 };
 
-FUNC Traversal begin_traversal(SwTlasHeader scene, Ray ray, bool is_binary, TraceOptions options)
-{
+FUNC Traversal begin_traversal(SwTlasHeader scene, Ray ray, bool is_binary, TraceOptions options) {
     Traversal here;
-    if ((options.features & FEATURE_INSTANCES) != 0u)
-    {
+    if ((options.features & FEATURE_INSTANCES) != 0u) {
         here.tree = top_tree(scene);
         here.inside = in_no_instance();
-    }
-    else
-    {
+    } else {
         SwInstance instance = load_instance(scene.instances, 0u);
         here.tree = tree_of(instance);
         here.inside = enter_instance(instance, 0u, options);
@@ -109,12 +98,11 @@ FUNC Traversal begin_traversal(SwTlasHeader scene, Ray ray, bool is_binary, Trac
 }
 
 // Prepares it for the tree of the instance, or of the top level: in one place, because it is much code.
-FUNC void prepare_ray(INOUT(Traversal) here, SwTlasHeader scene, Ray ray, TraceOptions options)
-{
+FUNC void prepare_ray(INOUT(Traversal) here, SwTlasHeader scene, Ray ray, TraceOptions options) {
     LocalRay local;
-    if (here.outside == NOTHING) local = ray_in_world(scene, ray);
-    else
-    {
+    if (here.outside == NOTHING)
+        local = ray_in_world(scene, ray);
+    else {
         SwInstance instance = load_instance(scene.instances, here.inside.index);
         here.tree = tree_of(instance);
         here.inside = enter_instance(instance, here.inside.index, options);
@@ -125,8 +113,7 @@ FUNC void prepare_ray(INOUT(Traversal) here, SwTlasHeader scene, Ray ray, TraceO
 }
 
 // Continues to a child, unless the ray enters none, or is back where it was.
-FUNC bool visit_children(INOUT(Traversal) here, EnteredChildren children, TraceOptions options)
-{
+FUNC bool visit_children(INOUT(Traversal) here, EnteredChildren children, TraceOptions options) {
     if (children.others != NO_STACK_ENTRY)
         push_entry(here.stack, children.others, children.siblings, may_be_wide(options));
     bool descends = children.is_entered && children.first.edge != here.target;
@@ -135,11 +122,9 @@ FUNC bool visit_children(INOUT(Traversal) here, EnteredChildren children, TraceO
     return descends;
 }
 
-FUNC bool visit_instance(INOUT(Traversal) here, SwTlasHeader scene, uint index, bool is_binary, TraceOptions options)
-{
+FUNC bool visit_instance(INOUT(Traversal) here, SwTlasHeader scene, uint index, bool is_binary, TraceOptions options) {
     bool enters = is_visible(scene.instances, index, options);
-    if (enters)
-    {
+    if (enters) {
         push_entry(here.stack, LEAVE_INSTANCE, 0u, may_be_wide(options));
         here.inside.index = index;
         here.outside = here.at.edge;
@@ -150,8 +135,7 @@ FUNC bool visit_instance(INOUT(Traversal) here, SwTlasHeader scene, uint index, 
     return enters;
 }
 
-FUNC void leave_instance(INOUT(Traversal) here, SwTlasHeader scene)
-{
+FUNC void leave_instance(INOUT(Traversal) here, SwTlasHeader scene) {
     here.tree = top_tree(scene);
     here.at.edge = here.outside;
     here.outside = NOTHING;
@@ -159,18 +143,15 @@ FUNC void leave_instance(INOUT(Traversal) here, SwTlasHeader scene)
 }
 
 // Takes the next child off the last entry.
-FUNC void take_child(INOUT(Traversal) here, bool is_binary, TraceOptions options)
-{
+FUNC void take_child(INOUT(Traversal) here, bool is_binary, TraceOptions options) {
     uint entry = here.stack.last;
-    if (is_surely_wide(options) || (may_be_wide(options) && here.stack.second != 0u))
-    {
+    if (is_surely_wide(options) || (may_be_wide(options) && here.stack.second != 0u)) {
         here.at = at_next_of_visits(entry, here.stack.second);
         here.stack.last = rest_of_visits(entry);
         return;
     }
     here.at = at_record(next_of(entry));
-    if (is_binary)
-    {
+    if (is_binary) {
         here.at.item = child_at(here.tree.nodes, entry);
         here.at.edge = entry;
     }
@@ -178,8 +159,7 @@ FUNC void take_child(INOUT(Traversal) here, bool is_binary, TraceOptions options
 }
 
 // Sends the ray from the root to where it is.
-FUNC void restart(INOUT(Traversal) here, bool is_inside, bool is_binary, TraceOptions options)
-{
+FUNC void restart(INOUT(Traversal) here, bool is_inside, bool is_binary, TraceOptions options) {
     here.stack = empty_stack(is_inside);
     if (is_inside) push_entry(here.stack, LEAVE_INSTANCE, 0u, may_be_wide(options));
     here.target = here.at.edge;
@@ -187,20 +167,18 @@ FUNC void restart(INOUT(Traversal) here, bool is_inside, bool is_binary, TraceOp
 }
 
 // Continues with the next entry. Returns false if there is none.
-FUNC bool visit_next(INOUT(Traversal) here, SwTlasHeader scene, bool is_binary, TraceOptions options)
-{
+FUNC bool visit_next(INOUT(Traversal) here, SwTlasHeader scene, bool is_binary, TraceOptions options) {
     bool has_top = (options.features & FEATURE_INSTANCES) != 0u;
     fetch_last(here.stack, may_be_wide(options));
-    if (has_top && here.stack.last == LEAVE_INSTANCE)
-    {
+    if (has_top && here.stack.last == LEAVE_INSTANCE) {
         leave_instance(here, scene);
         here.stack.last = NO_STACK_ENTRY;
         fetch_last(here.stack, may_be_wide(options));
     }
     bool waits = here.stack.last != NO_STACK_ENTRY;
-    if (waits) take_child(here, is_binary, options);
-    else if (here.stack.bottom != 0u && here.at.edge != ROOT_EDGE)
-    {
+    if (waits)
+        take_child(here, is_binary, options);
+    else if (here.stack.bottom != 0u && here.at.edge != ROOT_EDGE) {
         restart(here, has_top && here.outside != NOTHING, is_binary, options);
         waits = true;
     }
@@ -209,16 +187,14 @@ FUNC bool visit_next(INOUT(Traversal) here, SwTlasHeader scene, bool is_binary, 
 
 // The closest hit is the first by comes_before, whatever the layout and the order of traversal; with QUERY_ANY it is
 // the first one found.
-FUNC Hit traverse(SwTlasHeader scene, Ray ray, TraceOptions options)
-{
+FUNC Hit traverse(SwTlasHeader scene, Ray ray, TraceOptions options) {
     bool has_top = (options.features & FEATURE_INSTANCES) != 0u;
     bool binary = is_binary(scene, options);
     Traversal here = begin_traversal(scene, ray, binary, options);
     bool is_traced = is_traceable(ray) && here.tree.root != NOTHING;
     if (!has_top) is_traced = is_traced && is_visible(scene.instances, 0u, options);
     Search search = begin_search(ray);
-    while (is_traced)
-    {
+    while (is_traced) {
         if (has_top && here.is_elsewhere) prepare_ray(here, scene, ray, options);
         bool descends = false;
         CompressedRecord record;
@@ -229,43 +205,39 @@ FUNC Hit traverse(SwTlasHeader scene, Ray ray, TraceOptions options)
         if (may_be_wide(options) && is_wide) second_half = load_record(here.tree.records, here.at.item + 1u);
         bool is_inner = binary ? (here.at.item & LEAF_BIT) == 0u : !is_leaf(record);
         bool is_place = has_top && (binary ? here.outside == NOTHING : is_instance(record));
-        if (is_inner)
-        {
+        if (is_inner) {
             COUNT_STEPS(nodes, 1u);
             COUNT_STEPS(boxes, binary ? 2u : children_in(record));
             BoxRay boxes_ray = box_ray(here.space);
             EnteredChildren children;
-            if (binary) children = children_of_node(here.at.item, here.tree, boxes_ray, search, here.target, options);
+            if (binary)
+                children = children_of_node(here.at.item, here.tree, boxes_ray, search, here.target, options);
             else if (is_surely_wide(options) || (may_be_wide(options) && is_wide))
                 children = children_of_wide(record, second_half, here.tree, boxes_ray, search, here.target);
-            else children = children_of_record(record, here.tree, boxes_ray, search, here.target, options);
+            else
+                children = children_of_record(record, here.tree, boxes_ray, search, here.target, options);
             descends = visit_children(here, children, options);
-        }
-        else if (!is_place)
-        {
+        } else if (!is_place) {
             bool is_at_second = !binary && (here.at.item & SECOND_BIT) != 0u;
             LeafVertices vertices;
-            if (binary) vertices = vertices_of(load_triangle(here.tree.triangles, here.at.item & ~LEAF_BIT));
-            else vertices = vertices_of_leaf(record, here.tree.vertices);
-            if (options.level != LEVEL_FAST && is_sign_asked(search.sign_of_t))
-            {
+            if (binary)
+                vertices = vertices_of(load_triangle(here.tree.triangles, here.at.item & ~LEAF_BIT));
+            else
+                vertices = vertices_of_leaf(record, here.tree.vertices);
+            if (options.level != LEVEL_FAST && is_sign_asked(search.sign_of_t)) {
                 BvhTriangle asked = primitive_in(vertices, is_at_second);
                 search.sign_of_t = told_sign(asked.v0, asked.v1, asked.v2, here.space.origin, search.sign_of_t);
-                descends = search.sign_of_t != SIGN_UNASKED; // to the same triangle, or the leaf's second
-                if (!descends && (vertices.there & 2u) != 0u && !is_at_second)
-                {
+                descends = search.sign_of_t != SIGN_UNASKED;  // to the same triangle, or the leaf's second
+                if (!descends && (vertices.there & 2u) != 0u && !is_at_second) {
                     here.at.item = here.at.item | SECOND_BIT;
                     descends = true;
                 }
-            }
-            else
-            {
+            } else {
                 LeafVisit visit = visit_in_leaf(vertices, is_at_second, has_box(here.inside, options), here.space,
                                                 here.inside.error, options.level);
                 COUNT_STEPS(leaves, search.sign_of_t == SIGN_UNASKED && !is_at_second ? 1u : 0u);
                 COUNT_STEPS(primitives, search.sign_of_t == SIGN_UNASKED && !visit.is_missed ? 1u : 0u);
-                if (!visit.is_missed)
-                {
+                if (!visit.is_missed) {
                     bool is_found = visit_leaf(visit, here.inside, here.space, options, search);
                     if (is_found && options.query == QUERY_ANY) break;
                     descends = options.level != LEVEL_FAST && is_sign_asked(search.sign_of_t);
@@ -275,9 +247,7 @@ FUNC Hit traverse(SwTlasHeader scene, Ray ray, TraceOptions options)
                 if (goes_on || (descends && visit.is_second)) here.at.item = here.at.item | SECOND_BIT;
                 descends = descends || goes_on;
             }
-        }
-        else
-        {
+        } else {
             uint index = binary ? here.at.item & ~LEAF_BIT : index_in(record);
             descends = visit_instance(here, scene, index, binary, options);
         }

@@ -17,16 +17,14 @@ const uint CPU_GROUP = 8u;
 // Returns the group whose work is done by group `index` of `count`. If each thread gets one stretch of a dispatch
 // (KernelTuning::threads), some stretches of a picture take longer than others; so groups are dealt out to as many
 // threads, one after the other. The rest stays where it is, and all with fewer than two threads.
-FUNC uint interleaved_group(uint index, uint count, uint threads)
-{
+FUNC uint interleaved_group(uint index, uint count, uint threads) {
     if (threads < 2u) return index;
     uint share = max(count / threads, 1u);
     return index < share * threads ? index % share * threads + index / share : index;
 }
 
 // Returns how many blocks each of `groups` processes, one after the other, if `items` are in blocks of `size`.
-FUNC uint run_of_blocks(uint items, uint size, uint groups)
-{
+FUNC uint run_of_blocks(uint items, uint size, uint groups) {
     uint blocks = items / size + (items % size == 0u ? 0u : 1u);
     return blocks / groups + (blocks % groups == 0u ? 0u : 1u);
 }

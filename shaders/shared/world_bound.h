@@ -7,18 +7,16 @@
 
 const uint WORLD_BOUND_GROUP = 256u;
 
-struct WorldBound
-{
-    vec3 lo; // lo > hi: nothing can be hit
+struct WorldBound {
+    vec3 lo;  // lo > hi: nothing can be hit
     vec3 hi;
-    uint unusable_count; // instances whose transform is singular or not finite
+    uint unusable_count;  // instances whose transform is singular or not finite
     uint reserved;
 };
 BUFFER_OF(WorldBound, 4);
 
 // The same while groups add to it, as ordered bits (see ordered_bits).
-struct WorldBoundBits
-{
+struct WorldBoundBits {
     uvec3 lo;
     uvec3 hi;
     uint unusable_count;
@@ -26,16 +24,14 @@ struct WorldBoundBits
 };
 BUFFER_OF(WorldBoundBits, 4);
 
-FUNC GeometryBox box_of(WorldBoundBits bits)
-{
+FUNC GeometryBox box_of(WorldBoundBits bits) {
     GeometryBox box;
     box.lo = vec3(from_ordered_bits(bits.lo.x), from_ordered_bits(bits.lo.y), from_ordered_bits(bits.lo.z));
     box.hi = vec3(from_ordered_bits(bits.hi.x), from_ordered_bits(bits.hi.y), from_ordered_bits(bits.hi.z));
     return box;
 }
 
-struct WorldBoundArgs
-{
+struct WorldBoundArgs {
     REF(InstanceRecord) records;
     REF(WorldBoundBits) bits;
     REF(WorldBound) result;
@@ -45,8 +41,7 @@ struct WorldBoundArgs
 
 // Returns the float next to x towards minus infinity. Zero and denormals go to the least normal float below: devices
 // may flush the numbers in between.
-FUNC float next_below(float x)
-{
+FUNC float next_below(float x) {
     const float LEAST_NORMAL = 1.17549435082e-38f;
     uint bits = floatBitsToUint(x);
     if (abs(x) < LEAST_NORMAL) return x < 0.0f ? -2.0f * LEAST_NORMAL : -LEAST_NORMAL;
@@ -54,31 +49,27 @@ FUNC float next_below(float x)
 }
 
 // Returns a float not above a.x b.x + a.y b.y + a.z b.z + c, and the largest such one for all but the rarest operands.
-FUNC float dot_below(vec3 a, vec3 b, float c)
-{
+FUNC float dot_below(vec3 a, vec3 b, float c) {
     float missing = 0.0f;
     float missing_size = 0.0f;
     PRECISE float sum = doubled_dot(a, b, c, missing, missing_size);
     // Errors of overflowed terms are unknown; then plain rounding and a wide step must do.
     if (!(abs(missing) < uintBitsToFloat(0x7f800000u))) return sum - abs(sum) * 2.384185791015625e-07f;
-    PRECISE float lowest = missing - missing_size * 4.76837158203125e-07f; // 2^-21: 8 roundings
+    PRECISE float lowest = missing - missing_size * 4.76837158203125e-07f;  // 2^-21: 8 roundings
     PRECISE float result = sum + lowest;
     return sum_error(sum, lowest, result) < 0.0f ? next_below(result) : result;
 }
 
 // Returns the least coordinate of the box (lo, hi) under `row`, rounded down.
-FUNC float reach_below(vec4 row, vec3 lo, vec3 hi)
-{
+FUNC float reach_below(vec4 row, vec3 lo, vec3 hi) {
     vec3 corner = vec3(row.x > 0.0f ? lo.x : hi.x, row.y > 0.0f ? lo.y : hi.y, row.z > 0.0f ? lo.z : hi.z);
     return dot_below(vec3(row.x, row.y, row.z), corner, row.w);
 }
 
 // Returns a box around `box` under `m`.
-FUNC GeometryBox box_in_world(GeometryBox box, Rows m)
-{
+FUNC GeometryBox box_in_world(GeometryBox box, Rows m) {
     GeometryBox world;
-    DONT_UNROLL for (uint axis = 0u; axis < 3u; axis = axis + 1u)
-    {
+    DONT_UNROLL for (uint axis = 0u; axis < 3u; axis = axis + 1u) {
         vec4 row = axis == 0u ? m.r0 : (axis == 1u ? m.r1 : m.r2);
         world.lo[axis] = reach_below(row, box.lo, box.hi);
         world.hi[axis] = -reach_below(-row, box.lo, box.hi);
@@ -87,8 +78,7 @@ FUNC GeometryBox box_in_world(GeometryBox box, Rows m)
 }
 
 // Returns an instance's world box; lo > hi if nothing of it can be hit. `is_unusable`: because of its transform.
-FUNC GeometryBox instance_box(InstanceRecord given, INOUT(bool) is_unusable)
-{
+FUNC GeometryBox instance_box(InstanceRecord given, INOUT(bool) is_unusable) {
     const float infinity = uintBitsToFloat(0x7f800000u);
     GeometryBox none;
     none.lo = vec3(infinity);

@@ -13,8 +13,7 @@ layout(push_constant, scalar) uniform Push { RefitArgs args; };
 
 #ifdef KERNEL_LINK_NODES
 // Links an inner node to the one above it.
-void do_leaf(BuildTree tree, uint leaf)
-{
+void do_leaf(BuildTree tree, uint leaf) {
     uint node = leaf - tree.first;
     if (node + 1u >= tree.count) return;
     if (node == AT(tree.bvh, 0).root) set_edge(tree.nodes, node, 0u);
@@ -24,21 +23,18 @@ void do_leaf(BuildTree tree, uint leaf)
 
 #ifdef KERNEL_ENCODE_TRIANGLES
 // Writes a triangle in sorted order, with its vertices.
-void do_leaf(BuildTree tree, uint leaf)
-{
+void do_leaf(BuildTree tree, uint leaf) {
     AT(tree.triangles, leaf - tree.first) = boxed_primitive(tree, AT(args.order, leaf) - tree.first).primitive;
 }
 #endif
 
 #ifdef KERNEL_LEAF_EDGES
-void set_leaf(uint first, uint child, uint edge)
-{
+void set_leaf(uint first, uint child, uint edge) {
     if ((child & LEAF_BIT) != 0u) AT(args.parents, first + (child & ~LEAF_BIT)) = edge;
 }
 
 // Stores the edges that lead to the leaves of an inner node.
-void do_leaf(BuildTree tree, uint leaf)
-{
+void do_leaf(BuildTree tree, uint leaf) {
     uint node = leaf - tree.first;
     if (node == 0u) set_leaf(tree.first, AT(tree.bvh, 0).root, 0u);
     if (node + 1u >= tree.count) return;
@@ -50,8 +46,7 @@ void do_leaf(BuildTree tree, uint leaf)
 
 #ifdef KERNEL_REFIT_TRIANGLES
 // Refits a triangle whose vertices moved: vertices and box, in the order of its tree.
-void do_leaf(BuildTree tree, uint leaf)
-{
+void do_leaf(BuildTree tree, uint leaf) {
     uint position = leaf - tree.first;
     BoxedPrimitive boxed = boxed_primitive(tree, AT(tree.triangles, position).primitive_index);
     store_box(args.boxes, leaf, boxed.box);
@@ -65,22 +60,17 @@ REFERENCE(SharedNodes, coherent, BvhNode items[], 16)
 
 // Makes new boxes for an old topology: the leaf goes up with its box, and of the two children that arrive at a node the
 // second continues with both.
-void do_leaf(BuildTree tree, uint leaf)
-{
+void do_leaf(BuildTree tree, uint leaf) {
     SharedNodes nodes = SharedNodes(tree.nodes.address);
     LeafBox box = AT(args.boxes, leaf);
     uint edge = AT(args.parents, leaf);
-    while (edge != 0u)
-    {
+    while (edge != 0u) {
         uint node = parent_of_edge(edge);
         bool is_second = (edge & 1u) != 0u;
-        if (is_second)
-        {
+        if (is_second) {
             AT(nodes, node).lo1 = box.lo;
             AT(nodes, node).hi1 = box.hi;
-        }
-        else
-        {
+        } else {
             AT(nodes, node).lo0 = box.lo;
             AT(nodes, node).hi0 = box.hi;
         }
@@ -96,8 +86,7 @@ void do_leaf(BuildTree tree, uint leaf)
 }
 #endif
 
-void main()
-{
+void main() {
     if (group_index() >= args.chunk_count) return;
     LeafChunk chunk = AT(args.chunks, group_index());
     if (gl_LocalInvocationIndex >= chunk.count) return;

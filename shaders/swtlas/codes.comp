@@ -10,13 +10,11 @@
 layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
 layout(push_constant, scalar) uniform Push { BuildArgs args; };
 
-void main()
-{
+void main() {
     if (group_index() >= args.chunk_count) return;
     LeafChunk chunk = AT(args.chunks, group_index());
     LeafBox bounds = bounds_of(AT(args.centroids, chunk.tree));
-    for (uint i = gl_LocalInvocationID.x; i < chunk.count; i += gl_WorkGroupSize.x)
-    {
+    for (uint i = gl_LocalInvocationID.x; i < chunk.count; i += gl_WorkGroupSize.x) {
         uint leaf = chunk.first + i;
         LeafBox box = load_box(args.boxes, leaf);
         AT(args.codes, leaf) = is_active(box) ? morton_code(center_of(box), bounds.lo, bounds.hi) : INACTIVE_CODE;
@@ -34,16 +32,14 @@ layout(push_constant, scalar) uniform Push { DuplicateCodesArgs push; };
 
 uint tree_at(uint position) { return is_absent(args.tree_of) ? 0u : AT(args.tree_of, AT(args.order, position)); }
 
-bool begins_duplicates(uint position)
-{
+bool begins_duplicates(uint position) {
     if (position + MANY_DUPLICATES >= args.leaf_count) return false;
     uint code = AT(args.codes, position);
     return code != INACTIVE_CODE && code == AT(args.codes, position + MANY_DUPLICATES) &&
-        tree_at(position) == tree_at(position + MANY_DUPLICATES);
+           tree_at(position) == tree_at(position + MANY_DUPLICATES);
 }
 
-void dispatch_second_sort()
-{
+void dispatch_second_sort() {
     AT(args.duplicate_codes, 0).has_low_codes = 1u;
     AT(args.duplicate_codes, 0).leaf_groups[0] = min(push.leaf_groups, GROUPS_PER_ROW);
     AT(args.duplicate_codes, 0).leaf_groups[1] = (push.leaf_groups + GROUPS_PER_ROW - 1u) / GROUPS_PER_ROW;
@@ -52,8 +48,7 @@ void dispatch_second_sort()
     AT(args.duplicate_codes, 0).scan_groups[0] = 1u;
 }
 
-void count_duplicates(uint position)
-{
+void count_duplicates(uint position) {
     if (!begins_duplicates(position)) return;
     uint tree = tree_at(position);
     uint leaf_count = AT(args.trees, tree).count;
@@ -61,8 +56,7 @@ void count_duplicates(uint position)
     if (needs_low_codes(atomicAdd(AT(args.duplicates, tree), 1u) + 1u, leaf_count)) dispatch_second_sort();
 }
 
-void main()
-{
+void main() {
     uint begin = group_index() * BUILD_GROUP;
     if (begin >= args.leaf_count) return;
     uint end = min(begin + BUILD_GROUP, args.leaf_count);
@@ -75,8 +69,7 @@ void main()
 layout(local_size_x = BUILD_GROUP) in;
 layout(push_constant, scalar) uniform Push { BuildArgs args; };
 
-void main()
-{
+void main() {
     if (group_index() >= args.chunk_count) return;
     LeafChunk chunk = AT(args.chunks, group_index());
     if (gl_LocalInvocationIndex >= chunk.count) return;
@@ -94,8 +87,7 @@ void main()
 layout(local_size_x = BUILD_GROUP) in;
 layout(push_constant, scalar) uniform Push { GatherKeysArgs args; };
 
-void main()
-{
+void main() {
     uint i = global_index();
     if (i >= args.count) return;
     AT(args.keys, i) = AT(args.values, AT(args.order, i));

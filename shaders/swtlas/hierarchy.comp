@@ -26,35 +26,30 @@ REFERENCE(BvhChildren, coherent, BvhChild items[], 16)
 #include "shaders/shared/rotate.h"
 #include "shaders/swtlas/sorted_leaves.glsl"
 
-const uint MOST_STEPS = 2u; // leaves or joins in one turn of a run
+const uint MOST_STEPS = 2u;  // leaves or joins in one turn of a run
 
-struct Range
-{
+struct Range {
     uint first;
     uint last;
-    NodeChild top; // of its tree
+    NodeChild top;  // of its tree
 };
 
 // The node at a split has both its halves, `top` and `other`, and becomes the top. Returns the rotation that follows.
-Rotation join(inout NodeChild top, NodeChild other, uint node, uvec2 split)
-{
+Rotation join(inout NodeChild top, NodeChild other, uint node, uvec2 split) {
     top = joined_child(top, other, node);
     if (QUALITY == HIERARCHY_HIGH && is_rotated(top)) return rotation_of(node, highest_below(split));
     return no_rotation();
 }
 
 // Does the next step of the rotation of `top`.
-void rotate_one(BvhChildren nodes, inout Rotation rotation, inout NodeChild top, float scale)
-{
+void rotate_one(BvhChildren nodes, inout Rotation rotation, inout NodeChild top, float scale) {
     rotate_next(nodes, rotation, scale);
     if (rotation.next == NOTHING) top.subtree = subtree_info(leaves_in(top.subtree), height_of(nodes, rotation.node));
 }
 
-void join_bottom_up(BuildTree tree, BvhChildren nodes, float scale, Range range)
-{
+void join_bottom_up(BuildTree tree, BvhChildren nodes, float scale, Range range) {
     uint tree_last = tree.first + tree.count - 1u;
-    while (range.first != tree.first || range.last != tree_last)
-    {
+    while (range.first != tree.first || range.last != tree_last) {
         uvec2 left = split_before(tree, range.first);
         uvec2 right = range.last == tree_last ? TREE_END : split_after(tree, range.last);
         bool joins_right = less64(right, left);
@@ -65,32 +60,32 @@ void join_bottom_up(BuildTree tree, BvhChildren nodes, float scale, Range range)
         uint other = atomicExchange(AT(args.other_bounds, split), joins_right ? range.first : range.last);
         if (other == NOTHING) return;
         memoryBarrierBuffer();
-        Rotation rotation = join(range.top, get_child(nodes, node, joins_right ? 1u : 0u), node,
-                                 joins_right ? right : left);
+        Rotation rotation =
+            join(range.top, get_child(nodes, node, joins_right ? 1u : 0u), node, joins_right ? right : left);
         while (rotation.next != NOTHING) rotate_one(nodes, rotation, range.top, scale);
-        if (joins_right) range.last = other;
-        else range.first = other;
+        if (joins_right)
+            range.last = other;
+        else
+            range.first = other;
     }
     finish(tree, range.top);
 }
 
 // A run's leaves, begin .. end - 1, and how far it has come.
-struct Run
-{
+struct Run {
     uint begin;
     uint end;
-    uint base;       // ranges before it are to be joined with some before the run
-    uint first;      // the range at hand: its leaves, first .. position,
+    uint base;   // ranges before it are to be joined with some before the run
+    uint first;  // the range at hand: its leaves, first .. position,
     uint position;
-    NodeChild top;    // its tree
-    uvec2 left;      // and the splits beside it
+    NodeChild top;  // its tree
+    uvec2 left;     // and the splits beside it
     uvec2 right;
-    bool takes_leaf; // it is still to be begun, with the leaf at `position`
-    uint code;       // of the leaf at `position`, then of the one after it
+    bool takes_leaf;  // it is still to be begun, with the leaf at `position`
+    uint code;        // of the leaf at `position`, then of the one after it
 };
 
-Run first_run(BuildTree tree, uint begin, uint end)
-{
+Run first_run(BuildTree tree, uint begin, uint end) {
     Run run;
     run.begin = begin;
     run.end = end;
@@ -102,8 +97,7 @@ Run first_run(BuildTree tree, uint begin, uint end)
     return run;
 }
 
-void take_leaf(BuildTree tree, inout Run run)
-{
+void take_leaf(BuildTree tree, inout Run run) {
     uint element = AT(args.order, run.position);
     run.takes_leaf = false;
     run.first = run.position;
@@ -111,8 +105,7 @@ void take_leaf(BuildTree tree, inout Run run)
     run.top.child = LEAF_BIT | ((args.leaves_are_sorted != 0u ? run.position : element) - tree.first);
     run.top.subtree = subtree_info(1u, 0u);
     run.right = TREE_END;
-    if (run.position != tree.first + tree.count - 1u)
-    {
+    if (run.position != tree.first + tree.count - 1u) {
         uint next_code = AT(args.codes, run.position + 1u);
         run.right = split_of(tree, run.position, run.code, next_code);
         run.code = next_code;
@@ -120,19 +113,16 @@ void take_leaf(BuildTree tree, inout Run run)
 }
 
 // Joins the range with the one before it, if that is next; otherwise leaves it and takes another leaf.
-Rotation advance(BuildTree tree, BvhChildren nodes, inout Run run)
-{
+Rotation advance(BuildTree tree, BvhChildren nodes, inout Run run) {
     if (run.takes_leaf) take_leaf(tree, run);
-    if (run.left == TREE_END && run.right == TREE_END)
-    {
+    if (run.left == TREE_END && run.right == TREE_END) {
         run.position = run.end;
         return no_rotation();
     }
     bool joins_left = less64(run.left, run.right);
     uint node = (joins_left ? run.first - 1u : run.position) - tree.first;
     put_child(nodes, node, joins_left ? 1u : 0u, run.top);
-    if (joins_left && run.first != run.base)
-    {
+    if (joins_left && run.first != run.base) {
         NodeChild waiting = get_child(nodes, node, 0u);
         uvec2 split = run.left;
         run.first = run.first - leaves_in(waiting.subtree);
@@ -148,12 +138,10 @@ Rotation advance(BuildTree tree, BvhChildren nodes, inout Run run)
 
 // Joins the run's ranges with those of other runs: the first ones, which wait in right halves, from the left, the
 // others, in left ones, from the right.
-void join_ranges(BuildTree tree, BvhChildren nodes, float scale, Run run)
-{
+void join_ranges(BuildTree tree, BvhChildren nodes, float scale, Run run) {
     uint from = run.begin;
     uint to = run.end;
-    while (from != to)
-    {
+    while (from != to) {
         bool is_first = from != run.base;
         Range range;
         range.top = get_child(nodes, (is_first ? from : to) - 1u - tree.first, is_first ? 1u : 0u);
@@ -169,23 +157,22 @@ void join_ranges(BuildTree tree, BvhChildren nodes, float scale, Run run)
 // Builds from the leaves begin .. end - 1. In each turn of the loop an invocation takes some leaves or joins, but stops
 // at a node to rotate, and rotates one: where invocations go through a program together, each waits little for the
 // others.
-void build_run(BuildTree tree, float scale, uint begin, uint end)
-{
+void build_run(BuildTree tree, float scale, uint begin, uint end) {
     BvhChildren nodes = BvhChildren(tree.nodes.address);
     Run run = first_run(tree, begin, end);
     Rotation rotation = no_rotation();
-    while (run.position != end)
-    {
+    while (run.position != end) {
         for (uint i = 0u; i < MOST_STEPS && run.position != end && rotation.next == NOTHING; ++i)
             rotation = advance(tree, nodes, run);
         if (rotation.next != NOTHING) rotate_one(nodes, rotation, run.top, scale);
     }
-    if (begin == tree.first && end == tree.first + tree.count) finish(tree, run.top);
-    else join_ranges(tree, nodes, scale, run);
+    if (begin == tree.first && end == tree.first + tree.count)
+        finish(tree, run.top);
+    else
+        join_ranges(tree, nodes, scale, run);
 }
 
-void main()
-{
+void main() {
     uint runs = BUILD_GROUP / args.leaves_per_invocation;
     uint index = global_index();
     if (index / runs >= args.chunk_count) return;

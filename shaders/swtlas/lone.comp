@@ -8,8 +8,7 @@
 layout(constant_id = NODE_WIDTH_CONSTANT) const uint NODE_WIDTH = 4u;
 
 // Stores all of it except the leaf, which is record 0 if there are records.
-void store_lone_tree(REF(Bvh) bvh, REF(CompressedRecord) records, LeafBox box)
-{
+void store_lone_tree(REF(Bvh) bvh, REF(CompressedRecord) records, LeafBox box) {
     AT(bvh, 0).root = is_absent(records) ? LEAF_BIT : 0u;
     AT(bvh, 0).leaf_count = 1u;
     AT(bvh, 0).lo = box.lo;
@@ -21,16 +20,17 @@ void store_lone_tree(REF(Bvh) bvh, REF(CompressedRecord) records, LeafBox box)
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { BuildArgs args; };
 
-void main()
-{
+void main() {
     uint index = global_index();
     if (index >= args.leaf_count) return;
     BuildTree tree = AT(args.trees, index);
     Leaf leaf = leaf_at(tree, 0u);
     BoxedLeaf boxed = boxed_leaf(tree, leaf);
     store_lone_tree(tree.bvh, tree.records, boxed.box);
-    if (is_absent(tree.records)) AT(tree.triangles, 0) = boxed.last;
-    else store_record(tree.records, 0u, encode_boxed_leaf(tree, leaf, boxed));
+    if (is_absent(tree.records))
+        AT(tree.triangles, 0) = boxed.last;
+    else
+        store_record(tree.records, 0u, encode_boxed_leaf(tree, leaf, boxed));
 }
 #endif
 
@@ -38,8 +38,7 @@ void main()
 layout(local_size_x = 32) in;
 layout(push_constant, scalar) uniform Push { LoneInstanceArgs args; };
 
-void main()
-{
+void main() {
     if (global_index() != 0u) return;
     LeafBox box = empty_box();
     InstanceRecord record = in_built_units(AT(args.records, 0));

@@ -12,28 +12,24 @@ const uint SHARE = AREA_GROUP / gl_WorkGroupSize.x;
 
 shared float sums[AREA_GROUP];
 
-float area_of(Bvh tree, float unit, uint index)
-{
+float area_of(Bvh tree, float unit, uint index) {
     if (!is_absent(args.records)) return areas_in(args.records, index, unit);
     BvhNode node = AT(tree.nodes, index);
     return half_area(node.lo0, node.hi0, unit) + half_area(node.lo1, node.hi1, unit);
 }
 
-void main()
-{
+void main() {
     Bvh tree = AT(args.tree, 0);
     float unit = area_unit(tree.lo, tree.hi);
     uint begin = gl_LocalInvocationID.x * SHARE;
-    DONT_UNROLL for (uint i = begin; i < begin + SHARE; ++i)
-    {
+    DONT_UNROLL for (uint i = begin; i < begin + SHARE; ++i) {
         uint index = group_index() * AREA_GROUP + i;
         sums[i] = index < args.count ? area_of(tree, unit, index) : 0.0f;
     }
     for (uint stride = 1u; stride < SHARE; stride *= 2u)
         for (uint i = begin; i < begin + SHARE; i += 2u * stride) sums[i] += sums[i + stride];
     barrier();
-    DONT_UNROLL for (uint stride = SHARE; stride < AREA_GROUP; stride *= 2u)
-    {
+    DONT_UNROLL for (uint stride = SHARE; stride < AREA_GROUP; stride *= 2u) {
         if (begin % (2u * stride) == 0u) sums[begin] += sums[begin + stride];
         barrier();
     }

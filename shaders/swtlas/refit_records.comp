@@ -9,16 +9,14 @@ layout(push_constant, scalar) uniform Push { RefitArgs args; };
 layout(constant_id = NODE_WIDTH_CONSTANT) const uint NODE_WIDTH = 4u;
 
 uint slots_begin(BuildTree tree, LeafChunk chunk) { return record_count(chunk.first - tree.first, NODE_WIDTH); }
-uint slots_end(BuildTree tree, LeafChunk chunk)
-{
+uint slots_end(BuildTree tree, LeafChunk chunk) {
     return record_count(chunk.first - tree.first + chunk.count, NODE_WIDTH);
 }
 
 #ifdef KERNEL_RECORD_PARENTS
 layout(local_size_x = BUILD_GROUP) in;
 
-void visit(BuildTree tree, uint slot)
-{
+void visit(BuildTree tree, uint slot) {
     uint base = 2u * tree.first;
     if (slot == 0u) AT(args.parents, base) = NOTHING;
     CompressedRecord record = load_record(tree.records, slot);
@@ -26,12 +24,11 @@ void visit(BuildTree tree, uint slot)
     AT(args.missing, base + slot) = children_in(record);
     if (children_in(record) == 0u) return;
     ChildSlots slots = child_slots(record, second_half_of(tree.records, slot, record));
-    DONT_UNROLL for (uint i = 0u; i < NODE_WIDTH; ++i)
-        if (has_child(slots, i)) AT(args.parents, base + child_index(slots, i)) = slot;
+    DONT_UNROLL for (uint i = 0u; i < NODE_WIDTH; ++i) if (has_child(slots, i))
+        AT(args.parents, base + child_index(slots, i)) = slot;
 }
 
-void main()
-{
+void main() {
     if (group_index() >= args.chunk_count) return;
     LeafChunk chunk = AT(args.chunks, group_index());
     BuildTree tree = AT(args.trees, chunk.tree);
@@ -49,8 +46,7 @@ layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
 // All groups see the same boxes, not through caches of one.
 REFERENCE(SharedBoxes, coherent, LeafBox items[], 8)
 
-LeafBox refit_leaf(BuildTree tree, uint slot, CompressedRecord record)
-{
+LeafBox refit_leaf(BuildTree tree, uint slot, CompressedRecord record) {
     if (has_instances(tree)) return AT(args.boxes, tree.first + index_in(record));
     Leaf leaf = leaf_of(record);
     BoxedLeaf boxed = boxed_leaf(tree, leaf);
@@ -58,15 +54,13 @@ LeafBox refit_leaf(BuildTree tree, uint slot, CompressedRecord record)
     return boxed.box;
 }
 
-LeafBox refit_node(BuildTree tree, uint slot, SharedBoxes boxes)
-{
+LeafBox refit_node(BuildTree tree, uint slot, SharedBoxes boxes) {
     CompressedRecord node = load_record(tree.records, slot);
     CompressedRecord second_half = second_half_of(tree.records, slot, node);
     ChildSlots slots = child_slots(node, second_half);
     NodeChildren children;
     children.count = NODE_WIDTH;
-    UNROLL for (uint i = 0u; i < NODE_WIDTH; ++i)
-    {
+    UNROLL for (uint i = 0u; i < NODE_WIDTH; ++i) {
         children.box[i] = empty_box();
         if (has_child(slots, i)) children.box[i] = AT(boxes, 2u * tree.first + child_index(slots, i));
     }
@@ -76,12 +70,10 @@ LeafBox refit_node(BuildTree tree, uint slot, SharedBoxes boxes)
 }
 
 // Stores the box for the record's parent. Returns the parent if this was the last of its children, else NOTHING.
-uint leave(BuildTree tree, uint slot, LeafBox box)
-{
+uint leave(BuildTree tree, uint slot, LeafBox box) {
     uint base = 2u * tree.first;
     uint parent = AT(args.parents, base + slot);
-    if (parent == NOTHING)
-    {
+    if (parent == NOTHING) {
         AT(tree.bvh, 0).lo = box.lo;
         AT(tree.bvh, 0).hi = box.hi;
         return NOTHING;
@@ -93,8 +85,7 @@ uint leave(BuildTree tree, uint slot, LeafBox box)
     return parent;
 }
 
-void main()
-{
+void main() {
     if (group_index() >= args.chunk_count) return;
     LeafChunk chunk = AT(args.chunks, group_index());
     BuildTree tree = AT(args.trees, chunk.tree);
@@ -103,8 +94,7 @@ void main()
     uint run = (last - slots_begin(tree, chunk) + gl_WorkGroupSize.x - 1u) / gl_WorkGroupSize.x;
     uint next = min(slots_begin(tree, chunk) + gl_LocalInvocationID.x * run, last);
     uint end = min(next + run, last);
-    for (uint slot = next; slot < end; ++slot)
-    {
+    for (uint slot = next; slot < end; ++slot) {
         CompressedRecord record = load_record(tree.records, slot);
         if (!is_leaf(record)) continue;
         uint node = leave(tree, slot, refit_leaf(tree, slot, record));

@@ -7,8 +7,7 @@
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { CopyItemsArgs args; };
 
-void main()
-{
+void main() {
     uint item = global_index();
     if (item >= args.count) return;
     // 2^32 rays have more words than 32 bits can count.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Performs the arithmetic that the robust levels rely on, on this device; that of float64 in a module of its own, as not
-// every device has it.
+// Performs the arithmetic that the robust levels rely on, on this device; that of float64 in a module of its own, as
+// not every device has it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_explicit_arithmetic_types_float64 : require
@@ -12,8 +12,7 @@ layout(local_size_x = 64) in;
 #ifdef KERNEL_FLOAT_PROBE
 layout(push_constant, scalar) uniform Push { FloatProbeArgs args; };
 
-void main()
-{
+void main() {
     uint i = global_index();
     if (i >= args.count) return;
     FloatCase c = AT(args.cases, i);
@@ -33,8 +32,8 @@ void main()
     answer.error_free = product_error(c.a, c.b, c.product);
     answer.minimum = min(c.a, c.b);
     answer.maximum = max(c.a, c.b);
-    answer.comparisons = (c.a < c.b ? 1u : 0u) | (c.a > c.b ? 2u : 0u) | (c.a == c.b ? 4u : 0u) |
-        (!(c.a > c.b) ? 8u : 0u);
+    answer.comparisons =
+        (c.a < c.b ? 1u : 0u) | (c.a > c.b ? 2u : 0u) | (c.a == c.b ? 4u : 0u) | (!(c.a > c.b) ? 8u : 0u);
     AT(args.answers, i) = answer;
 }
 #endif
@@ -42,8 +41,7 @@ void main()
 #ifdef KERNEL_FLOAT_PROBE64
 layout(push_constant, scalar) uniform Push { Float64Args args; };
 
-void main()
-{
+void main() {
     uint i = global_index();
     if (i >= args.count) return;
     FloatCase c = AT(args.cases, i);

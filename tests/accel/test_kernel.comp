@@ -4,18 +4,17 @@
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/query.glsl"
 layout(local_size_x = 64) in;
-layout(push_constant, scalar) uniform Push
-{
+layout(push_constant, scalar) uniform Push {
     Address accel;
     REF(Ray) rays;
     REF(Hit) hits;
     Uints blocked;
     uint count;
     uint mask;
-} push;
+}
+push;
 
-void main()
-{
+void main() {
     uint i = global_index();
     if (i >= push.count) return;
     Ray ray = AT(push.rays, i);

@@ -3,15 +3,13 @@
 // indices from 1000 on, at a smaller t.
 #include "twinray/glsl/program.h"
 
-struct Sphere
-{
+struct Sphere {
     vec3 center;
     float radius;
 };
 BUFFER_OF(Sphere, 4);
 
-bool intersect_primitive(Candidate candidate, Ray ray_local, inout float t, inout vec2 uv)
-{
+bool intersect_primitive(Candidate candidate, Ray ray_local, inout float t, inout vec2 uv) {
     Sphere sphere = AT(REF(Sphere)(candidate.user_data), candidate.primitive_index);
     vec3 d = ray_local.direction;
     float a = dot(d, d);
@@ -25,8 +23,7 @@ bool intersect_primitive(Candidate candidate, Ray ray_local, inout float t, inou
     return true;
 }
 
-bool accept_hit(Candidate candidate, float t, vec2 uv)
-{
+bool accept_hit(Candidate candidate, float t, vec2 uv) {
     if (candidate.custom_index >= 1000u) return t < float(candidate.custom_index);
     return fract(uv.x * 5.0f + float(candidate.custom_index) * 0.3f) < 0.5f;
 }

@@ -9,8 +9,7 @@ layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { SetTestArgs args; };
 
 TUPLE(TestTuple, TEST_TYPES)
-struct Values
-{
+struct Values {
     float diffuse;
     float glass;
     float layered;
@@ -22,8 +21,7 @@ float joined(float sum, Diffuse diffuse) { return 10.0 * sum + value_of(diffuse,
 float joined(float sum, Glass glass) { return 10.0 * sum + value_of(glass, 2.0); }
 float joined(float sum, Layered layered) { return 10.0 * sum + value_of(layered, 2.0); }
 
-void run_unrolled(Floats results)
-{
+void run_unrolled(Floats results) {
     TestTuple tuple = TestTuple(AT(args.set.diffuse, 0), AT(args.set.glass, 0), AT(args.set.layered, 0));
     float folded = 0.0;
 #define FOLD(element) folded = 3.0 * folded + value_of(element, 1.0)
@@ -43,13 +41,12 @@ void run_unrolled(Floats results)
     for (int i = 0; i < 3; i++) {
         float picked = FALLBACK;
 #define PICK(element) picked = value_of(element, 4.0)
-        GET_UNROLLED(TEST_TYPES, tuple, 2 * i - 1, PICK) // -1, 1, 3: one of them is there
+        GET_UNROLLED(TEST_TYPES, tuple, 2 * i - 1, PICK)  // -1, 1, 3: one of them is there
         AT(results, 6 + i) = picked;
     }
 }
 
-void main()
-{
+void main() {
     uint i = global_index();
     if (args.writes != 0u) {
         if (i < args.set.glass_count) AT(args.set.glass, i).ior = 2.0 * AT(args.set.glass, i).ior;

@@ -7,8 +7,7 @@
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { SoaTestArgs args; };
 
-void main()
-{
+void main() {
     uint i = global_index();
     if (i >= args.invocations) return;
     vec3 origin = vec3(FALLBACK);

@@ -7,8 +7,7 @@
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { TextureTestArgs args; };
 
-void main()
-{
+void main() {
     uint i = global_index();
     if (i >= args.count) return;
     TextureQuestion question = AT(args.questions, i);

@@ -45,15 +45,13 @@ bool is_absent(Address address) { return (address.x & 1u) != 0u; }
 // Returns the address of something absent, derived from that of anything present.
 Address absent_near(Address present) { return Address(present.x | 1u, present.y); }
 // Returns the address `bytes` bytes after `base`.
-Address address_after(Address base, uint bytes)
-{
+Address address_after(Address base, uint bytes) {
     uint carry;
     uint low = uaddCarry(base.x, bytes, carry);
     return Address(low, base.y + carry);
 }
 // Returns the address of item `index` in an array of items of `stride` bytes.
-Address address_at(Address base, uint index, uint stride)
-{
+Address address_at(Address base, uint index, uint stride) {
     uint high, low;
     umulExtended(index, stride, high, low);
     return address_after(base, low) + Address(0u, high);
@@ -61,10 +59,12 @@ Address address_at(Address base, uint index, uint stride)
 
 // REF(T) is the address of items of type T. It is a struct of its own so that functions can overload by it. It becomes
 // a pointer only in AT: some drivers cannot compile pointers in structs and variables.
-#define REFERENCE(name, qualifier, contents, alignment) \
+#define REFERENCE(name, qualifier, contents, alignment)                                                                \
     layout(buffer_reference, scalar, buffer_reference_align = alignment) qualifier buffer name##_buffer { contents; }; \
-    struct name { Address address; }; \
-    name##_buffer buffer_of(name ref) { return name##_buffer(ref.address); } \
+    struct name {                                                                                                      \
+        Address address;                                                                                               \
+    };                                                                                                                 \
+    name##_buffer buffer_of(name ref) { return name##_buffer(ref.address); }                                           \
     bool is_absent(name ref) { return is_absent(ref.address); }
 // The type of the address of items of type T, which BUFFER_OF declares.
 #define REF(T) T##_ref
@@ -99,7 +99,7 @@ REFERENCE(Uvec3s, , uvec3 items[], 4)
 #define global_index() (group_index() * gl_WorkGroupSize.x + gl_LocalInvocationID.x)
 // The same after dealing groups out to `threads` (shaders/shared/workgroup.h), for kernels whose groups take unequal
 // times.
-#define interleaved_index(threads) \
+#define interleaved_index(threads)                                                                             \
     (interleaved_group(group_index(), gl_NumWorkGroups.x * gl_NumWorkGroups.y, threads) * gl_WorkGroupSize.x + \
      gl_LocalInvocationID.x)
 #endif

@@ -6,8 +6,7 @@
 #include "twinray/glsl/faults.h"
 
 #ifdef TWINRAY_DEBUG
-void note_fault(REF(Faults) faults, uint type, uint index)
-{
+void note_fault(REF(Faults) faults, uint type, uint index) {
     if (atomicAdd(AT(faults, 0).count, 1u) != 0u) return;
     AT(faults, 0).type = type;
     AT(faults, 0).index = index;

@@ -24,8 +24,7 @@ layout(constant_id = LEVEL_CONSTANT) const uint TRACE_LEVEL = LEVEL_WATERTIGHT;
 #include "twinray/glsl/stack.glsl"
 #include "shaders/shared/traverse.h"
 // Returns the hit by float32 only, whatever options.level: trace() starts with it. A miss has hit = 0.
-Hit trace_float32(Address accel, Ray ray, TraceOptions options)
-{
+Hit trace_float32(Address accel, Ray ray, TraceOptions options) {
     return traverse(AT(REF(SwTlasHeader)(accel), 0), ray, options);
 }
 #elif defined(TWINRAY_HW)
@@ -37,8 +36,7 @@ Hit trace_float32(Address accel, Ray ray, TraceOptions options)
 
 #ifdef TWINRAY_REFINED
 #include "shaders/shared/refine.h"
-Hit trace(Address accel, Ray ray, TraceOptions options)
-{
+Hit trace(Address accel, Ray ray, TraceOptions options) {
     if (options.level < LEVEL_REFINED) return trace_float32(accel, ray, options);
     RefineScene scene = AT(REF(RefineScene)(AT(REF(AccelHeader)(accel), 0).refinement), 0);
     WorldBound bound = AT(scene.bound, 0);
@@ -47,8 +45,7 @@ Hit trace(Address accel, Ray ray, TraceOptions options)
     Ray near = searched_ray(bound.lo, bound.hi, options);
     Hit hit;
     float step = REFINING_STEP;
-    do
-        hit = trace_float32(accel, near, options);
+    do hit = trace_float32(accel, near, options);
     while (hit.hit != 0u && !refine(hit, near, step, options));
     return hit;
 }
@@ -59,8 +56,7 @@ Hit trace(Address accel, Ray ray, TraceOptions options) { return trace_float32(a
 
 // Returns options with this kernel's level and features. mask: 8 bits; flags: CULL_BACK, CULL_FRONT or 0; query:
 // QUERY_CLOSEST or QUERY_ANY.
-TraceOptions trace_options(uint mask, uint flags, uint query, Address user_data)
-{
+TraceOptions trace_options(uint mask, uint flags, uint query, Address user_data) {
     TraceOptions options;
     options.user_data = user_data;
     options.mask = mask;
@@ -72,8 +68,7 @@ TraceOptions trace_options(uint mask, uint flags, uint query, Address user_data)
 }
 
 // Returns whether there is a hit; shared by closest_hit() and any_hit().
-bool find_hit(Address accel, Ray ray, TraceOptions options, out Hit hit)
-{
+bool find_hit(Address accel, Ray ray, TraceOptions options, out Hit hit) {
     hit = trace(accel, ray, options);
     return hit.hit != 0u;
 }
@@ -81,29 +76,24 @@ bool find_hit(Address accel, Ray ray, TraceOptions options, out Hit hit)
 // Finds the closest hit of the instances that share a bit with mask; flags: CULL_BACK, CULL_FRONT or 0. Returns false
 // if there is none; hit is then a miss. user_data is for kernels with a program of their own (twinray/glsl/program.h),
 // which gets it in its candidates.
-bool closest_hit(Address accel, Ray ray, uint mask, uint flags, Address user_data, out Hit hit)
-{
+bool closest_hit(Address accel, Ray ray, uint mask, uint flags, Address user_data, out Hit hit) {
     return find_hit(accel, ray, trace_options(mask, flags, QUERY_CLOSEST, user_data), hit);
 }
-bool closest_hit(Address accel, Ray ray, uint mask, uint flags, out Hit hit)
-{
+bool closest_hit(Address accel, Ray ray, uint mask, uint flags, out Hit hit) {
     return closest_hit(accel, ray, mask, flags, absent_near(accel), hit);
 }
 bool closest_hit(Address accel, Ray ray, out Hit hit) { return closest_hit(accel, ray, 0xffu, 0u, hit); }
 
 // Finds any hit of them. Returns false if there is none; hit is then a miss.
-bool any_hit(Address accel, Ray ray, uint mask, uint flags, Address user_data, out Hit hit)
-{
+bool any_hit(Address accel, Ray ray, uint mask, uint flags, Address user_data, out Hit hit) {
     return find_hit(accel, ray, trace_options(mask, flags, QUERY_ANY, user_data), hit);
 }
-bool any_hit(Address accel, Ray ray, uint mask, uint flags, out Hit hit)
-{
+bool any_hit(Address accel, Ray ray, uint mask, uint flags, out Hit hit) {
     return any_hit(accel, ray, mask, flags, absent_near(accel), hit);
 }
 
 // Returns whether anything is on the ray.
-bool any_hit(Address accel, Ray ray, uint mask, uint flags)
-{
+bool any_hit(Address accel, Ray ray, uint mask, uint flags) {
     TraceOptions options = trace_options(mask, flags, QUERY_ANY, absent_near(accel));
     options.features &= ~FEATURE_HITS;
     return trace(accel, ray, options).hit != 0u;

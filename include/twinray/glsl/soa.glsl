@@ -13,21 +13,21 @@
 #include "twinray/glsl/soa.h"
 
 // A statement: variable = field of item i, if there is one. `queue` is a variable or a member, not a call.
-#define SOA_GET(queue, i, field, variable)                                                      \
-    {                                                                                           \
-        if ((i) < queue.count) {                                                                \
-            variable = AT(queue.field, i);                                                      \
-        } else {                                                                                \
-            TWINRAY_FAULT(queue.faults, 0u, i)                                                  \
-        }                                                                                       \
+#define SOA_GET(queue, i, field, variable)     \
+    {                                          \
+        if ((i) < queue.count) {               \
+            variable = AT(queue.field, i);     \
+        } else {                               \
+            TWINRAY_FAULT(queue.faults, 0u, i) \
+        }                                      \
     }
 // A statement: field of item i = value, if there is one.
-#define SOA_SET(queue, i, field, value)                                                         \
-    {                                                                                           \
-        if ((i) < queue.count) {                                                                \
-            AT(queue.field, i) = value;                                                         \
-        } else {                                                                                \
-            TWINRAY_FAULT(queue.faults, 0u, i)                                                  \
-        }                                                                                       \
+#define SOA_SET(queue, i, field, value)        \
+    {                                          \
+        if ((i) < queue.count) {               \
+            AT(queue.field, i) = value;        \
+        } else {                               \
+            TWINRAY_FAULT(queue.faults, 0u, i) \
+        }                                      \
     }
 #endif

@@ -9,17 +9,15 @@
 uint twinray_stack_registers[REGISTER_STACK_SIZE];
 
 // Returns an entry in registers; `slot` is below REGISTER_STACK_SIZE. It is selected, because registers have no index.
-uint entry_of_registers(uint slot)
-{
+uint entry_of_registers(uint slot) {
     uint entry = twinray_stack_registers[0];
     UNROLL for (uint i = 1u; i < REGISTER_STACK_SIZE; ++i) entry = slot == i ? twinray_stack_registers[i] : entry;
     return entry;
 }
 // Writes the entry.
-void set_entry_of_registers(uint slot, uint entry)
-{
-    UNROLL for (uint i = 0u; i < REGISTER_STACK_SIZE; ++i)
-        twinray_stack_registers[i] = slot == i ? entry : twinray_stack_registers[i];
+void set_entry_of_registers(uint slot, uint entry) {
+    UNROLL for (uint i = 0u; i < REGISTER_STACK_SIZE; ++i) twinray_stack_registers[i] =
+        slot == i ? entry : twinray_stack_registers[i];
 }
 
 #ifdef TWINRAY_PRIVATE_STACK
@@ -37,16 +35,16 @@ shared uint twinray_stack[STACK_SIZE * TWINRAY_INVOCATIONS];
 // Returns the number of entries that an invocation has.
 uint stack_size() { return STACK == STACK_REGISTERS ? REGISTER_STACK_SIZE : STACK_SIZE; }
 // Returns the entry at `slot`, which is below stack_size().
-uint load_entry(uint slot)
-{
+uint load_entry(uint slot) {
     if (STACK == STACK_REGISTERS) return entry_of_registers(slot);
     return twinray_stack[slot * TWINRAY_INVOCATIONS + gl_LocalInvocationIndex];
 }
 // Writes the entry at `slot`, which is below stack_size().
-void store_entry(uint slot, uint entry)
-{
-    if (STACK == STACK_REGISTERS) set_entry_of_registers(slot, entry);
-    else twinray_stack[slot * TWINRAY_INVOCATIONS + gl_LocalInvocationIndex] = entry;
+void store_entry(uint slot, uint entry) {
+    if (STACK == STACK_REGISTERS)
+        set_entry_of_registers(slot, entry);
+    else
+        twinray_stack[slot * TWINRAY_INVOCATIONS + gl_LocalInvocationIndex] = entry;
 }
 #endif
 #endif

@@ -10,14 +10,12 @@
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PathArgs args; };
 
-vec3 radiance(Path path)
-{
+vec3 radiance(Path path) {
     Ray ray = camera_ray(AT(args.room, 0).eye, path, args.job.width, args.job.height);
     Lamp lamp = AT(args.room, 0).lamp;
     vec3 sum = vec3(0.0);
     Hit hit;
-    while (closest_hit(args.accel, ray, hit))
-    {
+    while (closest_hit(args.accel, ray, hit)) {
         SurfacePoint point = point_at(surface_place(args.accel, ray, hit));
         Scattering found = scatter(path, ray, point, AT(args.room, 0).looks[hit.custom_index], lamp);
         sum += found.seen;
@@ -29,8 +27,7 @@ vec3 radiance(Path path)
     return sum;
 }
 
-void main()
-{
+void main() {
     uint i = global_index(), pixels = args.job.width * args.job.height;
     if (i >= pixels * args.job.samples) return;
     AT(args.radiances, i) = radiance(begin_path(i % pixels, args.job.first_sample + i / pixels));

@@ -9,15 +9,13 @@ layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { WaveArgs args; };
 
 // [scatter]
-void push(DeviceQueue queue, Ray ray, Path path)
-{
+void push(DeviceQueue queue, Ray ray, Path path) {
     uint slot = atomicAdd(AT(queue.count, 0), 1u);
     AT(queue.rays, slot) = ray;
     AT(queue.paths, slot) = path;
 }
 
-void main()
-{
+void main() {
     uint i = global_index();
     if (i >= AT(args.queue.count, 0) || AT(args.hits, i).hit == 0u) return;
     Hit hit = AT(args.hits, i);

@@ -8,8 +8,7 @@ layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { WaveArgs args; };
 
 // [main]
-void main()
-{
+void main() {
     uint i = global_index();
     if (i >= AT(args.shadows.count, 0) || AT(args.hits, i).hit != 0u) return;
     Path path = AT(args.shadows.paths, i);

@@ -8,14 +8,12 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 // [light]
-vec3 light(Seen seen, uint pixel)
-{
+vec3 light(Seen seen, uint pixel) {
     float sun = max(dot(seen.normal, TO_SUN), 0.0), sky = 1.0;
-    if (args.rays_per_pixel > 0u)
-    {
+    if (args.rays_per_pixel > 0u) {
         REF(Hit) hits = REF(Hit)(args.hits);
         uint first = pixel * args.rays_per_pixel, blocked = 0u;
-        sun *= 1.0 - float(AT(hits, first).hit); // the first ray went to the sun, the others to the sky
+        sun *= 1.0 - float(AT(hits, first).hit);  // the first ray went to the sun, the others to the sky
         for (uint i = 1u; i < args.rays_per_pixel; ++i) blocked += AT(hits, first + i).hit;
         sky = 1.0 - float(blocked) / float(args.rays_per_pixel - 1u);
     }
@@ -23,8 +21,7 @@ vec3 light(Seen seen, uint pixel)
 }
 // [/light]
 
-void main()
-{
+void main() {
     uvec2 pixel = gl_GlobalInvocationID.xy;
     if (pixel.x >= args.width || pixel.y >= args.height) return;
     uint index = pixel.y * args.width + pixel.x;

@@ -7,8 +7,7 @@ layout(location = 0) flat out uvec2 id;
 
 const float NEAR = 0.1;
 
-void main()
-{
+void main() {
     Body body = BodyList(args.bodies).items[gl_InstanceIndex];
     id = uvec2(gl_InstanceIndex, gl_VertexIndex / 3);
     uvec3 corners = IndexList(body.indices).items[id.y];

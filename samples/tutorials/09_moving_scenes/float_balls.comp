@@ -8,8 +8,7 @@
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { MoveArgs args; };
 
-void main()
-{
+void main() {
     uint i = global_index();
     if (i >= args.ball_count) return;
     vec2 place = place_of_ball(i);

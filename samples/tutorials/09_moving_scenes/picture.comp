@@ -9,11 +9,10 @@
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PictureArgs args; };
 
-const float EVERYWHERE = 1e30; // t_max
+const float EVERYWHERE = 1e30;  // t_max
 
 // [radiance]
-vec3 radiance(Ray ray)
-{
+vec3 radiance(Ray ray) {
     Hit hit;
     if (!closest_hit(args.accel, ray, hit)) return vec3(0.95, 0.96, 0.97);
     Surface surface = surface_at(args.accel, ray, hit);
@@ -27,8 +26,7 @@ vec3 radiance(Ray ray)
 }
 // [/radiance]
 
-void main()
-{
+void main() {
     uint i = global_index();
     if (i >= args.width * args.height) return;
     vec2 at = (vec2(i % args.width, i / args.width) + 0.5 - 0.5 * vec2(args.width, args.height)) / float(args.height);

@@ -6,23 +6,21 @@
 #include "shaders/shared/bvh.h"
 layout(local_size_x = 64) in;
 // [kernel]
-layout(push_constant, scalar) uniform Push
-{
+layout(push_constant, scalar) uniform Push {
     Address accel;
-    REF(BvhNode) nodes;            // of layout bvh2, or absent
-    REF(CompressedRecord) records; // of layout compressed4, or absent
-    Uints primitives;              // with the nodes: by position in the order
+    REF(BvhNode) nodes;             // of layout bvh2, or absent
+    REF(CompressedRecord) records;  // of layout compressed4, or absent
+    Uints primitives;               // with the nodes: by position in the order
     uint count;
-} push;
+}
+push;
 
-void main()
-{
+void main() {
     uint i = global_index();
     if (i >= push.count) return;
     SwTlasHeader header = AT(REF(SwTlasHeader)(push.accel), 0);
     SwInstance instance = load_instance(header.instances, 0u);
-    if (!is_absent(push.records))
-    {
+    if (!is_absent(push.records)) {
         AT(push.records, i) = AT(instance.records, i);
         return;
     }
