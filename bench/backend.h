@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The interface to backends that build scenes and trace rays, and the line-up of those that run: twinray's accelerators
 // and Embree 3.
 #pragma once

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // `twinray bench` of a scene: times and errors of every backend, and how they grow with the number of triangles; and of
 // instances that a kernel moves.
 #include "bench/command.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The modes of `twinray bench`: one function for each measures and reports.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Embree 3 as backends: its scenes, its calls for many rays, and the variants of both.
 
 #include <embree3/rtcore.h>

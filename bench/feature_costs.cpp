@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Measures what each feature of shaders/shared/features.h costs a scene that does not need it, in time and memory, for
 // `twinray bench`.
 #include "bench/command.h"

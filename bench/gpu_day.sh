@@ -1,5 +1,4 @@
 #!/usr/bin/env bash
-# SPDX-License-Identifier: MIT
 # Measures a GPU in some ten minutes: the contract, verify, report, builds, rays, and the same rays by other packages
 # with how many of a million answers are wrong. Prints a table of the parts and writes
 #   FOLDER/DEVICE.jsonl          builds and rays of twinray and the driver, appended
@@ -32,7 +31,7 @@ while (($#)); do
         scenes=(sphere:10000 instances:100x500) qualities=fast
         width=256 rays=100000 random=100000 aimed=10000 subdivisions=6 budget=20
         ;;
-    *) sed -n '3,17s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2 && exit 2 ;;
+    *) sed -n '2,15s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2 && exit 2 ;;
     esac
     shift
 done

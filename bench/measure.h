@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Measures in rounds in which each backend has its turn, so that whatever slows the machine down slows all of them.
 // Also checks how right the hits are.
 #pragma once

@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Draws how rates and their ratios have changed: plot_history.py HISTORY.jsonl -o PICTURE.svg|.png. A row for each scene and
 figure, a column for each set of rays, a line for each backend, a step to the right for each run."""
 import argparse

@@ -1,5 +1,4 @@
 #!/usr/bin/env bash
-# SPDX-License-Identifier: MIT
 # Measures the scenes that history is kept of and appends the records to FOLDER/<device>.jsonl, one JSON object a line,
 # with date, revision and driver. Nothing is appended unless all scenes were measured.
 #   bench/record_history.sh [-t TWINRAY] [-o FOLDER] [SCENE...] [-- OPTION...]
@@ -14,7 +13,7 @@ while (($#)); do
     -t) twinray=$2 && shift 2 ;;
     -o) folder=$2 && shift 2 ;;
     --) shift && break ;;
-    -*) sed -n '3,6s/^# *//p' "${BASH_SOURCE[0]}" >&2 && exit 2 ;;
+    -*) sed -n '2,5s/^# *//p' "${BASH_SOURCE[0]}" >&2 && exit 2 ;;
     *) scenes+=("$1") && shift ;;
     esac
 done

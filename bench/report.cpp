@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "bench/report.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Results as tables for people and as JSON for scripts.
 #pragma once
 

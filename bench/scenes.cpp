@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "bench/scenes.h"
 
 #include <algorithm>

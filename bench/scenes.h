@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Scenes by name: generated ones, which anybody can measure again, and files; and a closed mesh with relief, of any
 // size.
 #pragma once

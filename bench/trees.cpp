@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Measures trees of each layout and build quality for `twinray bench`, by counts that are the same on every device.
 #include "bench/command.h"
 

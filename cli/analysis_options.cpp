@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "cli/analysis_options.h"
 
 #include <array>

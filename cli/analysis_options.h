@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Shared by commands that compute over a scene: pictures, groups of faces, the scene in an accelerator, a grid of
 // parallel rays and tables.
 #pragma once

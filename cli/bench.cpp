@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // `twinray bench`: build times and trace rates of both accelerators beside others, with their errors.
 #include "bench/command.h"
 #include "cli/common.h"

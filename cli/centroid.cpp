@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // `twinray centroid`: the mean of what is seen along a direction.
 #include "cli/analysis_options.h"
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // `twinray collide`: which triangles of a scene touch or intersect, or which boxes of instances overlap.
 #include <twinray/queries.h>
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Shared by the commands, each of which is in the file of its name: options, making an accelerator, coordinates of
 // files, JSON lines.
 #pragma once

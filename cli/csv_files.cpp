@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "cli/csv_files.h"
 
 #include <cmath>

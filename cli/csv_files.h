@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // CSV files with a line for each thing: numbers that commands read, with or without a heading, and tables they write.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // `twinray devices`: every Vulkan device, what each accelerator can do there, and why not.
 #include <iomanip>
 #include <span>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // `twinray distance`: the parts of a scene that are near points, as a table or as a picture of a plane.
 #include <twinray/queries.h>
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // `twinray help` and `twinray completion`: what the commands say of themselves, for terminals, man and shells.
 #include "cli/common.h"
 #include "twinray_version.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // `twinray illumination`: what parallel light, the sky or the sun bring to each face.
 #include <cmath>
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // `twinray kernels`: what a driver's compiler makes of every kernel, for GPUs that need not be there.
 #include "cli/common.h"
 #include "cli/kernels/kernels.h"

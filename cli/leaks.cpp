@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // `twinray leaks`: as many rays as one likes from inside a closed mesh at its vertices and edges, and no way out.
 #include <iomanip>
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The command `twinray`.
 #include <cerrno>
 #include <cstring>

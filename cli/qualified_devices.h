@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The devices that `twinray qualify --devices all` checks, and how it starts itself on each.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // `twinray qualify`: the report's checks alone, for continuous integration.
 #include "cli/verify_conformance.h"
 #include "cli/qualified_devices.h"

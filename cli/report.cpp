@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // `twinray report`: error against run time over the suite of stiff and extreme cases.
 #include <array>
 

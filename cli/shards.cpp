@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "cli/shards.h"
 
 #include <charconv>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Parts of a command's work, computed apart and put together: by jobs with --shard and --merge, or by ranks of MPI.
 #pragma once
 

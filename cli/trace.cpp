@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // `twinray trace`: a file of rays in, a file of hits out.
 #include <charconv>
 #include <map>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // `twinray verify`: hardware against software against the references, float64 and exact.
 #include "cli/common.h"
 #include "engine/scene/ray_file.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "cli/verify_conformance.h"
 
 #include <fstream>

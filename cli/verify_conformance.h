@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Cases of suites: --only and --list, which choose them, and `twinray verify --suite conformance`.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // `twinray view`: a window, or its pictures without one.
 #include <cmath>
 #include <fstream>

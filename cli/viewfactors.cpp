@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // `twinray viewfactors`: the view factors of a scene with their errors, as a matrix and as pictures.
 #include <cmath>
 

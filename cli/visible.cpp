@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // `twinray visible`: which patches of the sky sensors see.
 #include <cmath>
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "hwtlas/acceleration_structure.h"
 
 #include <cstring>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The driver's acceleration structures: objects, sizes, builds, and copies into the memory that they finally need.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "hwtlas/blas.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Bottom levels of HwTlas over meshes in host memory and on the device, and the structs that its kernels share with
 // C++.
 #pragma once

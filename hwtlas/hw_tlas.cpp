@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The hardware accelerator: builds and traces by the driver.
 #include <twinray/tlas.h>
 

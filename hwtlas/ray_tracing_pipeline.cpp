@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "hwtlas/ray_tracing_pipeline.h"
 
 #include <algorithm>

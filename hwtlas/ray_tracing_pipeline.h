@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The ray tracing pipeline, for drivers without ray queries.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "hwtlas/tlas.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The top level of HwTlas.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Converts cameras to the form that kernels take.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The configuration that distinguishes pictures, for checkpoints and reports.
 #pragma once
 

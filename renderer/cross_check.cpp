@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "renderer/cross_check.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Compares two accelerators on the same rays.
 #pragma once
 

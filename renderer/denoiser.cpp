@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "renderer/denoiser.h"
 
 #include "engine/core/platform.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Removes the noise of a picture by Open Image Denoise 2, a library of another project that is looked for at run time.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Light from all directions: maps and a sky, and their sampling.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The contents of a picture: for each pixel the sums of its samples, and the set of these samples. Films of the same
 // configuration add up in any order to the same bits.
 #pragma once

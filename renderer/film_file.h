@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Files of films: checkpoints, shards, and their merged films.
 #pragma once
 

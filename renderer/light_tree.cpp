@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Builds the tree of shaders/path_tracer/light_tree.h.
 #include <algorithm>
 #include <array>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The lights of a scene, and how one is chosen.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "renderer/material_kinds.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The kernels that a scene's materials need: materials with the same needs are of one kind, which has a kernel of its
 // own for shading.
 #pragma once

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "renderer/moving_scene.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // A scene on the device that is posed again for each picture.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "renderer/reference.h"
 
 #include "samples/support/text.h"

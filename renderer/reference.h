@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Errors of a picture against a better one.
 #pragma once
 

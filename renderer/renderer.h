@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Renders a picture by path tracing in waves of rays, with an estimate of its error.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "renderer/rounds.h"
 
 #include <algorithm>

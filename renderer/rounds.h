@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Chooses the next samples only from the contents of a film: a run that was killed and resumed decides the same.
 #pragma once
 

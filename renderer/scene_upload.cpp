@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "renderer/scene_upload.h"
 
 #include "samples/support/text.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // A scene in device memory, as kernels read it.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "renderer/sequence.h"
 
 #include <algorithm>

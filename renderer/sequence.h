@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Many pictures of one scene: which moment, view and file each has. Pure decisions.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The structs and the mathematics that the path tracer shares with its kernels, for C++.
 #pragma once
 

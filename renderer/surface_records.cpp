@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "renderer/surface_records.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Makes the records that the kernels read from a Scene: plain data in, plain data out.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Records builds and refits of trees, and measures their cost.
 #include "swtlas/build.h"
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The stages of a build of SwTlas, recorded.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "swtlas/plan.h"
 
 #include <algorithm>

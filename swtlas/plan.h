@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // All decisions that a batch of builds makes before it records: pure, tested without a device.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "swtlas/saved.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The file of a saved SwTlas: its contents and checks. Pure, tested without a device.
 //
 //   header | one entry per geometry | per geometry: name, positions, triangles, boxes,

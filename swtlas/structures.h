@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The software accelerator's structures, build arguments and traversal for C++.
 #pragma once
 

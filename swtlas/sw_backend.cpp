@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "swtlas/sw_backend.h"
 
 #include "engine/accel/trace_program.h"

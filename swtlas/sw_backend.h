@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The implementation of SwTlas: trees that compute shaders build and traverse.
 #pragma once
 

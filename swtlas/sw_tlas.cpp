@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The calls of SwTlas; saves its structures, and loads them.
 #include <twinray/tlas.h>
 

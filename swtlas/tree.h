@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Copies of the structures of SwTlas, and checks on the host of the properties that traversal and refits rely on.
 #pragma once
 

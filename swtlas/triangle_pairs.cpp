@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "swtlas/triangle_pairs.h"
 
 #include <algorithm>

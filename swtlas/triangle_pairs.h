@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Leaves of two triangles, for which a record has room as for one: half as many leaves, and nodes above them; and the
 // copy of positions that a tree keeps for them, welded.
 #pragma once

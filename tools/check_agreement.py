@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Checks that two files agree; prints the faults and exits with 1, else prints what it compared.
 
 Usage: check_agreement.py contract    docs/contract.md and the tests: each test it names exists, each row names one, and

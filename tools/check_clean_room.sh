@@ -1,5 +1,4 @@
 #!/usr/bin/env bash
-# SPDX-License-Identifier: MIT
 # Proves that the scripts work on a machine with nothing installed: puts a minimal Debian and this checkout into
 # an empty folder, runs the scripts there in a chroot and prints their times. Needs root, debootstrap and 3 GB.
 #   tools/check_clean_room.sh [--head] [--keep] FOLDER [COMMAND...]

@@ -1,5 +1,4 @@
 #!/usr/bin/env bash
-# SPDX-License-Identifier: MIT
 # Runs the programs and tests that are built on other Vulkan drivers than this machine's: each has a room, a minimal
 # Debian with nothing else (tools/lib.sh). Ends with a table. Exit status 1: something failed on one of them; 77: a
 # room could not be made, for the printed reason.

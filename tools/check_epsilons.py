@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Checks that no decision rests on an absolute epsilon. Every small number (below 1/64) and every name like "eps" in shaders
 and sources must stand in tools/small_numbers.txt, which says what it is a factor of and where it comes from. The settings of
 the cases in report/suite are no decisions and are left out.

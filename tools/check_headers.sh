@@ -1,5 +1,4 @@
 #!/usr/bin/env bash
-# SPDX-License-Identifier: MIT
 # Checks the public headers: each compiles alone, none needs another project but Vulkan, and a kernel of an application
 # finds the GLSL.
 #   tools/check_headers.sh CXX GLSLANG_VALIDATOR FOLDER     FOLDER: where twinray/twinray.h is

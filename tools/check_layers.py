@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Checks who includes whom, that code of one system is in its place, the size of the public interface in include/, and
 how much of the project is behind a header.
 Usage: check_layers.py [ROOT]; prints file:line of each violation and exits with 1."""

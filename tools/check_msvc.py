@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Compiles what a build for Windows compiles, but its tests, as code for MSVC's target, and throws it away: by clang,
 with libc++ and the headers of MinGW-w64, since MSVC's are not free. It finds what MSVC is known to refuse: GNU's
 extensions, initialisers out of order, headers and names of POSIX. MSVC itself is not run.

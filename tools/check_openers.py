@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Counts sentences that dangle: those that open with "What" and ask nothing, or with "Of", "Where", "As" or "By" and
 have no comma, after which a main clause could come. Looks at prose of pages, without headings and code, at comments, at
 docstrings and at help texts. Prints a figure for each group and exits with 1 if a group exceeds its limit; -v prints

@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Checks docs/architecture.md against the tree: each folder has its sentence under "## Rooms", and each sentence its
 folder; files that sources, pages and figures name exist, and so do functions that figures name.
 Usage: check_rooms.py [ROOT]; prints the faults and exits with 1."""

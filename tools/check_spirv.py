@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Checks in SPIR-V what no validator does; prints the faults and exits with 1, else prints what it has seen.
 
 Usage: check_spirv.py precise ROOT MODULE.spv...

@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Checks the symbols of the libraries.
 
 Usage: check_symbols.py ours LIBRARY.a|LIBRARY.so...

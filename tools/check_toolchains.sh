@@ -1,5 +1,4 @@
 #!/usr/bin/env bash
-# SPDX-License-Identifier: MIT
 # Builds this checkout with the oldest and the newest compilers and libraries that it is for, with warnings as errors, and
 # runs the tests of `tools/test.sh quick`, each in a room (tools/lib.sh). Ends with a table. Exit status 1: one failed.
 #   tools/check_toolchains.sh [--rooms FOLDER] [NAME...]

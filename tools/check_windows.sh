@@ -1,5 +1,4 @@
 #!/usr/bin/env bash
-# SPDX-License-Identifier: MIT
 # Builds twinray for Windows on Debian 12 or 13 by MinGW-w64, runs its tests by Wine on Mesa's CPU driver, compares what
 # its programs write with what those for Linux write, and packs the zips, against which it builds a host. Wine tests the
 # port, not Windows' drivers.

@@ -1,5 +1,4 @@
 #!/usr/bin/env bash
-# SPDX-License-Identifier: MIT
 # Goes from a checkout to a picture: installs the packages, builds path_tracer and what it links, renders a scene with
 # the faster accelerator of this device, and lets the other one check its rays.
 #   tools/demo.sh [SCENE]         SCENE: .gltf, .glb, .obj, .ply or .stl; without it a sunflower of beads, made by formula

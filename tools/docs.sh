@@ -1,5 +1,4 @@
 #!/usr/bin/env bash
-# SPDX-License-Identifier: MIT
 # Builds the documentation site from docs/, the comments of the public headers, the Python package and the command's
 # help: build/docs/html/index.html. Fails on any warning and any broken link.
 #   tools/docs.sh            installs what is missing and builds twinray first: its programs make pictures and pages

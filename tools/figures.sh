@@ -1,5 +1,4 @@
 #!/usr/bin/env bash
-# SPDX-License-Identifier: MIT
 # Makes docs/figures/NAME.svg of docs/figures/NAME.dot. Needs dot, of graphviz.
 #   tools/figures.sh            writes them
 #   tools/figures.sh --check    writes nothing; exit 1 if a picture and its text differ, 77 without dot

@@ -1,5 +1,4 @@
 #!/usr/bin/env bash
-# SPDX-License-Identifier: MIT
 # Fuzzes the readers of files and command lines and the accelerators' interface (docs/fuzzing.md).
 #   tools/fuzz.sh [--seconds N | --runs N] [TARGET...]     60 s each; all targets unless some are named
 #   tools/fuzz.sh --coverage [TARGET...]                   coverage of the corpus of earlier calls, without fuzzing

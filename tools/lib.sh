@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 # shellcheck shell=bash
 # Functions that the scripts of this folder share; they change to the checkout, then source this file.
 

@@ -1,8 +1,6 @@
 #!/usr/bin/env bash
-# SPDX-License-Identifier: MIT
-# Checks the format of the code: C++ and GLSL with clang-format, CMake with gersemi, shell with shellcheck, Python with ruff and
-# mypy, spelling with codespell, and sentences that do not dangle
-# (tools/check_openers.py).
+# Checks the format of the code: C++ and GLSL with clang-format, CMake with gersemi, shell with shellcheck, Python with
+# ruff and mypy, spelling with codespell, and sentences that do not dangle (tools/check_openers.py).
 #   tools/lint.sh          prints what is wrong; exit status 1 if anything is, 77 if it cannot check
 #   tools/lint.sh --fix    formats C++, CMake and Python first
 # The tools come from PyPI into build/lint at fixed versions, so that results are the same everywhere. Needs

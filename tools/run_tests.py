@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Runs ctest and says how it went: each minute what is left; at the end what passed, failed and was skipped and why,
 the ten slowest, and for each TEST that failed the command that runs it alone. Exit status: ctest's.
 Usage: run_tests.py BUILD_FOLDER [what ctest takes]...

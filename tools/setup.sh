@@ -1,5 +1,4 @@
 #!/usr/bin/env bash
-# SPDX-License-Identifier: MIT
 # Installs the Debian packages that twinray needs, and nothing else.
 #   tools/setup.sh           install all; does nothing if everything is there
 #   tools/setup.sh demo      install what path_tracer needs, and no more

@@ -1,5 +1,4 @@
 #!/usr/bin/env bash
-# SPDX-License-Identifier: MIT
 # Installs the packages, builds and runs the tests. `full` also runs those that take minutes: the documentation's site,
 # its tutorials and the code of its pages, a shared library, a second CPU driver, non-default layouts, pictures with many
 # paths per pixel. `quick` runs the tests that need no device, and those of the accelerators' common contract, in a minute

@@ -1,5 +1,4 @@
 #!/usr/bin/env bash
-# SPDX-License-Identifier: MIT
 # Follows docs/python.md like a user with nothing installed: packages, `pip install .` into a new environment, the
 # README's five lines; prints the time of each. For tools/check_clean_room.sh.
 #   tools/try_python.sh [FOLDER OF THE ENVIRONMENT]

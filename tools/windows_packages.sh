@@ -1,5 +1,4 @@
 #!/usr/bin/env bash
-# SPDX-License-Identifier: MIT
 # Makes a folder with all that twinray takes from others, for Windows: libraries of Debian's source packages, compiled by
 # MinGW-w64, and Debian's headers that need no library.
 #   tools/windows_packages.sh FOLDER    FOLDER/done is the last thing that it writes; it does nothing if that is there,

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // A user's actions, as data and as lines of text, so that they can be recorded and played; and the function of each
 // key: one table, which the program and its sheet of keys read.
 #pragma once

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Files of the viewer: the list of those that were shown last, and a layer's values of faces.
 #pragma once
 

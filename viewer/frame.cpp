@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The frames of a Viewer, and the results of analyses for each face in them.
 #include <algorithm>
 #include <cmath>

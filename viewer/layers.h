@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Turns rays and their hits into colours, and the boxes of a tree, level by level, into lines.
 #pragma once
 

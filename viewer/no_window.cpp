@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "engine/core/error.h"
 #include "viewer/viewer.h"
 

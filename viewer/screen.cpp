@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #define GLFW_INCLUDE_NONE
 #include <vulkan/vulkan.h>
 

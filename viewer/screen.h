@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Pictures in a window, with what Dear ImGui draws over them.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "viewer/state.h"
 
 #include <algorithm>

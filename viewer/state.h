@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The state of a window, as data: every state is a command line. Its camera turns about a point with the mouse, by pure
 // functions: every motion gives a new one.
 #pragma once

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The viewer without its window: events in, frames out. It shows its State; the window only brings events and shows
 // frames, so that every state can be made, and tested, without a display. The window of a Viewer comes last.
 #pragma once

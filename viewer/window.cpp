@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The window of a Viewer, with its events and what is drawn over pictures: settings, figures, the sheet of keys, what
 // was picked.
 #define GLFW_INCLUDE_NONE

@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Measures twinray beside packages that do the same, on the same input, in turns: time and error of each.
 
     compare.py TWINRAY [-o FILE.json] [--rounds N] [--only collisions|distances|rays|viewfactors]

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // cuBQL's hits of rays, for python_rays.py: `cubql_rays closest|any` in a folder with a mesh and rays. Compiled by nvcc
 // it uses the GPU, and by another compiler the CPU.
 #ifndef __CUDACC__

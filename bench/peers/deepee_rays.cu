@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // deepeeRT's hits of rays, in float64, for python_rays.py: `deepee_rays closest|any` in a folder with a mesh and rays.
 // It has no query for any hit: `any` is the closest.
 #include <dprt/dprt.h>

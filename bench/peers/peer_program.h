@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Programs of peers read files in the working directory for python_rays.py, and write one and a line of seconds.
 #pragma once
 

@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """Small scenes that twinray's path tracer and Mitsuba 3 render alike: the same triangles, the same materials.
 
 A scene is a list of parts. A part has `positions` (n x 3), `uvs` (n x 2) or None, `triangles` (m x 3) and a `material`:

@@ -1,5 +1,4 @@
 #!/usr/bin/env bash
-# SPDX-License-Identifier: MIT
 # Installs the packages that compare.py or renderers.py needs beside twinray into a folder of their own, and runs it.
 #   bench/peers/peers.sh compare FOLDER TWINRAY [option of compare.py...]
 #   bench/peers/peers.sh renderers FOLDER references|check|times TARGET [option of renderers.py...]
@@ -10,7 +9,7 @@ renderers) packages=(numpy scipy mitsuba) least=4 ;;
 *) least=$(($# + 1)) ;;
 esac
 if (($# < least)); then
-    sed -n '3,5s/^# *//p' "${BASH_SOURCE[0]}" >&2
+    sed -n '2,4s/^# *//p' "${BASH_SOURCE[0]}" >&2
     exit 2
 fi
 program=$1.py folder=$2

@@ -1,11 +1,10 @@
 #!/usr/bin/env bash
-# SPDX-License-Identifier: MIT
 # Builds the programs of python_rays.py for peers that are headers or libraries of C++, from checkouts of them:
 #   bench/peers/programs.sh FOLDER [--cubql CHECKOUT] [--deepee CHECKOUT]
 # With nvcc the programs use the GPU, and deepeeRT needs it; else cuBQL uses the CPU.
 set -euo pipefail
 if (($# < 1)) || [[ $1 == -* ]]; then
-    sed -n '3,5s/^# *//p' "${BASH_SOURCE[0]}" >&2
+    sed -n '2,4s/^# *//p' "${BASH_SOURCE[0]}" >&2
     exit 2
 fi
 folder=$(realpath -m "$1")

@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Rays a second of twinray and of other packages, and how many of a million answers are wrong, in one run:
 
     python_rays.py [--rays 1000000] [--subdivisions 8] [--instances 1000] [--mesh FILE] [--rounds 3] [--cuda]

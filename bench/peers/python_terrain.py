@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Sky and view factors on workers of Dask, in figures:
 
     python_terrain.py workers [--side 1024] [--tile 256] [--rounds 3]    one process against two on the same cores,

@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """View factors of packages of Python at equal time, in a room in which a cabinet hides cells from each other:
 
     python_view_factors.py [--cells 4] [--parts 1 2 3] [--rounds 5] [--steps 32] [-o FILE.json]

@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """The packages that python_rays.py measures, in one way: build, load rays into the device's memory, trace."""
 
 import pathlib

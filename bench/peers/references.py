@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """What is true, by other ways than the backends'."""
 from fractions import Fraction
 

@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Mitsuba 3 as reference of the path tracer, and as a peer in speed. In a Python that has mitsuba; its llvm variants need LLVM
 (Debian: libllvm19).
     renderers.py references FOLDER                          pictures by Mitsuba of the scenes of peer_scenes.py, for the tests

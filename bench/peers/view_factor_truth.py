@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """View factors of a room around a convex box, in float64 and by no rays.
 
 What two cells exchange if nothing is between them is an integral of ln r along both contours, of which one is in closed

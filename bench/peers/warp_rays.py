@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """Warp's hits, for python_rays.py."""
 import warp as wp
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Analyses of a scene for Python, as arrays. Faces are numbered by geometry, in the order of their numbers, then by
 // triangle.
 #include <twinray/analysis.h>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Arrays of Python's packages as twinray's and back, and calls without Python's lock: what all bindings share.
 #pragma once
 

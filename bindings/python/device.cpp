@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The devices of scenes, one for each process, and how a scene comes to another one.
 #include <atomic>
 #include <chrono>

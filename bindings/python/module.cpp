@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // twinray._core: scene.h and analyses for Python, and memory that Python's array packages share. Arguments are checked
 // and cast in Python, which has the public names.
 #include <atomic>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // One file of more than 400 lines, since it is one class. Its device and its copies are in device.cpp.
 #include "bindings/python/scene.h"
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The scene of twinray's Python package, without Python: meshes by number on one accelerator, and queries of them. Any
 // thread may call; calls on one device take turns.
 #pragma once

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // A command as data: what it takes, what it says, what it does. The parser, --help, man pages and the completions of
 // shells are made of it.
 #pragma once

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Parses arguments into values: CLI11 tells which words belong to which option; everything else about them is decided
 // here.
 #include "cli/command/command.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Values that options take, bound to the variables in which they end up. A variable first holds its default; an empty
 // one (a path, a vector, an optional) has no default to show.
 #pragma once

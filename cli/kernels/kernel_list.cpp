@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "cli/kernels/kernels.h"
 
 #include <twinray/analysis.h>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // What `twinray kernels` is made of: the list of kernels that hosts get, what a driver's compiler makes of them, limits
 // of that, and GPUs that are not there.
 #pragma once

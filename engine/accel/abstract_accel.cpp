@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Forwards the calls of the contract to AccelBackend.
 #include "engine/accel/accel_backend.h"
 #include "engine/core/error.h"

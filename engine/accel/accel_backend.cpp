@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "engine/accel/held_geometry.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Implements AbstractAccel: the common part of both accelerators, and the steps that each does in its own way.
 #pragma once
 

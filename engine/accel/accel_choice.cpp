@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // What accelerators can do on a device, and the choice of one.
 #include <twinray/tlas.h>
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Decides which geometries a sync builds at a time, so that their scratch memory stays within a budget, and whether a
 // top level is rebuilt or refitted. Pure functions.
 #pragma once

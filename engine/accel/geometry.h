@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Meshes and boxes as accelerators keep them, and the records of instances.
 #pragma once
 

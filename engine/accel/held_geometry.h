@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // A geometry as an accelerator holds it, and a sync's records before it is certain to run.
 #pragma once
 

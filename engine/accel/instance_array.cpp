@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "engine/accel/instance_array.h"
 
 #include <algorithm>

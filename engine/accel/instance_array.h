@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The records of all instances on the device, and the host's edits of them.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The transforms and states of instances that AbstractAccel lets a host change and read.
 #include <algorithm>
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "engine/accel/mesh_gather.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Converts callers' meshes in device memory into the form that accelerators build from.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "engine/accel/mesh_store.h"
 
 #include <set>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The positions and triangles of meshes in device memory. Accelerators own them and lend them to analyses, contacts and
 // distances.
 #pragma once

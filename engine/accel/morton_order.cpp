@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "engine/accel/morton_order.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Triangles in an order in which neighbours in space are near each other. Pure functions.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "engine/accel/pipeline_variants.h"
 
 #include <utility>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The programs that an accelerator traces with if the scene needs none of the user's: one for each set of features.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Meshes and the instances that place them, as analyses, collisions and distances read them on the host: in place.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Measures the structures' quality and size, and decides when a sync rebuilds or compacts them.
 #include <algorithm>
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "engine/accel/ray_sort.h"
 
 #include <cmath>

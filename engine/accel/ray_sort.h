@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The order of rays for C++, and its computation on the GPU.
 #pragma once
 

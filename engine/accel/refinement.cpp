@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "engine/accel/refinement.h"
 
 #include <utility>

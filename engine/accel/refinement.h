@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The device data of Level::refined: all transforms as they were given, with the addresses of meshes.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Pushes a scene into an accelerator, and reads one back.
 #include <algorithm>
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "engine/accel/surface_area.h"
 
 #include <algorithm>

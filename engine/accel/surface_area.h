@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Measures how the boxes of a tree have changed since its build.
 #pragma once
 

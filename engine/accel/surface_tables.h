@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The device data of AccelOptions::keeps_surfaces: arrays of meshes, and the table that leads from a hit to them.
 #pragma once
 

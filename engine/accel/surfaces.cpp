@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Finds surfaces and handles of hits for the host.
 
 #include <algorithm>

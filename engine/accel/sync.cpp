@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The only code that builds: stage records everything, commit takes it over once it is certain to run.
 #include <algorithm>
 #include <utility>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Tracing through AccelBackend: the checks of every accelerator, and the host's convenience.
 #include <algorithm>
 #include <cstring>

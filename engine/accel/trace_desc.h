@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // TraceArgs, the features and the levels for C++; the features that a trace needs; whether an accelerator can trace at
 // a level. Pure functions of the data known when a trace is recorded.
 #pragma once

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "engine/accel/trace_program.h"
 
 #include <algorithm>

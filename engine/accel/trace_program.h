@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Launches batches of rays by compute kernels.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "engine/accel/world_bound.h"
 
 #include <cmath>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // WorldBound for C++, and its computation on the GPU.
 #pragma once
 

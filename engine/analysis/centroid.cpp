@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "engine/analysis/ray_grid.h"
 #include "engine/core/parallel.h"
 

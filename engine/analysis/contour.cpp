@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "engine/analysis/polygon64.h"
 
 #include <algorithm>

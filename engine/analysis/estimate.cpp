@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "engine/analysis/estimate.h"
 
 #include <algorithm>

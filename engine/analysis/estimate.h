@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Fractions of rays and exchanges with their errors: pure functions.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "engine/analysis/faces.h"
 
 #include <algorithm>

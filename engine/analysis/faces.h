@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The common part of analyses: the table of faces on the device, and checks that accelerator and scene belong together.
 #pragma once
 

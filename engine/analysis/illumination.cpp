@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "analysis_count_faces.spv.h"
 #include "engine/analysis/estimate.h"
 #include "engine/analysis/ray_grid.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Writes arrays for NumPy.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "engine/analysis/pair_plan.h"
 
 #include <algorithm>

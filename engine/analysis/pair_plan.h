@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Chooses the estimator for each pair of groups of faces: pure functions.
 #pragma once
 

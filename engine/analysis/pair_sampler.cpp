@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "engine/analysis/pair_sampler.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Area-to-area sampling: the exchange of two faces from points all over both and rays between them.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Faces as convex polygons in float64: the part of one on the front side of the plane of another, the exchange of two,
 // and the obstacles that can be between them. Pure functions.
 #pragma once

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Parallel rays onto a scene, and their hits in batches on the device.
 #pragma once
 

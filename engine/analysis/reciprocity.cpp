@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCore>
 

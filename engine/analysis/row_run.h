@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Computes rows of view factors, one after the other, in a run that a later one can continue, and writes them as files.
 #pragma once
 

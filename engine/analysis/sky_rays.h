@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Counts on the device how many rays from the faces of a scene leave it.
 #pragma once
 

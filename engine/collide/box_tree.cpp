@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "engine/collide/box_tree.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // A tree of boxes, built on the GPU: see shaders/collide/box_tree.h; and the search for pairs of boxes that overlap.
 #pragma once
 

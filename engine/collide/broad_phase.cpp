@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include <twinray/queries.h>
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "engine/collide/exact_class.h"
 
 #include <cmath>

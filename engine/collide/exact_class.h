@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Classifies triangles without error: the signs of volumes and areas that float64 leaves open are computed by
 // expansions of doubles. Coordinates must be 0 or of a magnitude from 2^-245 to 2^259, as those of world_vertex.h are:
 // then no operation over- or underflows.

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The classes of pairs of triangles, and the data with which kernels find them, for C++.
 #pragma once
 

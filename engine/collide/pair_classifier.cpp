@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "engine/collide/pair_classifier.h"
 
 #include <algorithm>

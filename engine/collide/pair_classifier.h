@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Classifies pairs of triangles by how they touch: on the device and, if that is uncertain, exactly on the host.
 #pragma once
 

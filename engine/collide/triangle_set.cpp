@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "engine/collide/triangle_set.h"
 
 #include <algorithm>

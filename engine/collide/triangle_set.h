@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Triangles of instances on the device, for searches by boxes.
 #pragma once
 

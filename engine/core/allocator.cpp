@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The only file that compiles the Vulkan Memory Allocator.
 #define VMA_IMPLEMENTATION
 #define VMA_STATIC_VULKAN_FUNCTIONS 0

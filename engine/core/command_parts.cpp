@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The command buffers of Commands: their start, submission and timing.
 #include <algorithm>
 

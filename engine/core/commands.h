@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The command buffers that Commands consists of, and the limits of the work of a submission: drivers reset a GPU that
 // is busy with one for too long.
 #pragma once

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Forwards applications' calls to Context::State, and checks a device that an application created.
 #include "engine/core/context.h"
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The parts of a Context that the library itself needs: Vulkan's functions, memory, pipelines, submissions.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Explains why a device cannot be used: it is lost, or belongs to another process.
 #include "engine/core/device_fault.h"
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // What is told of a device that is lost or stops answering: the driver's report (VK_EXT_device_fault), and the work in
 // flight.
 #pragma once

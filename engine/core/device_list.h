@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // A list that kernels append to; if it is too short, it is made longer and filled again.
 #pragma once
 

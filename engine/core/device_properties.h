@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Queries a Vulkan device's properties from its driver, and lists the features to enable when one is created. Facts
 // about Mesa's CPU driver, and about the CPU that it runs on.
 #pragma once

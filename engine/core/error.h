@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Texts of errors.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Files as bytes, also compressed ones, text encodings, and folders for files that nobody keeps.
 #pragma once
 

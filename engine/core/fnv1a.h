@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The hash FNV-1a of 64 bits (Fowler, Noll and Vo).
 #pragma once
 

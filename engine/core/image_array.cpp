@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "engine/core/image_array.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Images that kernels sample, and the descriptors through which they reach any number of them by index.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Lets long work on the host, and waits for the device, end early if their caller wants it: InterruptScope.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Parses JSON of untrusted files.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The common part of kernels and the ray tracing pipeline.
 #pragma once
 

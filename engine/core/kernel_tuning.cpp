@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "engine/core/kernel_tuning.h"
 
 #include <vulkan/vulkan_core.h>

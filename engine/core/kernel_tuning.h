@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // All settings that depend on the kind of device: the shape of kernels, and known properties of its driver. Plain data
 // in, plain data out, no Vulkan calls.
 #pragma once

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Loops on all cores.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The compute pipelines of a device, of which equal kernels share one, and the files that keep them beyond the process.
 #pragma once
 

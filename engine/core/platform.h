@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Everything that systems do in different ways. platform/posix.cpp and platform/windows.cpp define it; no other file
 // includes a header of one system or asks which one it is compiled for. All text is UTF-8.
 #pragma once

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "engine/core/spirv_words.h"
 
 #include <algorithm>

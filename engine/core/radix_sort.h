@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // A radix sort of pairs of words, and its kernels' arguments for C++.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Ray, Hit, which triangles can be hit, and InstanceRecord, for C++.
 #pragma once
 

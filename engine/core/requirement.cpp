@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "engine/core/requirement.h"
 
 #include <algorithm>

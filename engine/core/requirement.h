@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The device features that twinray needs, as one table by parts of twinray: device choice, `twinray devices
 // --requirements` and the test of all kernels read it.
 #pragma once

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The words of a SPIR-V module, with the numbers of its specification, and changes to a module for one pipeline.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "engine/core/statistics.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The statistics of measurements for reports: pure functions of the samples.
 #pragma once
 

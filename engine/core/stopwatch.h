@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Wall time.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Context's timeline: submits, waits, and frees resources that the GPU has passed.
 #include <algorithm>
 #include <chrono>

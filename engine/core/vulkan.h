@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The Vulkan functions of one device. The library calls no global vk* function, and its copy of volk is its own, so
 // that an application may link the Vulkan loader, volk or another copy beside it.
 #pragma once

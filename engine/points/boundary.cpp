@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "engine/points/boundary.h"
 
 #include <algorithm>

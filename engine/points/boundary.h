@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Tells whether a mesh has an inside.
 #pragma once
 

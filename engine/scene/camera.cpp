@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include <twinray/scene.h>
 
 #include <algorithm>

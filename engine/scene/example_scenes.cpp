@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The scenes that twinray makes itself: a Cornell box and a sunflower.
 #include <numbers>
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Writes scenes as glTF 2.0.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Formats that libraries read and write: OpenEXR, WebP and AVIF.
 #include "engine/scene/images.h"
 

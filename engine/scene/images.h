@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Files of images in the formats that twinray reads and writes, the image that replaces a missing one, and texels on
 // the host: sizes, widening, mipmaps.
 #pragma once

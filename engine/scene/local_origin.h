@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Coordinates that float32 cannot hold: scenes far away, such as in metres of UTM, are moved to a local origin in
 // float64 before they are rounded.
 #pragma once

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "engine/scene/mesh.h"
 
 #include <algorithm>

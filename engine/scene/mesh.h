@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Checks of meshes for importers and accelerators.
 #pragma once
 

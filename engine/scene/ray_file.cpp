@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "engine/scene/ray_file.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Files of rays and of hits.
 #pragma once
 

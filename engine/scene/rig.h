@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The moving parts of a scene: the node hierarchy of its file with animations, skins and morph targets, as in glTF 2.0
 // (3.7.2.2, 3.7.3 and 3.11), and the pose that they give at a time. Pure data, pure functions, in float64.
 #pragma once

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "engine/scene/set_uploads.h"
 
 #include "engine/core/error.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Arrays of elements on the device, of which only the elements that the host changed are uploaded, and the faults that
 // kernels note about them.
 #pragma once

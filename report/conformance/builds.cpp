@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Builds: flags, several geometries, empty builds, inactive primitives, offsets of data, formats of indices and
 // vertices, and bytes between them.
 #include <algorithm>

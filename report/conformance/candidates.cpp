@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Candidates: which are offered, how often, and what follows a refusal; boxes, and intersections that are generated for
 // them.
 #include "report/conformance/case_run.h"

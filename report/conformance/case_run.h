@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // A round of a case: what it may use, and where its findings go.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Updates: moved vertices and boxes, transforms, instances; builds into memory that held another. Copies: clones,
 // compaction, files.
 #include <algorithm>

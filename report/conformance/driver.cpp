@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "report/conformance/driver.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // A driver's acceleration structures without HwTlas in between: builds, updates, copies, files, ray queries, pipelines.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Copies of structures, and structures as bytes.
 #include "engine/core/vulkan.h"
 #include "report/conformance/driver.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Edges and vertices that triangles share, and answers that must not depend on when they are asked for.
 #include <algorithm>
 #include <cstring>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "report/conformance/expectation.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The primitives that a ray meets, by brute force in float64, each with how certain it is in float32; the verdict on a
 // driver's answer to a shot, and changes to scenes and rays that must not change what is hit: relations.cpp.
 #pragma once

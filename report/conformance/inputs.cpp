@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "report/conformance/inputs.h"
 
 namespace twinray::conformance {

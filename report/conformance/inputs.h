@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The input of a driver's structures and traces, as data on the host, random or spoiled, and the result of a trace. The
 // same data makes the expectation.
 #pragma once

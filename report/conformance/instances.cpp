@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Instances: ids, masks, flags, transforms.
 #include "report/conformance/case_run.h"
 

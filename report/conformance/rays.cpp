@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Flags of rays; t_min and t_max, strictly between which a triangle's t must lie.
 
 #include "report/conformance/case_run.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Relations between answers, which hold whatever the scene is.
 #include <algorithm>
 #include <numeric>

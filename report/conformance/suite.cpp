@@ -1,5 +1,3 @@
-// SPDX-License-Identifier: MIT
-
 #include <algorithm>
 #include <deque>
 #include <iomanip>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Tests of a driver's own acceleration structures against Vulkan: cases by kind, each with a negative control.
 #pragma once
 

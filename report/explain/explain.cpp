@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "report/explain/explain.h"
 
 #include <algorithm>

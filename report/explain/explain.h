@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // SwTlas's computations on the way to one triangle, beside the exact values: the arithmetic of the shaders run on the
 // CPU. They explain a faulty ray.
 #pragma once

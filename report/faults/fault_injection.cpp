@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "report/faults/fault_injection.h"
 
 #include <cstdlib>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Vulkan that fails on demand, above the layers and the driver and without a hook in the library: contexts take a
 // vkGetInstanceProcAddr, and this one hands out wrappers that count calls, fail the chosen ones and know what is alive.
 #pragma once

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "report/frame/cases.h"
 
 #include <algorithm>

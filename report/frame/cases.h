@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The frame of a catalogue of cases: what a case is, how it is guarded while it runs, and how its record is judged.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "report/frame/devices.h"
 
 #include <algorithm>

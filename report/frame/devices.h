@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The accelerators on which cases run.
 #pragma once
 

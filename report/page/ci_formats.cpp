@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "report/page/ci_formats.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The results of a report in the formats of continuous integration: pure functions of records.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "report/page/compare.h"
 
 #include <algorithm>

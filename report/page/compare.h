@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Two reports beside each other: what changed beyond noise. Pure functions of their records.
 #pragma once
 

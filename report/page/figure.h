@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The plots of a report: records in, points out. Pure functions; plotting is gnuplot's.
 #pragma once
 

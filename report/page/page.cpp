@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "report/page/page.h"
 
 #include <algorithm>

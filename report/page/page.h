@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The page of a report: verdict first, then the plots that matter, then everything else, folded.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The sentences with which a report begins: they say what is right, wrong or not measured, how fast, and by which
 // reference. Pure functions of its records. A sentence rests on the cases that report/suite/suite.h names.
 #pragma once

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // How a report writes numbers and names accelerators: pure functions.
 #pragma once
 

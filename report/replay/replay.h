@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // One faulty ray as a file, with all that is needed to trace it again and to see what went wrong; its scene as a file
 // that keeps every float.
 #pragma once

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "report/reproducer/simplify.h"
 
 #include <algorithm>

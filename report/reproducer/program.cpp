@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "report/reproducer/program.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // A C program of plain Vulkan that traces one ray and says whether the answer is right, and the numbers with which it
 // compares the answer.
 #pragma once

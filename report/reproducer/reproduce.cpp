@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "report/reproducer/reproduce.h"
 
 #include <fstream>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // A faulty ray of the driver in as small a scene as shows it, as a folder with a text for the driver's tracker.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // A ray and the triangles about it, made as small as possible: few triangles, no transforms, short numbers. Pure
 // functions of a test.
 #pragma once

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Self-intersection and arithmetic.
 #include "report/suite/sections.h"
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Structure: meshes from which trees are built, and rays that must find everything in them. Refits are in
 // builds_refit.cpp.
 #include "report/suite/sections.h"

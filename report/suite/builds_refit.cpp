@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Refits: an accelerator that has moved many times answers like a new one.
 #include "report/suite/sections.h"
 

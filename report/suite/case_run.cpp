@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "report/suite/case_run.h"
 
 #include <algorithm>

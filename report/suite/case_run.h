@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // A case of the suite while it runs, and what cases demand and record.
 #pragma once
 

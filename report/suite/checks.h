@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The figures of a record, computed from answers; nothing here runs on a device.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Triangles and instances that touch: their classes are known, or computed by exact arithmetic. The GPU answers, and
 // the host where the GPU is in doubt. The accelerators only provide the boxes of instances. Meshes are in contacts.cpp.
 #include "report/suite/sections.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Meshes and instances that touch.
 #include "report/suite/sections.h"
 

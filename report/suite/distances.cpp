@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Triangles near points, checked against every triangle in float64. The GPU answers; no accelerator takes part.
 #include "report/suite/sections.h"
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Edges, vertices, watertightness: the catalogue, rays from inside closed meshes, and rays that pass exactly.
 #include "report/suite/sections.h"
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Edges: where gaps are allowed, where nothing is inside, and negative controls.
 #include "report/suite/sections.h"
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // View factors by each estimator, timed one by one, for cases with a known truth.
 #pragma once
 

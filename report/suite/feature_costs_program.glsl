@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // A trace program like a user's: spheres in boxes, and hits that count in stripes. The scenes that measure feature
 // costs have neither.
 #include "twinray/glsl/program.h"

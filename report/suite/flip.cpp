@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Perceived differences of pictures.
 #include <algorithm>
 #include <array>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Invalid and special input: rays, and meshes in device memory. Meshes and wrong use are in inputs_scene.cpp.
 #include "report/suite/sections.h"
 

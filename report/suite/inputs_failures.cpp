@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Vulkan that fails under the library, and input that is too large.
 #include "report/suite/sections.h"
 

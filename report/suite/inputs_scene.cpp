@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "report/suite/sections.h"
 
 #include <cstdlib>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Instances: transforms that are hard on the ray, on the box and on the inverse.
 #include "report/suite/sections.h"
 

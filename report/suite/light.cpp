@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Light and centroids with known closed forms.
 #include "report/suite/sections.h"
 

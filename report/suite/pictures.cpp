@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "report/suite/pictures.h"
 
 #include <cmath>

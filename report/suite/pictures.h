@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Pictures by the path tracer, many short ones of each (Celarek et al., "Quantifying the Error of Light Transport
 // Algorithms", 2019), for cases that know what they should show.
 #pragma once

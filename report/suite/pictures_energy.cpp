@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Pictures with known light: furnaces, lights over a floor, light that is scaled; and where light of smooth normals
 // ends.
 #include "report/suite/sections.h"

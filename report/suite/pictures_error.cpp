@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Pictures compared with others: of the other accelerator, of another renderer, of more samples.
 #include "report/suite/sections.h"
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Pixels: sums, outliers, random numbers; and scenes that lack something.
 #include "report/suite/sections.h"
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Scattering at surfaces, by the functions that kernels share with the CPU.
 #include "report/suite/sections.h"
 

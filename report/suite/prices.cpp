@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The cost and worth of each level on scenes of an ordinary size, and the cost of kernel features in a scene that does
 // not need them.
 #include "report/suite/sections.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Scale and position: sizes of meshes, and surfaces of instances with unequally scaled axes. Positions and rays are in
 // scale_rays.cpp.
 #include "report/suite/sections.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Scale: lengths of directions, distances of hits, and denormals.
 #include "report/suite/sections.h"
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "report/suite/scenes.h"
 
 #include <cmath>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The parts from which cases make their scenes and rays.
 #pragma once
 

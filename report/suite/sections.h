@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Beginning of each section's file: the sections' catalogues, and what their files share.
 #pragma once
 

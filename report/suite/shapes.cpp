@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Triangle shape: thin, degenerate and huge. The order of hits is in shapes_order.cpp, rays in planes and along edges
 // are in shapes_planes.cpp.
 #include "report/suite/sections.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Triangles in the same place, or nearly: which of them is hit.
 #include "report/suite/sections.h"
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Points of surfaces and rays that leave them: cases F01 to F03, F05 and I10.
 #include "report/suite/sections.h"
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The suite of stiff and extreme cases: what runs, on which accelerators, in which order and how much of it, and the
 // claims that rest on it.
 #pragma once

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "report/suite/tracing.h"
 
 #include <algorithm>

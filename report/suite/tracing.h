@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Tracing the same rays on several configurations, timed side by side, and by negative controls.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // View factors with known closed forms, by every estimator.
 #include "report/suite/sections.h"
 

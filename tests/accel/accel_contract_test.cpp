@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // One body for every accelerator: the software one, the hardware one through each way of tracing, and the reference.
 // Long because it is the contract, row by row: one fact a test, in one place. docs/contract.md lists them.
 #include "engine/accel/world_bound.h"

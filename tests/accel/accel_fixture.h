@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // A fixture that runs a test over every accelerator: the software one, the hardware one through each way of tracing,
 // and the reference.
 #pragma once

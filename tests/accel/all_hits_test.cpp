@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // All hits of rays: as lists, compared with closest hits that each begin behind the one before; and one by one in
 // users' kernels.
 #include <twinray/queries.h>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Builds that a sync makes: which changes refit a top level and which rebuild it, how many share a batch, the orders
 // that keep neighbours together, of triangles and of rays, and what the driver is given.
 #include "engine/accel/batches.h"

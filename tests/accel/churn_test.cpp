@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Long histories of edits, checked by the float64 reference after every sync.
 #include "engine/core/context.h"
 #include "validation/reference/aimed_rays.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Meshes that are in device memory already: the same trees and hits as from the host, in each format, copied or in
 // place.
 #include "swtlas/tree.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Each call into Vulkan that can fail is made to fail once, for every accelerator: an Error comes out, nothing is left
 // half-changed, nothing leaks, and the same work succeeds afterwards. The validation layer is on and below the faults:
 // it sees a failed call as one never made, so whatever it says is our fault. One file, since all scenarios share the

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // An accelerator of each kind in a scene whose hits are known, for tests that let Vulkan fail under it.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Programs that leave out what a trace does not need: their hits are, bit for bit, those of the program that leaves out
 // nothing.
 #include "engine/accel/trace_desc.h"

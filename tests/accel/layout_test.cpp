@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Layouts and build qualities of SwTlas, and both rows of KernelTuning: the same hits, bit for bit.
 #include <twinray/queries.h>
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Work and memory that nobody needs are left out: by a sync, as its passes show, and of meshes, which are in memory
 // once, on the host and on the device, whoever reads them.
 #include "engine/accel/mesh_store.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Levels refined and certified: float64 decides on the hit that counts, from any distance; then which triangle is
 // hit, and in which order.
 #include "engine/accel/trace_desc.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Finds up to `most` hits of each ray, one after the other.
 #version 460
 #extension GL_GOOGLE_include_directive : require

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Work that is cut into many submissions gives what it gives in one.
 #include <twinray/analysis.h>
 #include <twinray/queries.h>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Features that accelerators have on a device and that traces need, which program serves while others are compiled, and
 // which accelerator is chosen.
 #include "engine/accel/trace_desc.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Rays in a fragment shader, which has no memory of a workgroup: compiled for both accelerators.
 #version 460
 #extension GL_GOOGLE_include_directive : require

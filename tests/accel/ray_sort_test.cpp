@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Traces in sorted order find what those in the given order find.
 #include "engine/accel/ray_sort.h"
 

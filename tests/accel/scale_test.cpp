@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Scenes of any size and place: a power of two changes nothing but t, and metres of UTM are hit to micrometres.
 #include "tests/accel/accel_fixture.h"
 #include "tests/scene/far_houses.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Computes surfaces in a user's kernel, for a batch of hits.
 #version 460
 #extension GL_GOOGLE_include_directive : require

@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Kernels that ask for a part of a surface have no code for the others: counts instructions of optimised SPIR-V.
 Usage: surface_parts_test.py GLSLANG_VALIDATOR FOLDER..., the folders that includes are looked for in."""
 import pathlib

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Surfaces over edits, wrong use, and the memory that they take; those of meshes that are in device memory with all
 // their arrays, and the host's work to build them.
 #include "report/faults/fault_injection.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Meshes with everything that surfaces may have, pushed into an accelerator that keeps it.
 #pragma once
 

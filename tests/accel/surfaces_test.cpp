@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Surfaces of hits, compared with float64 and with the same functions on the host, on both accelerators.
 #include "engine/accel/surface_tables.h"
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // sync() never waits, does nothing on a clean accelerator, and records into the caller's command buffer.
 #include <chrono>
 #include <cstdio>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // A kernel as a user writes it: its own closest and any hits.
 #version 460
 #extension GL_GOOGLE_include_directive : require

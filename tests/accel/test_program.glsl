@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The trace program of trace_program_test.cpp: boxes are spheres, and non-opaque hits count in stripes or, for custom
 // indices from 1000 on, at a smaller t.
 #include "twinray/glsl/program.h"

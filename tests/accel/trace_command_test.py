@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Runs `twinray trace` as a user does. Usage: trace_command_test.py TWINRAY"""
 import base64
 import json

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Boxes, filters and kernels of users: the same GLSL on every accelerator.
 #include "engine/accel/trace_desc.h"
 #include "validation/reference/aimed_rays.h"

@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Counts the instructions of trace.comp, its specialisation constants frozen and optimised by spirv-opt: each feature that
 is left out must make it smaller, and the leanest variants may not outgrow instruction_counts.txt, which --record writes
 anew. Usage: variants_test.py FEATURES_H COUNTS [--record] BACKEND=MODULE.spv..., BACKEND being sw or hw."""

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Vertices that move: how the trees change, and when a sync rebuilds them.
 #include "validation/reference/aimed_rays.h"
 #include "tests/accel/accel_fixture.h"

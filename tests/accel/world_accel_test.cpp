@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Scenes ten thousand kilometres from 0: details that float32 cannot tell apart there, and hits in float64.
 #include <twinray/world.h>
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Estimates from rays that were counted or weighed, with their intervals; and the points that rays start from.
 #include "engine/analysis/estimate.h"
 

@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Runs `twinray illumination`, `centroid` and `visible`. Usage: illumination_command_test.py TWINRAY"""
 import csv
 import pathlib

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Grids of rays: the light that they bring, and the centroid of what they meet.
 #include <twinray/analysis.h>
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Analyses of an accelerator as it is, after the device has moved its contents, compared with the scene that it has
 // become.
 #include <twinray/queries.h>

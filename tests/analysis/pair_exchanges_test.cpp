@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include <twinray/analysis.h>
 
 #include <cmath>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Pairs of faces: their exchanges by contours, what may come between them, and the plan of how each is estimated.
 #include <gtest/gtest.h>
 

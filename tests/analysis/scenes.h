@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Scenes for which tests know what is seen, also in closed form, and analyses by an accelerator.
 #pragma once
 

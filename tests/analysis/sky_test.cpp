@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The sky and the sun, seen from faces and over rasters of heights.
 #include <twinray/analysis.h>
 

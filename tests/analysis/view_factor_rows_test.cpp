@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Rows of view factors: made reciprocal and closed, kept in a file, and the light between their faces.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // View factors by hits of rays, and the coverage of their intervals.
 #include <cmath>
 

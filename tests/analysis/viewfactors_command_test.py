@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Runs `twinray viewfactors` as a user does. Usage: viewfactors_command_test.py TWINRAY"""
 import ast
 import csv

@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Runs `twinray bench` and the scripts that keep its history, as a user does. Usage: bench_command_test.py TWINRAY FOLDER,
 the latter with the scripts."""
 import pathlib

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Rays that a device makes for a scene, and the backends that must find the same hits for them.
 #include "bench/backend.h"
 

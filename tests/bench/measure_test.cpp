@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Backends are measured in turns, over as many tiles of the rays as the time allows; the figures, the table that shows
 // them, and the hash of the hits that they belong to.
 #include <gtest/gtest.h>

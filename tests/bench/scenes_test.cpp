@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The scenes of the bench and the rays through them.
 #include <gtest/gtest.h>
 

@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """llvmpipe with vectors of 128, 256 and 512 bits, and kernels of both rows of KernelTuning: the same hits to the last
 bit.
 Usage: vector_widths_test.py TWINRAY"""

@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Which accelerator commands take and what they say of it; --level and --strict. Usage: accel_option_test.py TWINRAY PATH_TRACER"""
 import pathlib
 import struct

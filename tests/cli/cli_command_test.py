@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """What `twinray` says of itself, without a device. Usage: cli_command_test.py TWINRAY"""
 import functools
 import pathlib

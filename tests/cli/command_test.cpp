@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Command lines: what is taken and refused, and what help, man pages and shell completion say about them.
 // cli_command_test.py tests what shells do with the scripts.
 #include <gtest/gtest.h>

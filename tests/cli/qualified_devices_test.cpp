@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "cli/qualified_devices.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """The hits of SwTlas are the same bytes whatever a CPU driver computes with. Usage: same_bytes_test.py TWINRAY
 
 Vectors of 128, 256 and 512 bits where the driver takes any width (lavapipe below Mesa 26), and one thread or two.

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // A command with a value of each kind.
 #pragma once
 

@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Parts of a command's work: --shard, --merge, and ranks of mpirun. Usage: shards_command_test.py TWINRAY [MPIRUN],
 without MPIRUN in a build without MPI."""
 import os

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Instances whose boxes overlap, against brute force over boxes that the test knows by itself.
 #include <twinray/queries.h>
 

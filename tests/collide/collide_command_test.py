@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Runs `twinray collide` as a user does. Usage: collide_command_test.py TWINRAY"""
 import functools
 import pathlib

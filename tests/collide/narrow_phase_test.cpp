@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Contacts of triangles by the GPU, compared with the exact class of every pair and with known counts.
 #include <twinray/queries.h>
 

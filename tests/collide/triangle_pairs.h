@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Pairs of triangles for the tests of collisions.
 #pragma once
 

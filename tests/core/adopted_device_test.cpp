@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // A device that the host made: both accelerators trace on it, and submissions wait on a timeline of the host. Buffers
 // in the host's memory: tests/install/host uses an allocator of its own; this one fails and breaks promises.
 #include <atomic>

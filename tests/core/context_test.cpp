@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Contexts, their buffers and passes, and memory that two of them share.
 #include "engine/core/context.h"
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Failures of Vulkan without an accelerator: see tests/accel/fault_test.cpp for those with one. Commands that become
 // several submissions.
 #include <chrono>

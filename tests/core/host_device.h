@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // A host that made its own instance and device through volk: both live in one program, because the library defines no
 // vk* symbol of its own.
 #pragma once

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Needs of kernels: every SPIR-V module of the build declares no more than the table of requirements says of its parts
 // of twinray, so that no device is asked for what a scene does not need.
 #include <gtest/gtest.h>

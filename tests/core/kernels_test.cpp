@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Kernels: equal ones share a pipeline, and none gets an address that cannot be read. Every VulkanTest checks that for
 // each dispatch, by a validation message; here the message is seen to come.
 #include "engine/core/pipelines.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Loops over tuples at compile time, and over indices on threads.
 #include <twinray/sets.h>
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #version 460
 layout(local_size_x = 64) in;
 void main() {}

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Features that each system implements in its own way: starting programs, folders, memory; and the pipelines that are
 // kept in a folder.
 #include "engine/core/platform.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Contexts in forked processes, calls whose caller wants them to end, and a full disk, imitated by the limit on the
 // size of files.
 #include <sys/wait.h>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "engine/core/radix_sort.h"
 
 #include <numeric>

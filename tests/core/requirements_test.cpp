@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Requirements as listed before a device is created, the choice of a device, and what its info says; drivers that are
 // known by name: the row of KernelTuning that each gets, and the layers that labels crash.
 #include <gtest/gtest.h>

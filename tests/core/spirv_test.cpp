@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // SPIR-V with known constants, word by word, and branches that they decide, as text.
 // One file of more than 400 lines, since all tests share the builders of modules below.
 #include <gtest/gtest.h>

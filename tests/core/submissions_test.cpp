@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Submissions: their order, how many items each gets, and what the error of a lost device says.
 #include "engine/core/device_fault.h"
 #include "engine/core/commands.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include <twinray/geometry.h>
 
 #include <gtest/gtest.h>

@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Runs what the README and the pages of docs/ show, or finds in its fence why not.
 Usage: code_blocks.py --programs FOLDER --package FOLDER [--root FOLDER] [PAGE...]
   --programs   where twinray and path_tracer are        --package      where the Python package is

@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """code_blocks.py sees what it must: each of these pages has one fault, but for the last.
 Usage: code_blocks_test.py; exits with 77 where markdown-it-py is not installed."""
 

@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """A figure of lavapipe names the Mesa that gave it. Usage: driver_versions_test.py SOURCE_DIR
 
 lavapipe changes much from one Mesa to the next: README.md and the pages of docs/ say of each measured figure which one.

@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """The files that pages take for given, as small as they can be: each page finds them in its folder.
 
 scene.glb    a room with two blocks that cut into each other, a lamp and a camera; all of it closed

@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Names that pages give in code font exist: commands and options, members of types, and what tables of calls of
 other libraries have in the column of twinray. Commands of blocks that are not run are looked at, too.
 Usage: names_of_pages.py --programs FOLDER [PAGE...]"""

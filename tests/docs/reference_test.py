@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Fails for each public type, function and macro without documentation, and names it: of C++ and GLSL by Doxygen's XML
 of the headers, of Python by docstrings.
 Usage: reference_test.py ROOT; exits with 77 where Doxygen is not installed."""

@@ -1,5 +1,4 @@
 #!/usr/bin/env bash
-# SPDX-License-Identifier: MIT
 # Builds the documentation site, without a warning. If the tools for it are not installed, the test is skipped (status
 # 77), unless TWINRAY_REQUIRE names docs.
 # Usage: site_test.sh TWINRAY

@@ -1,5 +1,4 @@
 #!/usr/bin/env bash
-# SPDX-License-Identifier: MIT
 # Runs a program with the documentation's Python if tools/lib.sh has installed it; otherwise skips it (status 77),
 # unless TWINRAY_REQUIRE names docs.
 # Usage: with_docs_python.sh FILE [ARGUMENT]...

@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """The code around excerpts on pages, by their language and by the name in their fence. BLOCK stands for the excerpt,
 and INCLUDES, where it is there, for the lines of the excerpt that include."""
 

@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """What exporters.py reads of Blender: a turned and scaled body by all of its exporters, and the body's triangles and
 hits by Blender itself, in blender.npz. Run by Blender's Python (bpy) in the folder that takes the files."""
 

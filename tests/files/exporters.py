@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """Files made by the tools that people have, as twinray reads them: as many triangles as the tool made, the same area,
 and hits of rays from the middle where the tool's own rays, or Open3D's on the tool's triangles, hit. Run by
 run.sh.

@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """Files that a twinray may refuse, the remedy that it or docs/troubleshooting.md names, and whether twinray reads what
 comes of it: the same triangles, and a picture like that of the file before it was compressed. Run by run.sh.
 

@@ -1,5 +1,4 @@
 #!/usr/bin/env bash
-# SPDX-License-Identifier: MIT
 # Shows how twinray reads what other tools write (exporters.py: triangles, areas, hits), or that each remedy which a
 # message or a page of twinray names makes a refused file readable (remedies.py).
 #   tests/files/run.sh exporters|remedies FOLDER [BIN]    BIN: folder of the programs, build/release/bin if not given
@@ -7,7 +6,7 @@
 # ones. No other test needs them, and CI runs none.
 set -euo pipefail
 if (($# < 2)) || [[ ! $1 =~ ^(exporters|remedies)$ ]]; then
-    sed -n '5s/^# *//p' "${BASH_SOURCE[0]}" >&2
+    sed -n '4s/^# *//p' "${BASH_SOURCE[0]}" >&2
     exit 2
 fi
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)

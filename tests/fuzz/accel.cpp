@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Histories of calls of AbstractAccel on ReferenceAccel, which shares everything but the trees with the others.
 #include <algorithm>
 #include <cmath>

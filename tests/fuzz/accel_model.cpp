@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "tests/fuzz/accel_model.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // An accelerator after any history of calls, as docs/contract.md describes it, in a few plain arrays: which calls are
 // refused, what is where, and what rays meet; and arguments of calls, decoded from the bytes of a fuzzer.
 #pragma once

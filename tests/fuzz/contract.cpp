@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "tests/fuzz/targets.h"
 
 #include <unistd.h>

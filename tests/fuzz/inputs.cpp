@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Smaller inputs of programs: command lines, tables and rays, events, JSON, and encodings of files.
 #include <sstream>
 #include <string_view>

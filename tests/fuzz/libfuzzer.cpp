@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // One target, TWINRAY_FUZZ_TARGET, as libFuzzer calls it.
 #include <cstddef>
 

@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Writes the inputs that fuzzing begins with, a folder for each target: make_seeds.py FOLDER
 
 They are small files of $TWINRAY_ASSETS, of ../shared/assets and ../shared/cases (whose make.py write them), of

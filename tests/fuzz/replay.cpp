@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Runs inputs through a target without a fuzzer, so that any compiler's tests hold what fuzzing has found.
 //   fuzz_replay TARGET MUTATIONS FILE|FOLDER...    each file, and so many copies of it with a few bytes changed
 // Ends by a signal if a target's contract is broken, and with exit status 1 if an input took too long or too much

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Files of twinray's own with checksums: as they are, and with corrected checksums, since a fuzzer does not guess them.
 #include <cstring>
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Files of scenes, pictures of textures, environment maps, and what users of them rely on.
 #include <algorithm>
 #include <string_view>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The targets that are fuzzed, the contract of their readers, and files made of bytes. Each function gets any bytes at
 // all and must return: the code it calls either takes them or throws one Error. Another exception, a message of a
 // sanitizer, a hang or gigabytes of memory is a finding; see docs/fuzzing.md.

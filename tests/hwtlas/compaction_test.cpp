@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Bottom levels move into less memory. Not every driver asks for more than it needs (lavapipe does not); here it seems
 // to.
 #include "engine/core/error.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The ways of tracing of HwTlas, updates and rebuilds of the driver's structure, and launches of its pipeline. Ids
 // against the float64 reference: whatever is reordered, replaced or left out, the user's numbering comes back.
 #include <twinray/tlas.h>

@@ -1,5 +1,4 @@
 #!/usr/bin/env bash
-# SPDX-License-Identifier: MIT
 # Builds the host by plain compiler commands with what pkg-config says of an installed twinray.
 #   build_with_pkg_config.sh CXX PREFIX HOST VOLK OUTPUT     VOLK: folder of volk.c
 set -euo pipefail

@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Runs `twinray distance` as a user does. Usage: distance_command_test.py TWINRAY"""
 import functools
 import pathlib

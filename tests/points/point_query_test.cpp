@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The nearest triangles of points, by the GPU, compared with all triangles one by one.
 #include <twinray/queries.h>
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Distances and winding numbers by other methods than the engine's, over all triangles.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Inside and outside, compared with sums of solid angles and known answers.
 #include <twinray/queries.h>
 

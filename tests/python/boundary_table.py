@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """Shares of 10^4 rays that hit where a ray begins or ends exactly on a triangle, or meets a border.
 
 Run it where open3d, trimesh and embreex are installed: python tests/python/boundary_table.py. Coordinates are whole

@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """What all tests of the Python package share."""
 
 import os

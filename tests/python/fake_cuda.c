@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The part of CUDA's driver interface that twinray calls, for one device whose memory is the host's: exported memory is
 // mapped there. Structs are as in NVIDIA's documentation of the driver interface. Mesa's CPU driver begins exported
 // memory with a header: its size, and where the exported part begins.

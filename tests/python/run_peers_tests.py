@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Runs the own tests of Open3D and trimesh with twinray in place of their ray tracing.
 
     run_peers_tests.py open3d FILE [ARGUMENT OF PYTEST...]

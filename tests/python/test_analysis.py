@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """What rays tell of scenes, against what is known of them."""
 
 import re

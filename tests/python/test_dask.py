@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """twinray.dask: the same bits for any chunks, workers and restarts."""
 
 import os

@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """Arrays in the device's memory. CUDA is played by fake_cuda.c, which maps what the driver exports."""
 
 import ctypes

@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """Ten thousand calls that nobody should make, while another thread moves and removes: each gives a value, or one
 exception that names the argument."""
 

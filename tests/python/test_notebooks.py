@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """The notebooks of docs/notebooks run from nothing, and show pictures; in the repository they have no outputs. A recipe
 of a page gives what another program does."""
 

@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """Open3D and PyVista, where they are installed: the same questions to Open3D have answers of the same names, shapes,
 dtypes and values, and meshes of both are taken as they are. Open3D's wheel has 400 MB, which CI goes without."""
 

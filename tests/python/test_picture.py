@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """Pictures of scenes, rays and hits: what must be seen where."""
 
 import struct

@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """Scenes in processes that a fork made, in pickles and copies, and calls that Ctrl-C ends."""
 
 import copy

@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """twinray.Scene: names, shapes and dtypes of Open3D's RaycastingScene, and right answers.
 
 One file of more than 400 lines, since it is about one class.

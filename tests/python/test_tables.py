@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """Peers: rows of docs/how-to/from_trimesh_and_open3d.md that say where answers differ, ours, and theirs where they are
 installed; what users of peers have reported, with the right answer, in tests with the names of the public threads."""
 

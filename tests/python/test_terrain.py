@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """twinray.terrain: exact horizons, rays against a scene of all, the same bits for any tiles."""
 
 import warnings

@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """twinray.trimesh.RayMeshIntersector in place of trimesh's own."""
 
 import copy

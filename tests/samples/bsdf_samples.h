@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // BSDFs, their samples and their integrals.
 #pragma once
 

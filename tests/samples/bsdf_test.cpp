@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // BSDFs: sampling and evaluation agree; and under light of the same radiance from everywhere, surfaces never return
 // more than they get.
 #include <gtest/gtest.h>

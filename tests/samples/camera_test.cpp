@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Cameras: what their rays see, how lenses and filters spread them, and how scenes are framed, exposed and lit; and the
 // moment, view and file of each picture of a sequence.
 #include <gtest/gtest.h>

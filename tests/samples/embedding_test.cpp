@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The renderer of tutorial 6, for which twinray traces shadows: the pictures that its users look at.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Pictures with a known value, and beside those of Mitsuba 3 of the same triangles and materials
 // (bench/peers/renderers.py).
 #include <fstream>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Films, and the order of the samples that fill them: their devices, and the effect of adaptive sampling on pictures.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Layers and volumes of materials as kernels render them, and light through smooth walls without thickness, which
 // shadow rays pass as well.
 #include "tests/samples/bsdf_samples.h"

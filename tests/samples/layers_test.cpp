@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Layers of a BSDF: coat, sheen, grain, a colored interface and thin walls; and how they use a material's factors.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Kinds of materials, by their needs of kernels, and the lights without size that materials stop.
 #include "renderer/material_kinds.h"
 

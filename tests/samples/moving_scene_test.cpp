@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // A moved scene equals a scene that was made in that place.
 #include "renderer/moving_scene.h"
 

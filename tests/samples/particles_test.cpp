@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Particles: the kernel moves and colours them as its serial reference does, and the host never waits for a frame.
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Runs `path_tracer` as a user does. Usage: path_tracer_command_test.py PATH_TRACER"""
 import base64
 import json

@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """`path_tracer --denoise` with the library, without it and with another one in its place. It ends with 77, skipped,
 after the last two if the library is not found. Usage: path_tracer_denoise_test.py PATH_TRACER"""
 import os

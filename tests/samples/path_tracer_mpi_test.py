@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Runs `path_tracer` under mpirun. Usage: path_tracer_mpi_test.py PATH_TRACER [MPIRUN]; skipped (77) without MPIRUN"""
 import os
 import pathlib

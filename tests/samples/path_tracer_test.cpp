@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Pictures, what they must and must not depend on, and the films behind them.
 #include <cstring>
 

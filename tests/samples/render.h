@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Small renders for tests.
 #pragma once
 

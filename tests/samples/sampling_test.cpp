@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Random numbers, and lights that are chosen by them: by tables, environment maps and light trees.
 #include <gtest/gtest.h>
 

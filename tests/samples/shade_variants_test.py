@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Counts the instructions of the path tracer's shade.comp, its specialisation constants frozen and optimised by spirv-opt:
 each feature that a scene leaves out must make the kernel smaller, and the plainest may not outgrow what is known of it.
 Panes are a matter of shadow.comp alone.

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Colours, second texture coordinates, normals and tangents of vertices as kernels load them.
 #include <limits>
 

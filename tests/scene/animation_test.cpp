@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Keyframes, poses and deformed vertices against closed forms.
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Vertices moved on the device, compared with those moved on the host, and accelerators that take them over.
 #include "engine/scene/rig.h"
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Houses of 10 m in metres of UTM, with centimetres as surveyors give them.
 #pragma once
 

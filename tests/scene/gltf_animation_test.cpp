@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Animations, skins, morph targets and material variants of glTF files, and their faults.
 #include "engine/scene/rig.h"
 #include "tests/scene/gltf_builder.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Small glTF files for tests: they are valid by default, and `root` changes them.
 #pragma once
 

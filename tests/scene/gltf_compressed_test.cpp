@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Compressed glTF, whose streams are made by the libraries that also decode them; and .glb files that twinray writes.
 #include <gtest/gtest.h>
 

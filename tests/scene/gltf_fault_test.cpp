@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Every fault of a glTF file is one clear Error that names the file, the object and the limit.
 #include "tests/scene/gltf_builder.h"
 

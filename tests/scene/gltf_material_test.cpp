@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // One file of more than 400 lines, since all tests of materials use the builders below.
 #include "tests/scene/gltf_builder.h"
 #include "twinray/glsl/vector_math.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Placement: the node tree, instancing, cameras and lights. Placements that lose one direction show the rest, by
 // vertices that are flat themselves.
 #include "tests/scene/gltf_builder.h"

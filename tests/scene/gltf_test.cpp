@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The geometry of glTF files; gltf_material_test.cpp and gltf_fault_test.cpp test the rest.
 #include "tests/scene/gltf_builder.h"
 

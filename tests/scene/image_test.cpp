@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Pictures in PNG, JPEG, Radiance and OpenEXR; and in WebP and AVIF, made by the libraries that also decode them.
 #include <fstream>
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Parts that importers share: words of text files, and polygons cut into triangles; and files of type .stl.
 #include "engine/scene/importers/faces.h"
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Scenes from files that a test writes; PNG and gzip files as strings.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Files with coordinates that float32 cannot hold: the origins that are chosen for them, and .ply and glTF files.
 #include "engine/scene/local_origin.h"
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // A set of three types: kernels read what the host wrote, and both find the same elements by the same keys.
 #include <twinray/sets.h>
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Files of type .obj: shapes, and the materials of their .mtl files.
 #include "tests/scene/load_text.h"
 #include "twinray/glsl/vector_math.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Meshes, shapes and scenes in memory; and all scene files on this machine, each of which loads or gives one Error that
 // names it.
 #include <twinray/scene.h>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Looks elements of sets up by key, and runs unrolled loops over the types of one.
 #version 460
 #extension GL_GOOGLE_include_directive : require

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Types of the test's sets, and the functions called on them, alike on host and GPU.
 #ifndef TWINRAY_TESTS_SET_KERNEL_H
 #define TWINRAY_TESTS_SET_KERNEL_H

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // set_kernel.h for C++, with the classes of its lists.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Shifts all items of a queue, and accesses some that do not exist.
 #version 460
 #extension GL_GOOGLE_include_directive : require

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Structures of arrays: host and kernels read and write the same items, and items out of range stay as they were.
 #include <twinray/sets.h>
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // A folder that is gone after the test.
 #pragma once
 

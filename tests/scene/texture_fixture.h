@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // A store of textures, as images or in buffers, and a kernel that reads them.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Texels of every format and number of channels, and their mipmaps, as kernels read them.
 #include "engine/scene/images.h"
 #include "tests/scene/temp_dir.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Asks a store for sizes, texels, and colours with and without mipmaps.
 #version 460
 #extension GL_GOOGLE_include_directive : require

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Arguments of texture_kernel.comp.
 #ifndef TWINRAY_TESTS_TEXTURE_KERNEL_H
 #define TWINRAY_TESTS_TEXTURE_KERNEL_H

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Textures as images and in buffers: kernels read the same of both, and no update leaks.
 #include <twinray/scene.h>
 

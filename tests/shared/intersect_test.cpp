@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Intersection tests of shaders, run as C++, and the arithmetic of float32 without rounding that they rest on.
 #include <gtest/gtest.h>
 

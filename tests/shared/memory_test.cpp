@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Memory as kernels read and write it, in words: positions and indices, boxes, and numbers of 16 bits. Shares of work
 // for groups, and of groups for the threads of a CPU.
 #include <gtest/gtest.h>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The test without a distance answers as the test with one does, however near to the ends of the ray. The side of a
 // plane, and with it the sign of t, compared with rational arithmetic.
 #include <gtest/gtest.h>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "twinray/glsl/cpp_spawn.h"
 
 #include <gtest/gtest.h>

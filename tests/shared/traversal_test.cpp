@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Steps of a traversal: the children of a node that a ray enters, the entries on its stack, and leaves of two
 // triangles.
 #include <gtest/gtest.h>

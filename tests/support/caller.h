@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // A host with a command buffer and a timeline of its own on a context's device.
 #pragma once
 

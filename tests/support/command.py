@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """A program as a user runs it: the one that a test's first argument names, in a folder of the test's own."""
 import json
 import os

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Vulkan devices for tests: validation is on (core and synchronisation) and any message fails the test.
 #pragma once
 

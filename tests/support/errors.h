@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Errors that a test expects, and what they say; with the headers that nearly all tests use.
 #pragma once
 

@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """What is left of a SPIR-V module when its specialisation constants are known."""
 import pathlib
 import struct

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // LeakSanitizer names a leak's module only while that is loaded. The validation layer leaks, so it stays loaded and is
 // named here; everything else is reported.
 #include <dlfcn.h>

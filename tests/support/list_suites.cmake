@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 # After a program of GoogleTest is built: writes FILE, by which ctest runs each suite of it in one process. A test of it
 # alone is run by the program, with --gtest_filter.
 #   cmake -D PROGRAM=FILE [-D EMULATOR=COMMAND] -D LABEL=NAME -D QUICK=REGEX -D FULL=REGEX -D RESULTS=FOLDER -D FILE=FILE

@@ -1,5 +1,4 @@
 #!/usr/bin/env bash
-# SPDX-License-Identifier: MIT
 # Runs a command that needs a Vulkan device; without one it is skipped (status 77) unless TWINRAY_REQUIRE names vulkan.
 #   needs_device.sh TWINRAY COMMAND [ARGUMENT...]
 set -euo pipefail

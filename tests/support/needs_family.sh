@@ -1,5 +1,4 @@
 #!/usr/bin/env bash
-# SPDX-License-Identifier: MIT
 # Runs a command that compiles for an absent GPU. It is skipped (status 77) if this machine's Mesa cannot do so, or is
 # another release than the one with the recorded limits; but if TWINRAY_REQUIRE names vulkan, RADV has to be there.
 #   needs_family.sh FAMILY COMMAND [ARGUMENT...]

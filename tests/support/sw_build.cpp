@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "tests/support/sw_build.h"
 #include "swtlas/plan.h"
 #include "swtlas/triangle_pairs.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Parts that tests of SwTlas' builds and refits share: each layout with a build quality, and the rules of built
 // trees; a tree of the largest height, and meshes whose vertices are there twice.
 #pragma once

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Trees that SwTlas builds: they are sound, equal to those of the CPU reference, and within the height limit.
 #include "swtlas/plan.h"
 #include "tests/support/sw_build.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Plans of builds: where their memory lies, and how shares of a batch make room for it. The world boxes of instances,
 // by the CPU reference, with which tests of builds compare those of the device.
 #include <algorithm>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Refitted trees; costs of trees by quality of the build, and end_point_overlap() against its definition.
 #include <glm/gtc/matrix_transform.hpp>
 #include "validation/cpu_reference/reference.h"

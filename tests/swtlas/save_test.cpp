@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // A built SwTlas that is saved and loaded again; and files with trees of the largest depth, which no builder makes.
 #include "engine/core/files.h"
 #include "swtlas/saved.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The file format of a saved SwTlas, without a device: which files are accepted, which are refused, and how; and
 // records of trees at the ends of their range.
 #include "swtlas/saved.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Pairs of triangles: which ones share a leaf, and what its record says of them.
 #include "swtlas/triangle_pairs.h"
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Validation as a host uses it, and the reference on a device: the arithmetic that robust levels rest on, and
 // ReferenceAccel's own behaviour; tests/accel/accel_contract_test.cpp tests all that it shares with the accelerators.
 #include <gtest/gtest.h>

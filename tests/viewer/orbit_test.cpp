@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Parts of the viewer that need no device: cameras that turn, keys and events.
 #include "viewer/state.h"
 

@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Runs `twinray view` as a user does. Usage: view_command_test.py TWINRAY [--record]; the latter writes the stored
 pictures."""
 import functools

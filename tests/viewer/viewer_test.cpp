@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The viewer without its window: the effects of events, and the contents of its frames.
 #include "viewer/viewer.h"
 

@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Runs the programs for Windows by Wine as a user does: names with letters beyond ASCII, with spaces and of more than
 260 letters, exit statuses, Ctrl-C, a window.
 Usage: as_users_run_it.py WINDOWS_BIN SCREEN PICTURE; SCREEN is the file that Xvfb -fbdir keeps its screen in, and

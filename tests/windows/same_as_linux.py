@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Compares what programs for Windows write with what those for Linux write, on the same driver.
 Usage: same_as_linux.py LINUX_BIN WINDOWS_BIN [--quick]; folders with the programs. Wine runs those for Windows.
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Saves an accelerator, or loads one and prints a hash of its hits, so that programs for two systems read each other's
 // files.
 //   saved_accel save|load FILE

@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Measures programs for Windows under Wine against those for Linux, by turns: rays a second, and the time that a
 program takes to its first hit. Run it on a machine that does nothing else.
 Usage: speed.py LINUX_BIN WINDOWS_BIN"""

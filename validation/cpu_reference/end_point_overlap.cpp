@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "validation/cpu_reference/reference.h"
 
 #include <numeric>

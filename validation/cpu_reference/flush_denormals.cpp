@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "validation/cpu_reference/flush_denormals.h"
 
 #if defined(__SSE2__)

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Denormal numbers, as treated by devices that flush them.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // CPU references of the build kernels, one function per stage by the same name. They share the kernels' arithmetic
 // (shaders/shared) but not their algorithms, so that a test can compare every stage bit for bit.
 #pragma once

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "validation/cpu_reference/reference_scene.h"
 
 #include "engine/accel/trace_desc.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The software accelerator on the host: built and traversed serially, to compare kernels with and to step through.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "validation/exact/exact_reference.h"
 
 #include "validation/reference/error_bounds.h"

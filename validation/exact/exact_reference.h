@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Rational arithmetic, in which sums, products and quotients of floats are exact: a line against a triangle, and the
 // closest hit of a scene, the last word where float64 cannot tell.
 #pragma once

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "validation/leaks/closed_mesh.h"
 
 #include "engine/core/error.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Closed meshes: a ray from inside one crosses it an odd number of times, whatever its shape, so that no reference
 // needs to find the hits. Rays from inside, aimed where intersection tests break, and what their crossings say.
 #pragma once

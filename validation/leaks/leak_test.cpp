@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "validation/leaks/leak_test.h"
 
 #include <fstream>

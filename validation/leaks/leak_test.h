@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The findings of a leak test, as a file from which a later run goes on; and the count of crossings on the device, of
 // which it is made.
 #pragma once

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // One measurement as every report keeps it, whatever was measured: hits, view factors, images, collisions.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "validation/records/recorder.h"
 
 #include <algorithm>

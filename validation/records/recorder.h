@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Writes the records of one run, and describes the device and how busy the machine was meanwhile.
 #pragma once
 

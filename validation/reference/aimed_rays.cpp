@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "validation/reference/aimed_rays.h"
 
 #include "engine/core/interruption.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Rays for verification and measurement: a camera's, spread over a scene, or aimed where intersection tests break; and
 // the random numbers that they are made of.
 #pragma once

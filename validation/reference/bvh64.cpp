@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "validation/reference/bvh64.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // A bounding volume hierarchy over float64 boxes, for the reference: plain, binary, built once.
 //
 // Why a search through it finds exactly what testing every item finds: the slab test below uses only

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "validation/reference/classify.h"
 
 #include "engine/core/error.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Checks what the accelerators answered, ray by ray, against the float64 reference. An answer is accepted if it is the
 // exact answer to some ray within float32 rounding of the given one (see ErrorBounds); a leak is called only where no
 // such ray exists (see Coverage), so a miss at a shared edge of a closed mesh is a leak and not an excuse.

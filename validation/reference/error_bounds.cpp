@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "validation/reference/error_bounds.h"
 
 #include <map>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Bounds of what a kernel of given precision can tell about one ray and one triangle, and whether rounding can let a
 // ray slip between the triangles of one instance.
 #pragma once

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "validation/reference/float_probe.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Probes a device's float arithmetic. Vulkan promises little (SPIR-V environment, "Precision and Operation of SPIR-V
 // Instructions"), and the robust levels rest on more: that `precise` products and sums are correctly rounded and not
 // contracted.

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "validation/reference/geometry64.h"
 
 #include "engine/core/error.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Ray against triangle and distances of points in float64, and one mesh as the reference holds it: the active triangles
 // and a hierarchy over them, in object space.
 #pragma once

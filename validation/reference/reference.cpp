@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The public interface of the other files in this folder.
 
 #include <numeric>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "engine/accel/trace_desc.h"
 #include "validation/reference/reference_accel.h"
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The reference behind AbstractAccel.
 #pragma once
 

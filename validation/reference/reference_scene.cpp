@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "validation/reference/reference_scene.h"
 
 #include <tuple>

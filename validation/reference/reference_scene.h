@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The reference: closest and any hits of a scene in float64 on the CPU, independent of both accelerators.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "validation/verify/comparison.h"
 
 #include <iomanip>

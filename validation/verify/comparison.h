@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Both accelerators on one scene, compared with the reference, a set of rays at a time; the result as text and records.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // A scene whose faces have colours, as a camera sees it, with points and lines.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The surroundings of a picture: a title above, the meaning of colours beside; and pictures of values alone: of a
 // sparse matrix, of a plane.
 #pragma once

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Pictures in memory, and drawing in them: rectangles, other pictures, text.
 #pragma once
 

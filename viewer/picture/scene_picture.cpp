@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "viewer/picture/scene_picture.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Shows the scene in colours with its title and legend, as a picture or as a scene; also rays up to their hits, as
 // marks.
 #pragma once

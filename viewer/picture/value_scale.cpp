@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "viewer/picture/value_scale.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Colours for values, and from values to places along a colour bar: pure functions.
 #pragma once
 

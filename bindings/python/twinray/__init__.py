@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """Watertight ray tracing, distances and inside tests for NumPy, on any Vulkan GPU or CPU.
 
 >>> import numpy as np

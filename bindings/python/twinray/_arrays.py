@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """Converts arguments to NumPy arrays of one dtype, or raises an exception that names the argument."""
 
 from __future__ import annotations

@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 # The extension module is the package's own; what users call is annotated where it is defined.
 from typing import Any
 

@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """Float64 coordinates for a device that computes in float32: those far from 0 get a nearer origin."""
 
 from __future__ import annotations

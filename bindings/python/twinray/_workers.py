@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """Scenes that are described once and built once in each process that is asked for a part of a result."""
 
 from __future__ import annotations

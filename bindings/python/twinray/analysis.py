@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """Analyses of scenes: visibility, view factors, light, centroids, collisions."""
 
 from __future__ import annotations

@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """Queries of scenes over arrays of Dask and xarray, on any number of workers: extra ``twinray[dask]``.
 
 A `SceneSpec` describes a scene once; each worker builds it when the first chunk comes. Results are lazy, and their bits

@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """Arrays in the memory of a scene's device, which NumPy, PyTorch and CuPy access without a copy.
 
 Memory exported by Vulkan is imported into CUDA with CUDA's driver interface, which comes with NVIDIA's driver.

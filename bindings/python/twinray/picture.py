@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """Pictures of scenes, rays and hits, rendered with the scene's own rays; notebooks display them.
 
 The window of the command ``twinray view`` shows a scene through a temporary file.

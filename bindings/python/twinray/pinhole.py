@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """Rays of pinhole cameras, in Open3D's convention."""
 
 from __future__ import annotations

@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """Scenes of triangle meshes, with the names, shapes and dtypes of Open3D's ``RaycastingScene``.
 
 It is one file because it is one class; half of it are docstrings.

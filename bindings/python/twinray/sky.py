@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """Sky subdivisions and sensor files of Radiance."""
 
 from __future__ import annotations

@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """Sky and sun of rasters of heights, tile by tile, so that they need not fit into memory: extra ``twinray[dask]``.
 
 A raster is a surface of triangles between the middles of cells; cells without a height (NaN) are holes in it. Each tile

@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """trimesh's ray interface: ``twinray.trimesh.use()``, or ``mesh.ray = twinray.trimesh.RayMeshIntersector(mesh)``."""
 
 from __future__ import annotations

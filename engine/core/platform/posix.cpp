@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Linux, and the parts that it shares with other systems of POSIX.
 #include <dlfcn.h>
 #include <fcntl.h>

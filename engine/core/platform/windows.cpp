@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Windows 10 and later.
 #define NOMINMAX
 #define WIN32_LEAN_AND_MEAN

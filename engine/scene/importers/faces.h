@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Makes triangles of the faces of a file: cuts polygons, and merges equal vertices.
 #pragma once
 

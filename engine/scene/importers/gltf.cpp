@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Turns a glTF file into a Scene: here its meshes by the shape that skins and morph targets give them; each other step
 // has a file of its own.
 #include <set>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Checks the JSON before tinygltf sees it: extensions, and members of a wrong type, which tinygltf ignores silently and
 // a scene would then lack.
 #include <set>

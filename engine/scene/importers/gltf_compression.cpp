@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // EXT_meshopt_compression and KHR_meshopt_compression: buffer views that libmeshoptimizer decodes.
 // KHR_draco_mesh_compression: primitives whose indices and attributes libdraco decodes.
 #include <cstring>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "engine/scene/importers/gltf_file.h"
 
 #include "engine/core/platform.h"

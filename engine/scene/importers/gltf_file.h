@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // An open glTF file: container, JSON and buffers, before anything is made from them.
 //
 // tinygltf turns the JSON into structs and does no more. The bytes of buffers and images are read here, because

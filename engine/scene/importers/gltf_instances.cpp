@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Reads the objects that nodes carry: instances of meshes, cameras and lights.
 #include <numbers>
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The outer layers of a glTF file: GLB container and JSON, checked before tinygltf sees them.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The parts of a glTF file: meshes, their materials with variants, the node hierarchy, flattened, with the objects that
 // it carries, and the data that move them: morph targets and weights, skins, animations.
 #pragma once

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The readers behind load_scene(), which checks and completes their scenes: triangles without a material have the index
 // after the last one. `origin`: the argument of load_scene().
 #pragma once

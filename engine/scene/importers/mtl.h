@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Lines of .obj and .mtl files, and the materials of the latter.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Reads .obj files.
 #include <algorithm>
 #include <charconv>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Reads .ply files, text and binary, with faces or strips of triangles.
 #include <algorithm>
 #include <tuple>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The declarations in the header of a .ply file.
 #pragma once
 

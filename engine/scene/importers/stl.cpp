@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Reads .stl files, binary and text. A facet's normal follows from its vertices and is not read, whatever it is.
 #include <algorithm>
 

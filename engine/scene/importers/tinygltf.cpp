@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The only file that compiles tinygltf. Debian's shared library is not used: libdraco, which an application may link,
 // exports another version of the same symbols, and the order of linking would decide which one is called.
 #include <nlohmann/json.hpp>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "engine/scene/importers/words.h"
 
 #include <algorithm>

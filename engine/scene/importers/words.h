@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Lines, words and numbers of text formats, files of nothing but numbers, and the parts of files that readers ignore.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Figures of compiled kernels: as drivers report them, against limits, in tables; and the names of variants.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The list of kernels: it forgets no module of the library or the path tracer, and nothing runs.
 #include <gtest/gtest.h>
 

@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """`twinray kernels` for a GPU that is not there. Usage: kernels_command_test.py TWINRAY"""
 import json
 import os

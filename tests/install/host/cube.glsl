@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "twinray/glsl/program.h"
 
 // A box whose surface halves the way to the ray's end.

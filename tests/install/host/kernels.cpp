@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // A program outside twinray with a kernel and a trace program of its own. Exits with 0 if both trace.
 #include <cmath>
 #include <iostream>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // A program that has Vulkan already: its own way to call it, its own device, its own memory allocator. twinray comes
 // in as a guest and must neither replace nor disturb any of them. Exits with 0 if all of it works.
 #include <algorithm>

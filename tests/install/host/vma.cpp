@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #define VK_NO_PROTOTYPES
 #define VMA_IMPLEMENTATION
 #include <vk_mem_alloc.h>

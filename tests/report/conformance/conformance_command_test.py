@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Runs `twinray verify --suite conformance` as a user does. Usage: conformance_command_test.py TWINRAY"""
 
 import functools

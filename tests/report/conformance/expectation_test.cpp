@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Input for a driver, the rules that decide whether it must be hit, and the hits that float64 expects.
 #include "report/conformance/expectation.h"
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The suite on a device: cases that pass, cases known to fail, and that every case can fail.
 #include "report/conformance/suite.h"
 

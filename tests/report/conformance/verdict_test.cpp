@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The catalogue of cases and records; verdicts on a driver's answers, and on whether its answers to a scene and to the
 // same one changed fit together.
 #include <gtest/gtest.h>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // A report's page, its figures, and the same results in the formats of continuous integration.
 #include "report/page/page.h"
 

@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Runs `twinray qualify` as continuous integration does.
 Usage: qualify_command_test.py TWINRAY [FOLDER_OF_THE_BROKEN_DRIVER]"""
 import json

@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Runs `twinray report` as a user does. Usage: report_command_test.py TWINRAY"""
 import csv
 import json

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // What a report says of its records: findings, the verdict, and what has changed since an earlier run.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "report/replay/replay.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Replays that `twinray verify` writes and shows, and reproducers as a user makes, compiles and runs them: of the
 driver's own leaks, where it has any, and of each fault of a driver that is broken on purpose.
 Usage: reproducer_command_test.py TWINRAY FOLDER_OF_THE_BROKEN_DRIVER C_COMPILER [FLAG...]"""

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The search for a fault's least case, and its reproducer as it is handed out: the right answers, the program that asks
 // for them, and the page about both.
 #include <gtest/gtest.h>

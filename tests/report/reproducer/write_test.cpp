@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Folders of reproducers, and the program in them with a ray that the driver answers correctly.
 #include "report/reproducer/reproduce.h"
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // A driver that is broken at a known rate: it refuses a share of the hits, chosen by their values.
 #include "twinray/glsl/program.h"
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The suite's cases: all of them, the order of their turns, and the state that a run leaves for the next.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Judgements of answers to rays and of pictures.
 #include "report/suite/checks.h"
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Traversal on devices that flush denormals, which the CPU imitates.
 #include "validation/cpu_reference/flush_denormals.h"
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Coverage of the intervals that a report prints: they hold the truth for drivers that are broken at a known rate.
 #include <gtest/gtest.h>
 

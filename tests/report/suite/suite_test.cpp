@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The suite's runner on a device, and cases that count crossings.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // A Vulkan layer that makes a driver answer rays wrongly, so that tests have a broken one. It patches the SPIR-V of
 // every module with ray queries or trace calls before the driver compiles it; all others pass as they are.
 //

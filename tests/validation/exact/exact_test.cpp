@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The rational reference; the float64 one checked against it where arithmetic is hardest; and the bound by which level
 // certified leaves triangles out, which is right whenever it is certain.
 #include <gtest/gtest.h>

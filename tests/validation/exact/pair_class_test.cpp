@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Classes of triangles, compared with a reference in rational arithmetic that shares no code and no method with them.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Closed meshes, what lies inside them, and rays from there.
 #include "validation/leaks/closed_mesh.h"
 

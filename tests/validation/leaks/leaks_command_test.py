@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Runs `twinray leaks` as a user does. Usage: leaks_command_test.py TWINRAY"""
 import json
 import math

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "validation/records/record.h"
 
 #include <gtest/gtest.h>

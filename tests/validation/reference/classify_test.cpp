@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Classes of hits: their names and counts, and which of them an answer has.
 #include "validation/reference/classify.h"
 

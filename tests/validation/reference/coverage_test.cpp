@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Bounds of how far rounding may move a ray, and whether triangles cover it wherever it is.
 
 #include <gtest/gtest.h>

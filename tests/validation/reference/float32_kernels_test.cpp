@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The classifier, tested with an accelerator without a hierarchy, in float32, as a model of a GPU kernel: it rounds
 // like a watertight kernel and must never be called at fault.
 #include <gtest/gtest.h>

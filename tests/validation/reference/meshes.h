@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Small meshes and transforms for the tests of the reference.
 #pragma once
 

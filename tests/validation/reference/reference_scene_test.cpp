@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The reference of float64, and rays for it: random ones, and those that are aimed at vertices and edges.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // The reference's search: areas of triangles, rays against triangles and boxes, and searches without boxes, which give
 // the same.
 #include <gtest/gtest.h>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 #include "viewer/picture/face_picture.h"
 
 #include <algorithm>

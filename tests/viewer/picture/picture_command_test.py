@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Pictures of `twinray` commands, as a user asks for them. Usage: picture_command_test.py TWINRAY"""
 import json
 import pathlib

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Pictures without a device: views, scales of values, text, legends and matrices, as far as tests can judge them
 // without eyes.
 #include <gtest/gtest.h>
