@@ -53,7 +53,7 @@ double sah_of(const BuiltTree& tree, const Mesh& mesh) {
         return check_tree(tree.bvh, tree.nodes, boxes).sah;
     }
     const Geometry built(mesh, software_unit(mesh.positions));
-    boxes = reference::leaves_triangles(built.positions, built.triangles);
+    boxes = reference::leaves_triangles(built.built_positions(), built.triangles);
     return check_tree(tree.bvh, tree.records, boxes).sah;
 }
 

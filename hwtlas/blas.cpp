@@ -21,35 +21,35 @@ BlasInput boxes_input(std::span<const Bounds> boxes, bool reorder) {
     return input;
 }
 
-template <class T>
-Buffer upload(Commands& commands, const std::string& name, const std::vector<T>& values) {
-    Buffer buffer(commands.context(), {.name = name, .bytes = values.size() * sizeof(T)});
-    commands.upload(buffer, std::span<const T>(values));
-    return buffer;
-}
-
-StructureBuild build_of_boxes(const std::string& name, const Buffer& boxes) {
+StructureBuild build_of_boxes(const std::string& name, std::uint64_t boxes, std::size_t count) {
     static_assert(sizeof(Bounds) == sizeof(VkAabbPositionsKHR));
     StructureBuild build = structure_build("blas " + name, VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR,
-                                           VK_GEOMETRY_TYPE_AABBS_KHR, boxes.bytes() / sizeof(Bounds));
+                                           VK_GEOMETRY_TYPE_AABBS_KHR, count);
     VkAccelerationStructureGeometryAabbsDataKHR& data = build.geometry.geometry.aabbs;
     data.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_AABBS_DATA_KHR;
-    data.data.deviceAddress = boxes.address();
+    data.data.deviceAddress = boxes;
     data.stride = sizeof(Bounds);
     return build;
 }
 
 // Uploads the input and describes how to build from it.
 StructureBuild record_input(Commands& commands, const std::string& name, const BlasInput& input) {
-    Buffer positions = upload(commands, "blas positions " + name, input.positions);
-    Buffer triangles = upload(commands, "blas triangles " + name, input.triangles);
-    Buffer boxes = upload(commands, "blas boxes " + name, input.boxes);
-    StructureBuild build =
-        input.boxes.empty() ? triangle_build(name, positions.address(), input.positions.size(), input.triangles.size())
-                            : build_of_boxes(name, boxes);
-    if (input.boxes.empty()) build.geometry.geometry.triangles.indexData.deviceAddress = triangles.address();
+    const std::span<const std::byte> boxes = std::as_bytes(std::span(input.boxes));
+    Buffer buffer(commands.context(), {.name = "blas input " + name,
+                                       .bytes = boxes.size() + std::span(input.positions).size_bytes() +
+                                                std::span(input.triangles).size_bytes()});
+    MeshUpload upload(buffer);
+    StructureBuild build;
+    if (boxes.empty()) {
+        const PackedMesh mesh = upload.add(input.positions, input.triangles);
+        build = triangle_build(name, mesh.positions.address, input.positions.size(), input.triangles.size());
+        build.geometry.geometry.triangles.indexData.deviceAddress = mesh.indices.address;
+    } else {
+        build = build_of_boxes(name, upload.add(boxes), input.boxes.size());
+    }
+    upload.record(commands);
     build.flags |= VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_COMPACTION_BIT_KHR;
-    for (Buffer* buffer : {&positions, &triangles, &boxes}) commands.retain(std::move(*buffer));
+    commands.retain(std::move(buffer));
     return build;
 }
 
@@ -57,26 +57,26 @@ StructureBuild record_input(Commands& commands, const std::string& name, const B
 
 BlasInput blas_input(const Geometry& geometry, bool reorder) {
     if (geometry.kind == GEOMETRY_BOXES) return boxes_input(geometry.boxes, reorder);
+    const SharedArray<vec3> positions = geometry.built_positions();
     const auto is_active = [&](uvec3 vertices) {
-        return is_active_triangle(geometry.positions[vertices.x], geometry.positions[vertices.y],
-                                  geometry.positions[vertices.z]);
+        return is_active_triangle(positions[vertices.x], positions[vertices.y], positions[vertices.z]);
     };
     const auto first_active = std::find_if(geometry.triangles.begin(), geometry.triangles.end(), is_active);
     if (first_active == geometry.triangles.end()) return {};
     const uint anchor = first_active->x;
 
     BlasInput input;
-    input.positions.assign(geometry.positions.begin(), geometry.positions.end());
+    input.positions.assign(positions.begin(), positions.end());
     for (vec3& position : input.positions)
-        if (!is_finite(position)) position = geometry.positions[anchor];
-    if (reorder) input.original = morton_order(triangle_centers(geometry.positions, geometry.triangles));
+        if (!is_finite(position)) position = positions[anchor];
+    if (reorder) input.original = morton_order(triangle_centers(positions, geometry.triangles));
     input.triangles.reserve(geometry.triangles.size());
     for (std::size_t i = 0; i < geometry.triangles.size(); ++i) {
         const uvec3 vertices = geometry.triangles[reorder ? input.original[i] : i];
         const bool active = is_active(vertices);
         input.triangles.push_back(active ? vertices : uvec3(anchor));
         if (!active) continue;
-        for (int vertex = 0; vertex < 3; ++vertex) input.bounds.include(geometry.positions[vertices[vertex]]);
+        for (int vertex = 0; vertex < 3; ++vertex) input.bounds.include(positions[vertices[vertex]]);
     }
     return input;
 }
@@ -109,9 +109,13 @@ std::vector<Blas> build_blases(Commands& commands, std::span<const Geometry* con
             blases[i].kind = geometry.kind;
             if (input.is_empty()) continue;
             blases[i].bounds = input.bounds;
-            if (options.reorder)
-                blases[i].original =
-                    std::make_shared<const Buffer>(upload(commands, "blas order " + geometry.name, input.original));
+            if (options.reorder) {
+                const std::span<const uint> order = input.original;
+                const auto buffer = std::make_shared<Buffer>(
+                    commands.context(), BufferDesc{.name = "blas order " + geometry.name, .bytes = order.size_bytes()});
+                commands.upload(*buffer, order);
+                blases[i].original = buffer;
+            }
             builds.push_back(record_input(commands, geometry.name, input));
             built.push_back(i);
         }

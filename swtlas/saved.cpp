@@ -189,9 +189,10 @@ Geometry read_mesh(Reader& reader, const SavedEntry& entry) {
     if (has_boxes) return Geometry(BoxesView{name, boxes});
     if (int exponent = 0; std::frexp(entry.scale, &exponent) != 0.5f || std::abs(exponent) > 101)
         fail("scale ", entry.scale, " is not a power of two between 2^-100 and 2^100");
-    Geometry geometry(MeshView(name, positions, triangles), 1);
-    geometry.scale = entry.scale;
-    return geometry;
+    for (const vec3& position : positions)
+        if (is_finite(position) && !is_finite(position * entry.scale))
+            fail("a position exceeds float32 at scale ", entry.scale);
+    return Geometry(MeshView(name, positions, triangles), 1);
 }
 
 SavedGeometry read_geometry(Reader& reader, Layout layout, const SavedEntry& entry) {
@@ -205,8 +206,8 @@ SavedGeometry read_geometry(Reader& reader, Layout layout, const SavedEntry& ent
         fail("damaged: the checksum is ", found, ", not ", entry.checksum);
     const auto leaf_count = has_records(layout) ? std::ranges::count_if(records, is_leaf) : std::ssize(leaves);
     const Bvh bvh{entry.lo, entry.hi, {}, entry.root, static_cast<uint>(leaf_count)};
-    SavedGeometry geometry{std::move(mesh),     bvh, std::move(nodes), std::move(leaves), std::move(records),
-                           std::move(instances)};
+    SavedGeometry geometry{std::move(mesh),      bvh,        std::move(nodes), std::move(leaves), std::move(records),
+                           std::move(instances), entry.scale};
     check_structure(layout, geometry);
     if (has_records(layout)) geometry.mesh.leaves = leaves_in(geometry.records);
     return geometry;
@@ -254,7 +255,7 @@ EncodedSave encode_save(Layout layout, std::span<const SavedGeometry> geometries
         entries.push_back({mesh.name.size(), mesh.positions.size(), mesh.triangles.size(), mesh.boxes.size(),
                            geometry.nodes.size(), geometry.leaves.size(), geometry.records.size(),
                            geometry.instances.size(), geometry.bvh.lo, geometry.bvh.hi, geometry.bvh.root, mesh.kind,
-                           mesh.scale, checksum});
+                           geometry.scale, checksum});
     }
     header.entries_checksum = crc32_of(bytes_of(entries));
     header.checksum = checksum_of(header);

@@ -45,12 +45,13 @@ static_assert(sizeof(SavedHeader) == 72 && sizeof(SavedEntry) == 104);
 
 // A built geometry and its instances.
 struct SavedGeometry {
-    Geometry mesh;
-    Bvh bvh;  // nodes: 0
+    Geometry mesh;  // its positions in units of `scale`, its own scale 1
+    Bvh bvh;        // nodes: 0
     std::vector<BvhNode> nodes;
     std::vector<BvhTriangle> leaves;
     std::vector<CompressedRecord> records;
     std::vector<InstanceRecord> instances;  // geometry: 0
+    float scale = 1;                        // of the geometry: a power of two
 };
 
 // The file in pieces; those of the body are the given arrays.

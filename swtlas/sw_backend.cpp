@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <ranges>
 
 #include "engine/accel/batches.h"
+#include "engine/accel/mesh_store.h"
 #include "engine/core/error.h"
 #include "swtlas/triangle_pairs.h"
 #include "swtlas_trace.spv.h"
@@ -102,8 +104,10 @@ std::uint64_t SwBackend::source_bytes(const GeometryInput& input) {
     const Geometry& geometry = *input.geometry;
     const std::uint64_t leaves = std::span(geometry.leaves).size_bytes();
     if (device_mesh(input).indices.address) return leaves;
-    const HostMesh mesh(geometry);
-    return mesh.positions.size_bytes() + mesh.triangles.size_bytes() + std::span(geometry.boxes).size_bytes() + leaves;
+    const bool is_welded = !geometry.welded.is_empty();
+    return std::span(geometry.boxes).size_bytes() + leaves +
+           (is_welded ? geometry.welded.positions.size() : geometry.positions.size()) * sizeof(vec3) +
+           (is_welded ? geometry.welded.triangles.size() : geometry.triangles.size()) * sizeof(uvec3);
 }
 
 // Calls `record` for one batch after the other, all in the same scratch: that of the build, then the sources.
@@ -136,29 +140,24 @@ std::vector<Builder::Measured> SwBackend::measured(const Batch& batch, std::span
 // Finds the meshes on the device; uploads those that are not there yet, and their leaves.
 std::vector<SwBackend::Source> SwBackend::record_sources(Commands& commands, const Batch& batch, bool wants_leaves,
                                                          const Buffer& scratch) {
-    std::vector<Commands::Region> regions;
-    std::uint64_t next = batch.plan.scratch.bytes;
-    const auto stage = [&](std::span<const std::byte> data) {
-        regions.push_back({next, data});
-        next += data.size();
-        return scratch.address() + regions.back().offset;
-    };
+    MeshUpload upload(scratch, batch.plan.scratch.bytes);
+    std::deque<HostMesh> on_host;
     std::vector<Source> sources;
     for (const GeometryInput& input : batch.inputs) {
         const Geometry& geometry = *input.geometry;
         sources.push_back({device_mesh(input), {}});
         auto& [mesh, leaves] = sources.back();
-        if (!geometry.leaves.empty() && wants_leaves) leaves.address = stage(std::as_bytes(std::span(geometry.leaves)));
+        if (!geometry.leaves.empty() && wants_leaves)
+            leaves.address = upload.add(std::as_bytes(std::span(geometry.leaves)));
         if (mesh.indices.address) continue;
         if (geometry.kind == GEOMETRY_BOXES) {
-            mesh.positions.address = stage(std::as_bytes(std::span(geometry.boxes)));
+            mesh.positions.address = upload.add(std::as_bytes(std::span(geometry.boxes)));
             continue;
         }
-        const HostMesh on_host(geometry);
-        mesh.positions.address = stage(std::as_bytes(on_host.positions));
-        mesh.indices.address = stage(std::as_bytes(on_host.triangles));
+        on_host.emplace_back(geometry);
+        mesh = upload.add(on_host.back().positions, on_host.back().triangles);
     }
-    commands.upload_regions(scratch, regions);
+    upload.record(commands);
     return sources;
 }
 
@@ -344,7 +343,7 @@ BuiltTree SwBackend::download_geometry(AccelHandle handle) const {
     if (layout.vertex_count && block.vertices.address == built.vertices().address)
         vertices = download<vec3>(context(), built.buffer, layout.vertex_count, layout.vertices);
     else if (has_pairs(records))
-        vertices = geometry(handle).positions;
+        vertices = geometry(handle).built_positions();
     return {block.bvh, download<BvhNode>(context(), built.buffer, layout.node_count, layout.nodes),
             download<BvhTriangle>(context(), built.buffer, layout.triangle_count, layout.triangles), std::move(records),
             std::move(vertices)};

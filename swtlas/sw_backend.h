@@ -67,11 +67,15 @@ class SwBackend final : public AccelBackend {
 
 // The mesh in host memory that a tree is built from.
 struct SwBackend::HostMesh {
+    SharedArray<vec3> unwelded;  // empty if the geometry has welded vertices
     std::span<const vec3> positions;
     std::span<const uvec3> triangles;
 
-    explicit HostMesh(const Geometry& geometry) : positions(geometry.positions), triangles(geometry.triangles) {
-        if (!geometry.welded.is_empty()) positions = geometry.welded.positions, triangles = geometry.welded.triangles;
+    explicit HostMesh(const Geometry& geometry)
+        : positions(geometry.welded.positions), triangles(geometry.welded.triangles) {
+        if (!geometry.welded.is_empty()) return;
+        unwelded = geometry.built_positions();
+        positions = unwelded, triangles = geometry.triangles;
     }
 };
 

@@ -52,9 +52,12 @@ void SwBackend::save(const std::filesystem::path& file) const {
         for (const InstanceState& state : get_instances(handle))
             instances.push_back(make_instance_record(state.transform, state.options));
         Geometry mesh = geometry(handle);
+        const float scale = mesh.scale;
+        mesh.positions = mesh.built_positions();
+        mesh.scale = 1;
         name_vertices(tree.records, mesh.triangles);
         geometries.push_back({std::move(mesh), tree.bvh, std::move(tree.nodes), std::move(tree.triangles),
-                              std::move(tree.records), std::move(instances)});
+                              std::move(tree.records), std::move(instances), scale});
     }
     const EncodedSave encoded = encode_save(options().layout, geometries);
     std::vector<std::span<const std::byte>> regions = {encoded.head};
@@ -82,6 +85,8 @@ AccelHandle SwBackend::push_saved(Commands& commands, SavedGeometry&& saved) {
         commands.upload_regions(built->buffer, regions);
     }
     saved.mesh.welded = {};
+    saved.mesh.positions = times(saved.mesh.positions, saved.scale);
+    saved.mesh.scale = saved.scale;
     return push_built(std::move(saved.mesh), std::move(block), std::move(built), saved.instances);
 }
 

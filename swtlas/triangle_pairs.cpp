@@ -226,11 +226,12 @@ void choose_leaves(Geometry& geometry, bool has_vertices) {
     geometry.welded = {};
     const std::size_t triangles = geometry.triangles.size();
     if (geometry.positions.size() >= 3 * triangles) return;  // like a mesh without shared vertices
-    std::vector<Leaf> leaves = pair_triangles(geometry.positions, geometry.triangles);
+    const SharedArray<vec3> positions = geometry.built_positions();
+    std::vector<Leaf> leaves = pair_triangles(positions, geometry.triangles);
     if (leaves.empty()) return;
     Welded welded;
-    if (!has_vertices) welded = weld(geometry.positions, geometry.triangles);
-    const std::size_t of_mesh = has_vertices ? 0 : geometry.positions.size();
+    if (!has_vertices) welded = weld(positions, geometry.triangles);
+    const std::size_t of_mesh = has_vertices ? 0 : positions.size();
     const std::size_t vertices = welded.is_empty() ? of_mesh : welded.positions.size();
     if (tree_bytes(leaves.size(), vertices) >= tree_bytes(triangles, 0)) return;
     geometry.leaves = std::move(leaves);

@@ -245,7 +245,7 @@ class Scene {
     };
 
   private:
-    // The accelerator's own arrays, where it builds in units of 1.
+    // The accelerator's own arrays.
     struct KeptMesh : SharedMesh {
         std::optional<Bounds> box = {};  // set when first asked for
         const Bounds& bounds();

@@ -254,7 +254,7 @@ void AccelBackend::update_vertices(AccelHandle handle, std::span<const vec3> pos
     check_mesh_is_kept(*pushed.held, "update_vertices");
     Geometry& geometry = pushed.held->geometry;
     const std::size_t inactive = count_non_finite_triangles({geometry.name, positions, geometry.triangles});
-    geometry.move_to(positions);
+    geometry.positions = std::vector<vec3>(positions.begin(), positions.end());
     geometry.non_finite_triangles = inactive;
     warn_of_inactive_triangles(geometry);
     if (geometry.triangle_count() == 0) return;

@@ -35,12 +35,16 @@ std::span<const Bounds> checked(const BoxesView& view) {
 
 }  // namespace
 
+SharedArray<vec3> times(const SharedArray<vec3>& positions, float factor) {
+    if (factor == 1) return positions;
+    std::vector<vec3> scaled(positions.begin(), positions.end());
+    for (vec3& p : scaled) p *= factor;
+    return scaled;
+}
+
 Geometry::Geometry(const MeshView& mesh, float unit)
     : name(mesh.name), scale(unit), triangles(checked(mesh)), non_finite_triangles(count_non_finite_triangles(mesh)) {
-    if (mesh.shared && unit == 1)
-        positions = mesh.shared->positions;
-    else
-        move_to(mesh.positions);
+    positions = mesh.shared ? mesh.shared->positions : std::vector<vec3>(mesh.positions.begin(), mesh.positions.end());
 }
 
 Geometry::Geometry(const DeviceMesh& mesh, float unit) : name(mesh.name), scale(unit) {
@@ -50,13 +54,6 @@ Geometry::Geometry(const DeviceMesh& mesh, float unit) : name(mesh.name), scale(
     device->name = {};
     device->attributes = {};
     device->metadata = {};
-}
-
-void Geometry::move_to(std::span<const vec3> others) {
-    const float factor = 1 / scale;
-    std::vector<vec3> scaled(others.begin(), others.end());
-    for (vec3& p : scaled) p *= factor;
-    positions = std::move(scaled);
 }
 
 void Geometry::forget_mesh(bool is_on_device) {
@@ -71,13 +68,6 @@ std::uint64_t Geometry::host_bytes() const {
     return std::span(positions).size_bytes() + std::span(triangles).size_bytes() + boxes.capacity() * sizeof(Bounds) +
            leaves.capacity() * sizeof(Leaf) + welded.positions.capacity() * sizeof(vec3) +
            welded.triangles.capacity() * sizeof(uvec3);
-}
-
-SharedArray<vec3> Geometry::given_positions() const {
-    if (scale == 1) return positions;
-    std::vector<vec3> given(positions.begin(), positions.end());
-    for (vec3& p : given) p *= scale;
-    return given;
 }
 
 int Geometry::size_exponent(std::span<const vec3> positions) {

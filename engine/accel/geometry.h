@@ -25,12 +25,15 @@ struct Welded {
     bool is_empty() const { return triangles.empty(); }
 };
 
+// Returns the positions times a power of two; those themselves for 1.
+SharedArray<vec3> times(const SharedArray<vec3>& positions, float factor);
+
 // A mesh or boxes as an accelerator keeps them on the host.
 struct Geometry {
     std::string name;
     uint kind = GEOMETRY_TRIANGLES;
-    float scale = 1;              // the unit of `positions`: a power of two
-    SharedArray<vec3> positions;  // these three of GEOMETRY_TRIANGLES
+    float scale = 1;              // the unit of what is built of it: a power of two
+    SharedArray<vec3> positions;  // as given; these three of GEOMETRY_TRIANGLES
     SharedArray<uvec3> triangles;
     std::size_t non_finite_triangles = 0;  // inactive: never hit, still counted
     std::vector<Bounds> boxes;             // of GEOMETRY_BOXES
@@ -54,13 +57,11 @@ struct Geometry {
     // Throws Error naming the box: one that is empty or not finite, or more than max_primitives.
     explicit Geometry(const BoxesView& boxes);
 
-    // Sets as many other positions, in the user's units.
-    void move_to(std::span<const vec3> others);
     // Frees the host's copy of a built mesh; also `leaves`, unless the device has a copy to build from again.
     void forget_mesh(bool is_on_device);
     std::uint64_t host_bytes() const;
-    // Returns the positions that the user gave.
-    SharedArray<vec3> given_positions() const;
+    // Returns the positions in units of `scale`.
+    SharedArray<vec3> built_positions() const { return times(positions, 1 / scale); }
     // Returns the exponent of the largest finite coordinate, which is below 2^(1 + exponent); 0 if all are 0.
     static int size_exponent(std::span<const vec3> positions);
     // Returns the power of two just below the largest finite coordinate, so that coordinates in this unit are near 1.

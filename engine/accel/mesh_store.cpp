@@ -24,27 +24,37 @@ constexpr std::uint64_t most_bytes = 1 << 30;  // of a buffer of several meshes
 
 std::uint64_t triangles_at(const Geometry& geometry) { return geometry.vertex_count() * sizeof(vec3); }
 
+std::uint64_t bytes_of(const MeshView& mesh) { return mesh.positions.size_bytes() + mesh.triangles.size_bytes(); }
+
 // Appends them, in one buffer.
 void upload_run(Commands& commands, std::span<const MeshView> meshes, std::vector<MeshOnDevice>& uploaded) {
-    std::vector<Commands::Region> regions;
     std::uint64_t bytes = 0;
-    for (const MeshView& mesh : meshes)
-        for (const std::span<const std::byte> part : {std::as_bytes(mesh.positions), std::as_bytes(mesh.triangles)}) {
-            regions.push_back({bytes, part});
-            bytes += part.size();
-        }
+    for (const MeshView& mesh : meshes) bytes += bytes_of(mesh);
+    if (bytes == 0) return uploaded.resize(uploaded.size() + meshes.size());
     const auto buffer = std::make_shared<Buffer>(commands.context(), BufferDesc{.name = "meshes", .bytes = bytes});
-    commands.upload_regions(*buffer, regions);
-    for (std::size_t i = 0; i < meshes.size(); ++i)
-        uploaded.push_back(bytes ? mesh_in(buffer, regions[2 * i].offset, meshes[i].positions.size(), 1)
-                                 : MeshOnDevice{});
+    MeshUpload upload(*buffer);
+    for (const MeshView& mesh : meshes) uploaded.push_back({buffer, upload.add(mesh.positions, mesh.triangles)});
+    upload.record(commands);
 }
 
 }  // namespace
 
+std::uint64_t MeshUpload::add(std::span<const std::byte> array) {
+    regions_.push_back({next_, array});
+    next_ += array.size();
+    return target_.address() + regions_.back().offset;
+}
+
+PackedMesh MeshUpload::add(std::span<const vec3> positions, std::span<const uvec3> triangles) {
+    PackedMesh mesh;
+    mesh.positions.address = add(std::as_bytes(positions));
+    mesh.indices.address = add(std::as_bytes(triangles));
+    return mesh;
+}
+
 std::vector<MeshOnDevice> upload_meshes(Commands& commands, std::span<const MeshView> meshes) {
     std::vector<std::uint64_t> bytes;
-    for (const MeshView& mesh : meshes) bytes.push_back(mesh.positions.size_bytes() + mesh.triangles.size_bytes());
+    for (const MeshView& mesh : meshes) bytes.push_back(bytes_of(mesh));
     std::vector<MeshOnDevice> uploaded;
     const auto pass = commands.pass("meshes");
     for (const Batches::Run& run : cut_into_batches(bytes, most_bytes).runs)
@@ -101,7 +111,7 @@ void MeshStore::record_positions(Commands& commands, const Staged& staged) const
             copy_floats_.dispatch(commands, {stored->incoming, staged.mesh(i).positions, count, 1 / geometry->scale},
                                   count);
         else if (!stored->device_wrote)
-            commands.upload(target, std::span<const vec3>(geometry->positions));
+            commands.upload(target, std::span<const vec3>(geometry->built_positions()));
     }
 }
 
@@ -144,7 +154,7 @@ MeshOnDevice MeshStore::lend(Commands& commands, const Geometry& geometry, Store
         commands.retain(std::move(gather_.record(commands, std::span(&item, 1)).counts));
     } else {
         const auto pass = commands.pass("meshes");
-        commands.upload(*made.buffer, std::span<const vec3>(geometry.positions));
+        commands.upload(*made.buffer, std::span<const vec3>(geometry.built_positions()));
         commands.upload(*made.buffer, std::span<const uvec3>(geometry.triangles), triangles_at(geometry));
     }
     stored.lent = made.buffer;
@@ -162,7 +172,8 @@ void MeshStore::download(Geometry& geometry, const StoredMesh& stored) const {
         commands.submit();
     }
     if (stored.device_wrote)
-        geometry.positions = twinray::download<vec3>(context_, *from.buffer, geometry.vertex_count());
+        geometry.positions =
+            times(twinray::download<vec3>(context_, *from.buffer, geometry.vertex_count()), geometry.scale);
     if (geometry.device)
         geometry.triangles =
             twinray::download<uvec3>(context_, *from.buffer, geometry.triangle_count(), triangles_at(geometry));

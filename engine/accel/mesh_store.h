@@ -27,6 +27,23 @@ struct MeshOnDevice {
     explicit operator bool() const { return buffer != nullptr; }
 };
 
+// Uploads meshes, and other arrays that a build reads, one behind the other into a buffer from an offset on. The arrays
+// must live until record().
+class MeshUpload {
+  public:
+    explicit MeshUpload(const Buffer& target, std::uint64_t offset = 0) : target_(target), next_(offset) {}
+
+    // Returns the address that the array will have.
+    std::uint64_t add(std::span<const std::byte> array);
+    PackedMesh add(std::span<const vec3> positions, std::span<const uvec3> triangles);
+    void record(Commands& commands) const { commands.upload_regions(target_, regions_); }
+
+  private:
+    const Buffer& target_;
+    std::uint64_t next_;
+    std::vector<Commands::Region> regions_;
+};
+
 // Records the upload of meshes in host memory, many into one buffer.
 std::vector<MeshOnDevice> upload_meshes(Commands& commands, std::span<const MeshView> meshes);
 // Returns the memory of all of them, each buffer once.
@@ -82,7 +99,7 @@ class MeshStore {
     // Returns the mesh as the last sync left it, one in place as it is now. If it is not on the device, this records
     // the commands that bring it there; the caller drops it unless they are submitted.
     MeshOnDevice lend(Commands& commands, const Geometry& geometry, StoredMesh& stored) const;
-    // Waits. Downloads the part of the mesh that the host lacks, in units of the geometry's scale.
+    // Waits. Downloads the part of the mesh that the host lacks.
     void download(Geometry& geometry, const StoredMesh& stored) const;
     void warn_of_faults(const std::string& accel) { gather_.warn_of_faults(accel); }
 

@@ -83,7 +83,7 @@ MeshOnDevice AccelBackend::lend_mesh(Commands& commands, AccelHandle handle) {
 
 SharedMesh AccelBackend::mesh(AccelHandle handle) const {
     const auto shared = [](const Geometry& geometry) {
-        return SharedMesh{geometry.name, geometry.given_positions(), geometry.triangles};
+        return SharedMesh{geometry.name, geometry.positions, geometry.triangles};
     };
     const HeldGeometry& held = *live(handle, "mesh").held;
     if (held.geometry.device || held.stored.device_wrote) return shared(geometry(handle));

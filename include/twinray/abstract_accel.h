@@ -35,8 +35,8 @@ class AbstractAccel {
     AbstractAccel(const AbstractAccel&) = delete;
     AbstractAccel& operator=(const AbstractAccel&) = delete;
 
-    // Adds one geometry with one instance. The mesh is copied; the arrays of a SharedMesh are shared, its positions
-    // only if the geometry is built in units of 1. An empty mesh is allowed and never hit.
+    // Adds one geometry with one instance. The mesh is copied; the arrays of a SharedMesh are shared. An empty
+    // mesh is allowed and never hit.
     AccelHandle push(const MeshView& mesh, const Transform& transform = {}, const InstanceOptions& options = {});
     // Adds one geometry with one instance per transform; options is empty or has one entry per transform.
     AccelHandle push(const MeshView& mesh, std::span<const Transform> transforms,

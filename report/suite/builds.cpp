@@ -22,7 +22,7 @@ TreeCheck check_tree(AbstractAccel& accel, const Mesh& mesh) {
     accel.sync();
     const BuiltTree tree = download_geometry(dynamic_cast<SwTlas&>(accel), handle);
     const std::vector<LeafBox> by_primitive =
-        reference::leaves_triangles(Geometry(mesh, software_unit(mesh.positions)).positions, mesh.triangles);
+        reference::leaves_triangles(Geometry(mesh, software_unit(mesh.positions)).built_positions(), mesh.triangles);
     if (!tree.records.empty()) return check_tree(tree.bvh, tree.records, by_primitive);
     std::vector<LeafBox> boxes;
     for (const BvhTriangle& triangle : tree.triangles) boxes.push_back(by_primitive.at(triangle.primitive_index));

@@ -158,6 +158,7 @@ struct HostTable {
         GeometrySource source;
     };
     std::vector<Geometry> geometries;
+    std::vector<SharedArray<vec3>> positions;
     std::vector<Block> blocks;
     std::vector<InstanceRecord> records;
     std::vector<uint> geometry_of_instance;
@@ -168,7 +169,8 @@ struct HostTable {
         for (const Placed& each : placed) geometries.emplace_back(each.shape.view());
         for (std::size_t i = 0; i < placed.size(); ++i) {
             const Mesh& mesh = placed[i].shape.mesh;
-            blocks[i].source = {Floats::to(&geometries[i].positions[0].x), Uints::to(&geometries[i].triangles[0].x),
+            positions.push_back(geometries[i].built_positions());
+            blocks[i].source = {Floats::to(&positions[i][0].x), Uints::to(&geometries[i].triangles[0].x),
                                 geometries[i].scale, 0};
             rows.push_back({i, Uints::to(mesh.materials.data()), 0, static_cast<uint>(records.size()),
                             static_cast<uint>(mesh.triangles.size())});

@@ -151,7 +151,7 @@ TEST_P(ShortStacks, KeepTheLastEntriesAndSayThatTheyHaveLostOthers) {
 // The leaves of trees over some triangles, and their order.
 struct SoupLeaves {
     Geometry geometry{make_soup(500, 4)};
-    std::vector<LeafBox> boxes = reference::leaves_triangles(geometry.positions, geometry.triangles);
+    std::vector<LeafBox> boxes = reference::leaves_triangles(geometry.built_positions(), geometry.triangles);
     reference::Codes codes = reference::morton(boxes, reference::centroids(boxes));
     std::vector<uint> order = reference::sort(codes);
 };
@@ -164,7 +164,7 @@ TEST_P(Records, TheSlotTowardsARecordLeadsToIt) {
     const SoupLeaves soup;
     const reference::Hierarchy tree = reference::hierarchy(soup.boxes, soup.codes, soup.order, false);
     const std::vector<CompressedRecord> records =
-        reference::records_of_triangles(tree, soup.geometry.positions, soup.geometry.triangles, GetParam());
+        reference::records_of_triangles(tree, soup.geometry.built_positions(), soup.geometry.triangles, GetParam());
     const auto all = Ref<CompressedRecord>::to(records.data());
     for (uint target = 1; target < records.size(); ++target) {
         if (!is_leaf(records[target]) && children_in(records[target]) == 0) continue;

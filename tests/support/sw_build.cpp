@@ -19,7 +19,8 @@ std::vector<LeafBox> boxes_of(const std::vector<BvhTriangle>& triangles, const M
 }  // namespace
 
 std::vector<vec3> built(const Mesh& mesh, const Mesh* pushed) {
-    const SharedArray<vec3> positions = Geometry(mesh, software_unit((pushed ? pushed : &mesh)->positions)).positions;
+    const SharedArray<vec3> positions =
+        Geometry(mesh, software_unit((pushed ? pushed : &mesh)->positions)).built_positions();
     return {positions.begin(), positions.end()};
 }
 

@@ -208,7 +208,7 @@ class DeepTrees : public test::VulkanTest, public testing::WithParamInterface<La
             size *= 1.6f;
             for (uint leaf = 0; leaf < 4; ++leaf) add(fork == open && leaf == 2 ? 1.0f : -1.0f);
         }
-        const Geometry geometry(mesh);
+        const Geometry geometry(mesh, 1);
         const test::TallTree tall(reference::leaves_triangles(geometry.positions, mesh.triangles));
         const std::vector<CompressedRecord> records =
             reference::records_of_triangles(tall.tree, geometry.positions, mesh.triangles, width_of(GetParam()));

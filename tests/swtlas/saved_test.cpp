@@ -14,7 +14,7 @@ using test::expect_contains;
 using test::same_bytes;
 
 SavedGeometry saved(Layout layout, const Mesh& mesh, std::size_t instances) {
-    const Geometry geometry(mesh);
+    const Geometry geometry(mesh, 1);
     const std::vector<LeafBox> boxes = reference::leaves_triangles(geometry.positions, mesh.triangles);
     const reference::Codes codes = reference::morton(boxes, reference::centroids(boxes));
     const std::vector<uint> order = reference::sort(codes);

@@ -9,20 +9,20 @@ namespace twinray::reference {
 std::size_t Scene::add_geometry(const MeshView& mesh) {
     Geometry geometry(mesh, software_unit(mesh.positions));
     if (has_records(layout_)) choose_leaves(geometry, false);
-    const std::vector<LeafBox> boxes = leaves_triangles(geometry.positions, geometry.triangles, geometry.leaves);
+    const SharedArray<vec3> positions = geometry.built_positions();
+    const std::vector<LeafBox> boxes = leaves_triangles(positions, geometry.triangles, geometry.leaves);
     const Codes codes = morton(boxes, centroids(boxes));
     const std::vector<uint> order = sort(codes);
     Hierarchy tree = hierarchy(boxes, codes, order, !has_records(layout_), quality_);
     std::vector<BvhTriangle> triangles;
     std::vector<CompressedRecord> records;
     if (has_records(layout_))
-        records =
-            records_of_triangles(tree, geometry.positions, geometry.triangles, width_of(layout_), geometry.leaves);
+        records = records_of_triangles(tree, positions, geometry.triangles, width_of(layout_), geometry.leaves);
     else {
         tree = linked(std::move(tree));
-        triangles = encode_triangles(geometry.positions, geometry.triangles, order);
+        triangles = encode_triangles(positions, geometry.triangles, order);
     }
-    geometries_.push_back({std::move(geometry), std::move(tree), std::move(triangles), std::move(records)});
+    geometries_.push_back({std::move(geometry), positions, std::move(tree), std::move(triangles), std::move(records)});
     return geometries_.size() - 1;
 }
 
@@ -39,10 +39,10 @@ std::vector<InstanceRecord> Scene::records_in_built_units() {
                                  root_of(built.tree), built.leaf_count()},
                                 Ref<BvhTriangle>::to(built.triangles.data()),
                                 Ref<CompressedRecord>::to(built.records.data()),
-                                Floats::to(&built.mesh.positions.data()->x),
+                                Floats::to(&built.positions.data()->x),
                                 GEOMETRY_TRIANGLES,
                                 0};
-        built.block.source = {Floats::to(&built.mesh.positions.data()->x), Uints::to(&built.mesh.triangles.data()->x),
+        built.block.source = {Floats::to(&built.positions.data()->x), Uints::to(&built.mesh.triangles.data()->x),
                               built.mesh.scale, 0};
     }
     std::vector<InstanceRecord> records;

@@ -59,6 +59,7 @@ class Scene {
     static_assert(offsetof(Block, source) == GEOMETRY_SOURCE_OFFSET);
     struct BuiltGeometry {
         Geometry mesh;
+        SharedArray<vec3> positions;  // in built units
         Hierarchy tree;
         std::vector<BvhTriangle> triangles;
         std::vector<CompressedRecord> records;

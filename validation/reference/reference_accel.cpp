@@ -110,7 +110,7 @@ class ReferenceBackend final : public AccelBackend {
         for (const GeometryInput& input : inputs) {
             auto made = std::make_unique<ReferenceGeometry>();
             made->geometry = std::make_shared<const Geometry64>(
-                MeshView(input.geometry->name, input.geometry->given_positions(), input.geometry->triangles));
+                MeshView(input.geometry->name, input.geometry->positions, input.geometry->triangles));
             commands.write(*input.block, box_of(*input.geometry, *made->geometry));
             geometries_[input.block->address()] = made->geometry;
             built.push_back(std::move(made));

@@ -67,8 +67,9 @@ TEST(FlushedDenormals, TreesAreTheSame) {
         mesh.positions.push_back(corner);
     mesh.triangles.push_back({first, first + 1, first + 2});  // flat where the denormal is 0
     const Geometry geometry(mesh, software_unit(mesh.positions));
+    const SharedArray<vec3> positions = geometry.built_positions();
     const auto tree_of = [&] {
-        const std::vector<LeafBox> boxes = reference::leaves_triangles(geometry.positions, geometry.triangles);
+        const std::vector<LeafBox> boxes = reference::leaves_triangles(positions, geometry.triangles);
         const reference::Codes codes = reference::morton(boxes, reference::centroids(boxes));
         return reference::hierarchy(boxes, codes, reference::sort(codes), true, BuildQuality::ploc).nodes;
     };
