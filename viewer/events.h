@@ -61,7 +61,7 @@ std::string state_of(const Key& key, const State& state);
 enum class Button : unsigned char { left, middle, right };
 
 struct KeyDown {
-    std::string key;  // as in keys.h
+    std::string key;  // Key::name
 };
 struct KeyUp {
     std::string key;

@@ -1,5 +1,5 @@
-// What `twinray kernels` is made of: the list of kernels that hosts get, what a driver's compiler makes of them, limits
-// of that, and GPUs that are not there.
+// The parts of `twinray kernels`: the list of kernels that hosts get, figures of a driver's compiler, limits of those,
+// and GPUs that are not there.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// What accelerators can do on a device, and the choice of one.
+// The capabilities of accelerators on a device, and the choice of one.
 #include <twinray/tlas.h>
 
 #include "engine/accel/trace_desc.h"

@@ -1,4 +1,4 @@
-// What is told of a device that is lost or stops answering: the driver's report (VK_EXT_device_fault), and the work in
+// The report about a device that is lost or stops answering: the driver's words (VK_EXT_device_fault), and the work in
 // flight.
 #pragma once
 

@@ -1,5 +1,5 @@
-// Triangle shape: thin, degenerate and huge. The order of hits is in shapes_order.cpp, rays in planes and along edges
-// are in shapes_planes.cpp.
+// Triangle shape: thin, degenerate and huge. The order of hits, and rays in planes and along edges, are in
+// shapes_order.cpp.
 #include "report/suite/sections.h"
 
 #include <numbers>

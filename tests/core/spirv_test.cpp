@@ -1,5 +1,4 @@
 // SPIR-V with known constants, word by word, and branches that they decide, as text.
-// One file of more than 400 lines, since all tests share the builders of modules below.
 #include <gtest/gtest.h>
 
 #include "engine/accel/trace_desc.h"

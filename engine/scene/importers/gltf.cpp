@@ -1,5 +1,5 @@
-// Turns a glTF file into a Scene: here its meshes by the shape that skins and morph targets give them; each other step
-// has a file of its own.
+// Turns a glTF file into a Scene: here its meshes by the shape that skins and morph targets give them; the other
+// steps are in gltf_*.cpp.
 #include <set>
 
 #include "engine/scene/importers/gltf_parts.h"

@@ -1,4 +1,4 @@
-// What a report says of its records: findings, the verdict, and what has changed since an earlier run.
+// The statements of a report about its records: findings, the verdict, and what has changed since an earlier run.
 #include <gtest/gtest.h>
 
 #include <algorithm>
