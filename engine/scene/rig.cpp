@@ -305,7 +305,7 @@ void flatten_positions(std::vector<vec3>& positions, const dvec3& lost) {
     for (vec3& position : positions) project_along(position, lost);
 }
 
-void flatten(Mesh& mesh, const dvec3& lost) {
+void flatten_along(Mesh& mesh, const dvec3& lost) {
     flatten_positions(mesh.positions, lost);
     for (vec3& normal : mesh.normals) normal = vec3(dot(dvec3(normal), lost) < 0 ? -lost : lost);
     for (vec4& tangent : mesh.tangents) {
@@ -321,7 +321,7 @@ std::optional<Transform> flatten(Mesh& mesh, const Transform& transform) {
         for (int column = 0; column < 4; ++column) matrix[column][row] = transform.rows[std::size_t(row)][column];
     const std::optional<FlatPlacement> flat = flat_placement_of(matrix, rounding_of_floats);
     if (!flat) return std::nullopt;
-    flatten(mesh, flat->lost);
+    flatten_along(mesh, flat->lost);
     return transform_of(thickened(matrix, 1, rounding_of_floats));
 }
 

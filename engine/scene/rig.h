@@ -173,6 +173,6 @@ glm::dmat4 thickened(const glm::dmat4& matrix, double thickness, double rounding
 void flatten_positions(std::vector<vec3>& positions, const dvec3& lost);
 // Does so with a mesh. Normals turn along `lost`, on the side on which they were; those of neither side point along
 // `lost`. Tangents are projected into the plane, with length 1; 0 if they have no direction in it.
-void flatten(Mesh& mesh, const dvec3& lost);
+void flatten_along(Mesh& mesh, const dvec3& lost);
 
 }  // namespace twinray

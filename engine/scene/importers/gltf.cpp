@@ -72,7 +72,7 @@ class ShapeReader {
 
     static GltfMesh flattened(GltfMesh mesh, const std::array<double, 3>& direction) {
         const dvec3 lost(direction[0], direction[1], direction[2]);
-        flatten(mesh.mesh, lost);
+        flatten_along(mesh.mesh, lost);
         for (MorphTarget& target : mesh.motion.targets) {
             flatten_positions(target.positions, lost);
             target.normals.clear(), target.tangents.clear();
