@@ -209,6 +209,11 @@ TEST(SavedTrees, BinaryOnesThatCannotBeWalkedSafelyAreRefused) {
                         g.mesh.triangles = std::move(triangles);
                     }),
                     "triangle 7 has vertex index 60");
+    expect_contains(edited([](SavedGeometry& g) {
+                        g.scale = 0x1p100f;
+                        g.mesh.positions = times(g.mesh.positions, 0x1p40f);
+                    }),
+                    "a position exceeds float32 at scale");
     expect_contains(edited([](SavedGeometry& g) { g.mesh.kind = 2; }), "unknown kind of geometry 2");
     expect_contains(edited([](SavedGeometry& g) { g.mesh.kind = GEOMETRY_BOXES; }), "20 triangles of 60 positions");
     expect_contains(edited([](SavedGeometry& g) { g = saved_boxes(), g.mesh.boxes[2].hi.x = INFINITY; }), "box 2 from");
