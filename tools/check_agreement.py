@@ -4,8 +4,8 @@
 Usage: check_agreement.py contract    docs/contract.md and the tests: each test it names exists, each row names one, and
                                       each test of the contract body is in a row
        check_agreement.py presets     presets that share a folder and cmake/options.cmake: one may find options on in
-                                      the cache that another has set. Each that a preset leaves as it was while it sets what
-                                      the option needs to OFF is a fault: CMake would refuse to configure.
+                                      the cache that another has set. Each that a preset leaves as it was, while it
+                                      sets what the option needs to OFF, is a fault: CMake would refuse to configure.
        check_agreement.py readme      the README's C++ lines are lines of samples/first_hit.cpp, one below the other: a
                                       test runs that"""
 import json

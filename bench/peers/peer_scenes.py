@@ -215,7 +215,8 @@ class File:
         for primitive in self.json["meshes"][here["mesh"]]["primitives"] if "mesh" in here else []:
             positions = self.array(primitive["attributes"]["POSITION"]).astype(float)
             uvs = primitive["attributes"].get("TEXCOORD_0")
-            yield {"positions": positions @ world[:3, :3].T + world[:3, 3], "uvs": None if uvs is None else self.array(uvs).astype(float),
+            yield {"positions": positions @ world[:3, :3].T + world[:3, 3],
+                   "uvs": None if uvs is None else self.array(uvs).astype(float),
                    "triangles": self.array(primitive["indices"]).reshape(-1, 3).astype(np.uint32),
                    "material": self.material(primitive.get("material"))}
         for child in here.get("children", []):

@@ -39,8 +39,10 @@ def bsdf(material):
     alpha, is_rough = float(material["alpha"]), material["alpha"] > 0
     rough = {"distribution": "ggx", "alpha": alpha} if is_rough else {}
     if material["kind"] == "metal":
-        return {"type": "twosided", "bsdf": {"type": "roughconductor" if is_rough else "conductor", "material": "none", **rough}}
-    return {"type": "roughdielectric" if is_rough else "dielectric", "int_ior": float(material["ior"]), "ext_ior": 1.0, **rough}
+        conductor = "roughconductor" if is_rough else "conductor"
+        return {"type": "twosided", "bsdf": {"type": conductor, "material": "none", **rough}}
+    dielectric = "roughdielectric" if is_rough else "dielectric"
+    return {"type": dielectric, "int_ior": float(material["ior"]), "ext_ior": 1.0, **rough}
 
 
 def mesh(name, part):
@@ -50,7 +52,8 @@ def mesh(name, part):
     properties["bsdf"] = mi.load_dict(bsdf(part["material"]))
     if part["material"].get("emission"):
         properties["emitter"] = mi.load_dict({"type": "area", "radiance": texture(part["material"]["emission"])})
-    shape = mi.Mesh(name, len(positions), len(positions) // 3, has_vertex_texcoords=part["uvs"] is not None, props=properties)
+    shape = mi.Mesh(name, len(positions), len(positions) // 3, has_vertex_texcoords=part["uvs"] is not None,
+                    props=properties)
     values = mi.traverse(shape)
     values["vertex_positions"] = positions.ravel()
     values["faces"] = np.arange(len(positions), dtype=np.uint32)
@@ -62,16 +65,18 @@ def mesh(name, part):
 
 
 def sky(image, finer=64):
-    """Mitsuba interpolates between pixels, the path tracer's light is constant in each. Columns begin a quarter of a turn later."""
+    """Mitsuba interpolates between pixels, the path tracer's light is constant in each. Columns begin a quarter of a turn
+    later."""
     columns = image.shape[1] * finer
     fine = np.repeat(np.repeat(image, finer, axis=0), finer, axis=1)
     return {"type": "envmap", "bitmap": mi.Bitmap(np.roll(fine, -columns // 4, axis=1).astype(np.float32))}
 
 
 def sensor(to_world, fov, side, sampler):
-    return {"type": "perspective", "fov": float(fov), "fov_axis": "y", "near_clip": 0.001, "far_clip": 1e4, "to_world": to_world,
-            "film": {"type": "hdrfilm", "width": side, "height": side, "rfilter": {"type": "box"}, "pixel_format": "rgb", "component_format": "float32"},
-            "sampler": sampler}
+    film = {"type": "hdrfilm", "width": side, "height": side, "rfilter": {"type": "box"}, "pixel_format": "rgb",
+            "component_format": "float32"}
+    return {"type": "perspective", "fov": float(fov), "fov_axis": "y", "near_clip": 0.001, "far_clip": 1e4,
+            "to_world": to_world, "film": film, "sampler": sampler}
 
 
 def load(scene, side, sampler=None):
