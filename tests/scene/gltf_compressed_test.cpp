@@ -83,11 +83,14 @@ TEST(GltfMeshopt, BothExtensionsAreDecoded) {
 
 TEST(GltfMeshopt, AFilterIsUndone) {
     const std::vector<vec3> values = {{0, 0, 0}, {1.5f, 0, 0}, {0, -2, 0}, {0.25f, 1, 3}};
-    std::vector<vec3> filtered(values.size());
-    meshopt_encodeFilterExp(filtered.data(), values.size(), sizeof(vec3), 15, &values[0].x);
+    // The specification's words: 8 bits of an exponent, here -2, above 24 bits of a whole number. The library's own
+    // function for them takes other arguments in 0.22 than in 0.18.
+    std::vector<uvec3> filtered;
+    const auto word = [](float value) { return uint(-2) << 24 | (uint(int(value * 4)) & 0xffffff); };
+    for (const vec3 value : values) filtered.push_back({word(value.x), word(value.y), word(value.z)});
     std::string stream(meshopt_encodeVertexBufferBound(values.size(), sizeof(vec3)), '\0');
     stream.resize(meshopt_encodeVertexBuffer(reinterpret_cast<unsigned char*>(stream.data()), stream.size(),
-                                             filtered.data(), filtered.size(), sizeof(vec3)));
+                                             filtered.data(), filtered.size(), sizeof(uvec3)));
     MeshoptFile file("EXT_meshopt_compression");
     file.root["buffers"].push_back(json::parse(MeshoptFile::with_buffer(stream))["buffers"][0]);
     file.stream(0)["buffer"] = 2;
