@@ -41,7 +41,7 @@ std::vector<float> sky_view(AbstractAccel& accel, const Scene& scene, Args args)
 }
 
 int main(int argc, char** argv) try {
-    if (argc < 2) throw Error("usage: headless_dispatch SCENE [map.pgm]");
+    if (argc < 2 || argv[1][0] == '-') throw Error("usage: headless_dispatch SCENE [map.pgm]");
     const Scene scene = load_scene(argv[1]);
     const Bounds bounds = bounds_of(scene);
     const uint width = 128, rays = 64;

@@ -54,6 +54,7 @@ Rgb color_of(uint texel) {
 }
 
 int main(int argc, char** argv) try {
+    if (argc > 1 && argv[1][0] == '-') throw Error("usage: materials [PICTURE.png]");
     Context context;
     TextureStore textures(context, "textures");
     const TextureRef painting = textures.push(ramp(64));
