@@ -175,7 +175,8 @@ float emitter_pdf(SceneData scene, Hit hit, Surface surface, LightReceiver at, v
     if (is_absent(instance.emitter_density)) return 0.0;
     vec3 way = surface.point.position - at.position;
     float chance = 1.0 - scene.environment.chance;
-    if (HAS_LIGHT_TREE)
+    // Without a tree, all lights are in the table: kernels with every feature see such scenes, too.
+    if (HAS_LIGHT_TREE && scene.table_chance < 1.0)
         chance *= (1.0 - scene.table_chance) *
                   chance_of_way(scene.light_tree, at, AT(instance.emitter_ways, hit.primitive_index));
     return chance * AT(instance.emitter_density, hit.primitive_index) * dot(way, way) /

@@ -92,6 +92,9 @@ run(*box, "--spp", "2", "-o", "left.png", "--look-from", "-1", "1", "3", "--look
 assert not same("right.png", "left.png")
 run(*box, "--spp", "8", "-o", "layers.exr", "--aovs")
 assert "MSE 0" in run("merge", "whole.png.film", "-o", "flat.exr", "--mse-reference-image", "layers.exr")
+# Kernels with every feature make the same picture but for roundings, here without a tree of lights.
+shown = run(*box, "--spp", "8", "--all-features", "-o", "every.exr", "--mse-reference-image", "layers.exr")
+assert float(shown.split("relMSE ")[1].split()[0]) < 1e-9, shown
 layers = (here / "layers.exr").read_bytes()
 for layer in ["albedo.R", "normal.Z", "depth.Z", "instance.ID", "primitive.ID", "samples.N", "variance.Y"]:
     assert layer.encode() + b"\0" in layers[:1000], layer
