@@ -8,13 +8,10 @@
 # are in the package, the bridges to them (libbf_intern_draco_bridge.so, libbf_intern_meshopt_bridge.so) are not.
 # Seen with bpy 5.2.3 on Python 3.13 on 2026-11-30. Needs Python 3.13, 1.5 GB and no root.
 folder=$(mktemp -d)
+pythons=3.13
 # shellcheck source=findings/room.sh
 . "$(dirname "${BASH_SOURCE[0]}")/room.sh"
-trap 'rm -rf "$folder"' EXIT
-if ! python3.13 -c "" 2>/dev/null; then fail "needs python3.13, for which bpy 5.2.3 has a wheel"; fi
-cd "$folder"
-python3.13 -m venv venv
-venv/bin/pip install --quiet --disable-pip-version-check bpy==5.2.3 numpy==2.4.6
+make_venv venv bpy==5.2.3 numpy==2.4.6
 
 cat >export.py <<'END'
 import bpy

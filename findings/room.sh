@@ -1,10 +1,11 @@
 # shellcheck shell=bash
 # SPDX-License-Identifier: MIT
 # The scripts of this folder source it. It makes a room (a minimal Debian in the script's temp $folder), puts packages
-# of pinned versions ($mesa_25 and $mesa_26 for lavapipes) into it, and runs C programs and compute kernels there.
+# of pinned versions ($mesa_25 and $mesa_26 for lavapipes) into it, and runs C programs and compute kernels there; or it
+# makes a venv with pinned packages of pip.
 #   ROOMS=FOLDER     keeps rooms in FOLDER for the next script, one script at a time (remove FOLDER when done)
 #   MIRROR=ADDRESS   takes packages from there, not from the Debian archive that this machine uses; it may be an old one
-# Needs root, debootstrap, an x86-64 machine with AVX2 and 2 GB on the disk.
+# A room needs root, debootstrap, an x86-64 machine with AVX2 and 2 GB on the disk. A venv needs no root.
 set -euo pipefail
 
 differs=0
@@ -28,6 +29,27 @@ holds() { # what, 1 or 0
     fi
 }
 conclude() { exit "$differs"; }
+
+# Makes a venv in $folder, which is the working folder from then on, with the first of $pythons that it finds: on the
+# PATH or among pyenv's.
+: "${pythons:=3.13 3.12}"
+python=''
+make_venv() { # name, what pip installs
+    if [[ -z $python ]]; then find_python; fi
+    "$python" -m venv "$1"
+    "$1/bin/pip" install --quiet --disable-pip-version-check "${@:2}"
+}
+find_python() {
+    trap 'rm -rf "$folder"' EXIT
+    cd "$folder"
+    local version
+    for version in $pythons; do
+        for python in "python$version" "${PYENV_ROOT-$HOME/.pyenv}/versions/$version".*[0-9]/bin/python; do
+            if "$python" -c "import ensurepip, venv" 2>/dev/null; then return; fi
+        done
+    done
+    fail "needs Python ${pythons// / or }, for which its packages have wheels"
+}
 
 # shellcheck disable=SC2317,SC2329
 leave() {

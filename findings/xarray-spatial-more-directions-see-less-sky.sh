@@ -10,16 +10,8 @@
 folder=$(mktemp -d)
 # shellcheck source=findings/room.sh
 . "$(dirname "${BASH_SOURCE[0]}")/room.sh"
-trap 'rm -rf "$folder"' EXIT
-python=""
-for candidate in python3.13 python3.12; do
-    if "$candidate" -c "import venv" 2>/dev/null; then python=${python:-$candidate}; fi
-done
-if [[ -z $python ]]; then fail "needs python3.12 or python3.13, for which xarray-spatial 0.10.20 has a wheel"; fi
-cd "$folder"
-"$python" -m venv venv
-venv/bin/pip install --quiet --disable-pip-version-check xarray-spatial==0.10.20 xarray==2026.9.0 numpy==2.5.5 \
-    numba==0.68.1
+make_venv venv xarray-spatial==0.10.20 xarray==2026.9.0 numpy==2.5.5 numba==0.68.1 \
+    pandas==3.1.1 scipy==1.18.1
 
 cat >slope.py <<'END'
 import numpy as np
