@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Compiles GLSL for twinray, in its own build and in that of a host that found it. Each function gives <target> headers,
 # to be included by name:
 #

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Writes a compiled SPIR-V module, optimised, as a module and as a C++ header with `const uint32_t <NAME>[]`, its
 # little-endian words:
 #   cmake -DSPIRV_OPT=PROGRAM -DCOMPILED=FILE.spv -DMODULE=FILE.spv -DNAME=name -DHEADER=FILE.h

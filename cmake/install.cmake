@@ -50,7 +50,7 @@ endif()
 # Installs only the public headers, and the files that their GLSL needs.
 install(DIRECTORY include/twinray DESTINATION ${headers_dir})
 set(glsl_dir ${headers_dir}/twinray/glsl)
-install(DIRECTORY shaders/shared shaders/scene DESTINATION ${glsl_dir}/shaders)
+install(DIRECTORY shaders/shared DESTINATION ${glsl_dir}/shaders)
 install(FILES shaders/engine/trace.comp DESTINATION ${glsl_dir}/shaders/engine)
 install(DIRECTORY shaders/hwtlas DESTINATION ${glsl_dir}/shaders FILES_MATCHING PATTERN "*.glsl")
 

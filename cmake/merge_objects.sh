@@ -1,5 +1,4 @@
 #!/usr/bin/env bash
-# SPDX-License-Identifier: MIT
 # Links object files into one in which only strong symbols of namespace twinray, and the tables of its classes, are
 # global; every other becomes local.
 #   cmake/merge_objects.sh LINKER NM OBJCOPY OUTPUT.o INPUT.o...

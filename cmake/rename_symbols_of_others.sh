@@ -1,5 +1,4 @@
 #!/usr/bin/env bash
-# SPDX-License-Identifier: MIT
 # Gives Vulkan Memory Allocator, stb and tinygltf names of twinray's in objects for Windows, so that a host may have
 # its own. Made local, as on Linux, they could not be linked: a linker drops all inline functions of a name but one.
 #   cmake/rename_symbols_of_others.sh NM OBJCOPY OBJECT...

@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """How Sphinx makes the site; tools/docs.sh runs it on the pages that docs/site/stage.py has put together."""
 
 import pathlib

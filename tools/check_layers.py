@@ -8,7 +8,7 @@ import re
 import sys
 
 BASE = ["engine/core", "engine/scene", "engine/accel"]
-ENGINE = BASE + ["engine", "engine/analysis", "engine/collide", "engine/points"]
+ENGINE = BASE + ["engine/analysis", "engine/collide", "engine/points"]
 PRODUCT = ENGINE + ["swtlas", "hwtlas"]
 VALIDATION = ["validation/" + room for room in ("reference", "leaks", "records", "verify", "cpu_reference")]
 REPORT = ["report/" + room for room in "conformance explain faults frame page replay reproducer suite".split()]
@@ -19,29 +19,26 @@ AS_HOSTS = ["samples", "samples/support", "renderer", "bindings", "shaders/path_
 TUTORIALS, INSIDE = "samples/tutorials/", "samples/tutorials/10_inside_the_builder/"
 SEES = {  # besides itself, include and, unless AS_HOSTS, shaders/shared
     "include": ["shaders/hwtlas"],  # the public face; its GLSL has parts there and in shaders/shared
-    "engine": ENGINE,  # headers that gather the others
     "engine/core": [], "engine/scene": BASE[:1] + ["shaders/scene"], "engine/accel": BASE[:2],
     "engine/analysis": BASE + ["shaders/analysis"], "engine/collide": BASE + ["shaders/collide"],
-    "engine/points": BASE + ["engine/collide", "shaders/collide", "shaders/points"],
+    "engine/points": BASE + ["engine/collide", "shaders/points"],
     "swtlas": ENGINE, "hwtlas": ENGINE,
     "validation/reference": BASE + ["shaders/verify"], "validation/leaks": BASE + VALIDATION[:1],
     "validation/records": BASE + VALIDATION[:1], "validation/verify": PRODUCT + VALIDATION,
-    "validation/cpu_reference": ENGINE + ["swtlas"], "validation/exact": BASE + VALIDATION[:1] + ["shaders/collide"],
+    "validation/cpu_reference": ENGINE + ["swtlas"], "validation/exact": BASE + VALIDATION[:1],
     "report/frame": PRODUCT + VALIDATION,
     "report/conformance": PRODUCT + VALIDATION + ["report/frame", "shaders/conformance", "samples/support"],
-    "report/suite": PRODUCT + CHECKS + ["shaders/suite", "shaders/path_tracer", "shaders/collide", "renderer",
-                                        "samples/support"],
+    "report/suite": PRODUCT + CHECKS + ["shaders/suite", "shaders/collide", "renderer", "samples/support"],
     "report/replay": PRODUCT + VALIDATION, "report/explain": PRODUCT + CHECKS, "report/page": BASE + CHECKS,
     "report/reproducer": PRODUCT + CHECKS,
     "report/faults": BASE,
     "renderer": ["shaders/path_tracer", "samples/support"], "samples/support": [],
     "viewer": PRODUCT + CHECKS + ["viewer/picture", "renderer"], "viewer/picture": BASE,
-    "cli": PRODUCT + CHECKS + ["bench", "viewer", "viewer/picture", "renderer", "shaders/path_tracer",
-                                "samples/support"],
+    "cli": PRODUCT + CHECKS + ["bench", "viewer", "viewer/picture", "renderer", "samples/support"],
     "bindings": [],
-    "samples": ["shaders/path_tracer", "shaders/particles", "renderer", "samples/support"],
+    "samples": ["shaders/particles", "renderer", "samples/support"],
     "bench": PRODUCT + VALIDATION + ["samples/support"],
-    "tests": PRODUCT + CHECKS + ["shaders/scene", "cli", "samples", "samples/support", "renderer", "bench", "viewer",
+    "tests": PRODUCT + CHECKS + ["cli", "samples", "samples/support", "renderer", "bench", "viewer",
                                  "viewer/picture"],
     "shaders/path_tracer": [], "shaders/particles": [],
     "shaders/points": ["shaders/collide", "shaders/engine"],

@@ -2,7 +2,7 @@
 # Checks the format of the code: C++ and GLSL with clang-format, CMake with gersemi, shell with shellcheck, Python with
 # ruff and mypy, spelling with codespell, and sentences that do not dangle (tools/check_openers.py).
 #   tools/lint.sh          prints what is wrong; exit status 1 if anything is, 77 if it cannot check
-#   tools/lint.sh --fix    formats C++, CMake and Python first
+#   tools/lint.sh --fix    formats C++, GLSL, CMake and Python first
 # The tools come from PyPI into build/lint at fixed versions, so that results are the same everywhere. Needs
 # python3-venv.
 set -euo pipefail
@@ -43,7 +43,7 @@ check() { # what, command...
     fi
 }
 
-check "C++" $bin/clang-format --dry-run --Werror "${cpp[@]}"
+check "C++ and GLSL" $bin/clang-format --dry-run --Werror "${cpp[@]}"
 check "CMake" $bin/gersemi --quiet --check "${cmake[@]}"
 check "shell" $bin/shellcheck -x "${scripts[@]}"
 check "Python" $bin/ruff check --quiet

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // Pages, light and dark, on a desktop and a phone: axe's rules of accessibility, no page wider than its window, and a
 // search that finds without a server.
 // Usage: node check_accessibility.mjs FOLDER CHROMIUM

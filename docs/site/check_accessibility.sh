@@ -1,5 +1,4 @@
 #!/usr/bin/env bash
-# SPDX-License-Identifier: MIT
 # Looks at pages of the built site in a browser, by check_accessibility.mjs. Needs chromium and npm, which fetches two
 # packages the first time.
 # Usage: check_accessibility.sh FOLDER

@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Follows every link of a built site that stays within it, to its file and its anchor, and lists the others.
 Usage: check_links.py FOLDER FILE   FILE: becomes the list of links to elsewhere, which are not fetched
 Prints "broken links 0"; or each broken one on standard error, and exits with 1."""

@@ -1,5 +1,4 @@
 #!/usr/bin/env bash
-# SPDX-License-Identifier: MIT
 # Makes Doxygen's XML of the public headers; what Doxygen says is a warning, so nothing may be said.
 # Usage: doxygen.sh cpp|glsl FOLDER   FOLDER/xml becomes it
 set -euo pipefail

@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Doxygen's input filter: prints a header with its `//` comments in the form that Doxygen reads.
 A comment before a declaration becomes `///`, one behind it `///<`, the comment on top that of the file. Overloads
 that follow a function without a blank line share its comment, and so do aliases. The namespace twinray is left out, so

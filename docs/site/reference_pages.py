@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: MIT
 """Pages of the reference: one for each header of C++, which Breathe fills from Doxygen's XML; one for each header of
 kernels, from what that XML says of files and what they declare, with comments as Markdown; and one for each command:
 what `twinray help COMMAND` prints."""

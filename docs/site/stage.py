@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
 """Puts together what Sphinx reads: the pages of docs/, a few from elsewhere in the tree, and those of the reference.
 Links go to pages of the site; those to other files of the tree become their names.
 Usage: stage.py FOLDER TWINRAY   FOLDER: is made anew; below its parent are cpp/xml and glsl/xml of Doxygen;

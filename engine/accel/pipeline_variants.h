@@ -16,8 +16,8 @@ namespace twinray {
 
 // The first trace compiles the leanest program that fits, and waits for it. The next one has the program that fits all
 // scenes compiled in the background. That one serves from then on while leaner ones are also compiled there: a user who
-// traces once pays for one program. There are at most 32 sets of features of an accelerator (see trace_desc.h), so
-// that none has to be dropped.
+// traces once pays for one program. None is dropped: an accelerator has at most 32 sets of features without a trace
+// program (features_of() in trace_desc.h).
 //
 // It is used by one thread at a time and compiles on a thread of its own. The context must outlive it.
 class PipelineVariants {

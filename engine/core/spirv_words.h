@@ -49,7 +49,6 @@ enum class Op : std::uint32_t {
     CompositeExtract = 81,
     LogicalOr = 166,
     LogicalAnd = 167,
-    LogicalNot = 168,
     Select = 169,
     BitwiseAnd = 199,
     Phi = 245,

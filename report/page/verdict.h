@@ -1,5 +1,5 @@
 // The sentences with which a report begins: they say what is right, wrong or not measured, how fast, and by which
-// reference. Pure functions of its records. A sentence rests on the cases that report/suite/suite.h names.
+// reference. Pure functions of its records. A sentence rests on the cases that report/suite/suite.cpp names.
 #pragma once
 
 #include <array>

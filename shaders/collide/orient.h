@@ -2,7 +2,7 @@
 // Signs of volumes and areas in float64, if they are certain. The bounds are those of the first stage of Shewchuk,
 // "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997: (7 + 56 u) u and (3 + 16
 // u) u of the magnitudes added up, u = 2^-53, here rounded up to 8 u and 4 u. They hold while nothing over- or
-// underflows, as among vertices of world_vertex(): see triangle_pair.h.
+// underflows, as among vertices of world_vertex(): see world_vertex.h.
 #ifndef TWINRAY_COLLIDE_ORIENT_H
 #define TWINRAY_COLLIDE_ORIENT_H
 

@@ -11,8 +11,8 @@
 
 namespace twinray::test {
 
-// Returns whether tests must fail rather than skip without this: TWINRAY_REQUIRE is a list of `vulkan`, `ray_tracing`,
-// `embree`, `avif`, `links`, `spirv_tools`.
+// Returns whether tests must fail rather than skip without this: TWINRAY_REQUIRE is a list of such names as
+// `vulkan`, `ray_tracing` or `embree`: the first arguments of TWINRAY_LACKS, and more in tests that are scripts.
 bool is_required(const char* what);
 // Returns whether contexts have the validation layer, as they do unless TWINRAY_WITHOUT_VALIDATION is set: Wine has no
 // layers.

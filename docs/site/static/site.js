@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: MIT
 // What the theme leaves out for readers of screens and users of keyboards.
 document.addEventListener("DOMContentLoaded", () => {
     for (const caption of document.querySelectorAll("p.caption[role=heading]")) caption.setAttribute("aria-level", "2");

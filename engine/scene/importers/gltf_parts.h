@@ -94,7 +94,7 @@ struct GltfNode {
     std::string name;        // "node 3 'wheel'", for errors and warnings
     Rig::Node local;         // parent: index into the list that flatten_nodes returns; weights left empty
     glm::dmat4 world;        // kept in float64 down the tree, rounded once where it is used
-    glm::dmat4 frame;        // as in Pose::frames
+    glm::dmat4 frame;        // as in Pose::Nodes::frames
     bool is_visible = true;  // by KHR_node_visibility, its own and that of all nodes above
 };
 

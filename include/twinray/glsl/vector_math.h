@@ -22,10 +22,6 @@ template <class T>
 glm::vec<4, T> to_glm(const Vec<4, T>& v) {
     return {v.x, v.y, v.z, v.w};
 }
-template <int N, class T>
-Vec<N, T> from_glm(const glm::vec<N, T>& v) {
-    return v;
-}
 
 #define TWINRAY_OPERATOR(op)                                               \
     template <int N, class T>                                              \
