@@ -177,7 +177,7 @@ struct Collector {
         std::size_t first = 0;
         while (has_tree && first < weights.size() && !is_sun(first)) ++first;
         lights.table.resize(weights.size());
-        lights.table_first = static_cast<uint>(first);
+        lights.table_first = first < weights.size() ? static_cast<uint>(first) : 0;
         lights.table_count = static_cast<uint>(weights.size() - first);
         if (!has_tree) share_by_kind();
         make_part(first, weights.size() - first);

@@ -93,10 +93,7 @@ MotionTimes MovingScene::move_to(const Pose& pose) {
     return times;
 }
 
-void MovingScene::move_records() {
-    const LightChoice choice = device_scene_.features().light_tree ? LightChoice::tree : LightChoice::table;
-    device_scene_.move(scene_, collect_lights(scene_, choice));
-}
+void MovingScene::move_records() { device_scene_.move(scene_, collect_lights(scene_, device_scene_.light_choice())); }
 
 void MovingScene::move_emitters(const Pose& pose) {
     for (const std::size_t i : emitting_)

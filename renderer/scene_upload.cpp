@@ -91,13 +91,14 @@ void DeviceScene::upload_lights(Commands& commands, const LocalLights& lights) {
     };
     if (lights.by == LightChoice::tree && !features_.light_tree)
         fail("lights are in a tree, but the kernels of this scene choose lights from a table");
+    light_choice_ = lights.by;
     if (features_.local_lights) {
         if (!lights_) lights_.emplace(context_);
         const std::vector<SetKey> keys = lights_->put(lights);
         record_.lights = lights_->view();
         record_.light_keys = upload(commands, "keys of lights", some_of(keys), &moving_);
         record_.light_table = upload(commands, "light table", some_of(lights.table), &moving_);
-        record_.table_first = lights.empty() ? 0 : lights.table_first;
+        record_.table_first = lights.table_first;
         record_.table_count = std::max(lights.table_count, 1u);
         record_.table_chance = lights.table_chance;
     }

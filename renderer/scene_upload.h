@@ -72,6 +72,7 @@ class DeviceScene {
 
     Ref<SceneData> data() const { return data_.ref<SceneData>(); }
     const SceneFeatures& features() const { return features_; }
+    LightChoice light_choice() const { return light_choice_; }
     std::uint64_t device_bytes() const;
 
   private:
@@ -92,7 +93,8 @@ class DeviceScene {
     };
     Context& context_;
     SceneFeatures features_;
-    std::vector<Buffer> buffers_, moving_;  // the first stay, move() replaces the others
+    LightChoice light_choice_ = LightChoice::table;  // of the lights that it has
+    std::vector<Buffer> buffers_, moving_;           // the first stay, move() replaces the others
     std::vector<UploadedMesh> meshes_;
     std::optional<LightSet> lights_;        // none: no need for any
     std::optional<TextureStore> textures_;  // none: no material has any

@@ -130,6 +130,9 @@ LightSample sample_local(SceneData scene, PunctualLight light, float chance, vec
     return result;
 }
 
+// Kernels with every feature also see scenes without a tree, whose lights are all in the table.
+bool has_tree(SceneData scene) { return HAS_LIGHT_TREE && scene.table_chance < 1.0; }
+
 struct ChosenLight {
     uint light;
     float chance;  // without its chance in its part of the table
@@ -141,7 +144,7 @@ ChosenLight choose_local(SceneData scene, LightReceiver at, float u, uint word) 
     uint first = scene.table_first;
     uint count = scene.table_count;
     chosen.chance = HAS_LIGHT_TREE ? scene.table_chance : 1.0;
-    if (HAS_LIGHT_TREE && u >= scene.table_chance) {
+    if (has_tree(scene) && u >= scene.table_chance) {
         ChosenLeaf leaf = choose_leaf(scene.light_tree, at, unit_float(word));
         first = leaf.first;
         count = leaf.count;
@@ -175,8 +178,7 @@ float emitter_pdf(SceneData scene, Hit hit, Surface surface, LightReceiver at, v
     if (is_absent(instance.emitter_density)) return 0.0;
     vec3 way = surface.point.position - at.position;
     float chance = 1.0 - scene.environment.chance;
-    // Without a tree, all lights are in the table: kernels with every feature see such scenes, too.
-    if (HAS_LIGHT_TREE && scene.table_chance < 1.0)
+    if (has_tree(scene))
         chance *= (1.0 - scene.table_chance) *
                   chance_of_way(scene.light_tree, at, AT(instance.emitter_ways, hit.primitive_index));
     return chance * AT(instance.emitter_density, hit.primitive_index) * dot(way, way) /

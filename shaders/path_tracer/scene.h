@@ -54,7 +54,7 @@ struct SurfaceInstance {
     REF(SurfaceMesh) mesh;
     Floats emitter_density;  // per triangle: probability of being chosen from its part of the table / world area;
                              // absent if none emits
-    Uints emitter_ways;      // per triangle: see chance_of_way; absent without PT_HAS_LIGHT_TREE
+    Uints emitter_ways;      // per triangle: see chance_of_way; absent without a tree
 };
 BUFFER_OF(SurfaceInstance, 8);
 

@@ -108,6 +108,14 @@ TEST(LocalLights, OfATableAreChosenByTheirPower) {
     EXPECT_NEAR(lights.densities[lights.emitters[0].instance][0], light / (light + point) / 0.25, 1e-4);
 }
 
+TEST(LocalLights, OfNoPowerStillMakeATableThatCanBeRead) {
+    Scene scene;
+    scene.lights = {{.name = "lamp", .kind = Light::Kind::point, .color = vec3(0)}};
+    const LocalLights tree = collect_lights(scene, LightChoice::tree);
+    EXPECT_LT(tree.table_first, tree.table.size());
+    EXPECT_EQ(tree.punctual[0].chance, 0);
+}
+
 TEST(LocalLights, SunsAndLampsHaveTheSameShare) {
     Scene scene = cornell_box_scene();
     scene.lights = {{.name = "sun", .kind = Light::Kind::directional, .color = vec3(1e5f)},

@@ -5,6 +5,7 @@
 
 #include "engine/scene/rig.h"
 #include "engine/core/error.h"
+#include "renderer/reference.h"
 #include "tests/samples/render.h"
 
 namespace twinray::path_tracer {
@@ -47,12 +48,15 @@ class MovingSceneTest : public test::VulkanTest {
     struct Pictures {
         HdrImage before, after, expected;
     };
-    Pictures pictures(Scene scene, const Pose& pose, bool hardware) {
+    // The first two are made with all features if `everything` is true.
+    Pictures pictures(Scene scene, const Pose& pose, bool hardware, bool everything = false) {
         RenderSetup setup = seen_from({0, 6, 9}, {0, 1, 0}, 0.4f);
         setup.settings.samples = 2;
         setup.hardware = hardware;
         Scene made = scene;
-        DeviceScene device_scene(context(), scene, collect_lights(scene), nullptr);
+        const LocalLights lights = collect_lights(scene);
+        DeviceScene device_scene(context(), scene, lights, nullptr,
+                                 everything ? all_features(scene) : features_of(scene, lights, nullptr));
         Renderer renderer(context(), device_scene, setup.settings);
         const std::unique_ptr<AbstractAccel> accel = make_accel(context(), hardware);
         push_scene(*accel, scene);
@@ -83,6 +87,17 @@ TEST_F(MovingSceneTest, IsAsIfItHadBeenMadeSo) {
         EXPECT_FALSE(same_bits(found.before, found.after));
         EXPECT_TRUE(same_bits(found.after, found.expected));
     }
+}
+
+// A lamp and a sun are chosen from a table, also by kernels that know trees.
+TEST_F(MovingSceneTest, KernelsWithEveryFeatureMakeTheSamePicture) {
+    Scene scene = moving_scene();
+    scene.lights = {{.name = "sun", .kind = Light::Kind::directional, .color = vec3(1), .direction = {0, -1, 0}}};
+    auto rig = std::make_shared<Rig>(*scene.rig);
+    rig->lights = {{.node = 0}};
+    scene.rig = rig;
+    const Pictures found = pictures(scene, pose_at(*rig, rig->animations[0], 0.5), false, true);
+    EXPECT_LT(error_against(found.after, found.expected).relative_mse, 1e-9);
 }
 
 TEST_F(MovingSceneTest, ALampThatVanishesShinesNoMore) {
