@@ -9,8 +9,8 @@
 # Seen with bpy 5.2.3 on Python 3.13 on 2026-11-30. Needs Python 3.13, 1.5 GB and no root.
 folder=$(mktemp -d)
 pythons=3.13
-# shellcheck source=findings/room.sh
-. "$(dirname "${BASH_SOURCE[0]}")/room.sh"
+# shellcheck source=findings/checks.sh
+. "$(dirname "${BASH_SOURCE[0]}")/checks.sh"
 make_venv venv bpy==5.2.3 numpy==2.4.6
 
 cat >export.py <<'END'

@@ -10,8 +10,8 @@
 # Seen with bpy 5.2.3 on Python 3.13 on 2026-11-30. Needs Python 3.13, 1.5 GB and no root.
 folder=$(mktemp -d)
 pythons=3.13
-# shellcheck source=findings/room.sh
-. "$(dirname "${BASH_SOURCE[0]}")/room.sh"
+# shellcheck source=findings/checks.sh
+. "$(dirname "${BASH_SOURCE[0]}")/checks.sh"
 make_venv venv bpy==5.2.3 numpy==2.4.6
 
 cat >sky.py <<'END'
@@ -94,7 +94,7 @@ def floor(sky):  # a white floor, so radiance is irradiance divided by pi
     return render(sky, "Linear", (5, 0, 5), (45, 0, 90), 4096, True)
 
 
-# Where rows end at the poles, the sky of two rows is white to 45 degrees, then falls evenly to black at 135.
+# Without the mix, the sky of two rows is white to 45 degrees, then falls evenly to black at 135.
 angles = (np.arange(100000) + 0.5) * np.pi / 200000
 clamped = np.mean(np.clip(1.5 - angles * 2 / np.pi, 0, 1) * np.sin(2 * angles)) * np.pi / 2
 below = np.zeros((8, 16), np.float32)

@@ -8,8 +8,8 @@
 # meshes are right everywhere.
 # Seen with python-fcl 0.7.0.11 and 0.7.0.8 on 2026-11-30. Needs Python 3.12 or 3.13, 300 MB and no root.
 folder=$(mktemp -d)
-# shellcheck source=findings/room.sh
-. "$(dirname "${BASH_SOURCE[0]}")/room.sh"
+# shellcheck source=findings/checks.sh
+. "$(dirname "${BASH_SOURCE[0]}")/checks.sh"
 for version in 0.7.0.11 0.7.0.8; do
     make_venv "$version" --only-binary :all: "python-fcl==$version" \
         numpy==2.4.6

@@ -8,8 +8,8 @@
 # NaN pixel has a maxerror of 0. "oiiotool --stats" counts them (NanCount).
 # Seen with OpenImageIO 3.2.2.0 from PyPI on 2026-11-30. Needs Python 3.12 or 3.13, 300 MB and no root.
 folder=$(mktemp -d)
-# shellcheck source=findings/room.sh
-. "$(dirname "${BASH_SOURCE[0]}")/room.sh"
+# shellcheck source=findings/checks.sh
+. "$(dirname "${BASH_SOURCE[0]}")/checks.sh"
 make_venv venv OpenImageIO==3.2.2.0 numpy==2.4.6
 
 cat >pictures.py <<'END'
@@ -37,20 +37,20 @@ for name in pictures:
     print(f"{name} {found.error}/{found.nfail}/{found.meanerror:.3g}/{found.maxerror:.3g}")
 END
 venv/bin/python pictures.py >results
-verdict() { # a command that compares: its last word and its exit status
+result() { # a command that compares: its last word and its exit status
     local log status=0
     log=$("venv/bin/$1" "${@:2}" 2>&1) || status=$?
     echo "$(grep -oE 'PASS|FAILURE' <<<"$log" | tail -n 1) $status"
 }
 for name in one all; do
-    same "idiff grey.exr $name.exr" "$(verdict idiff grey.exr "$name.exr")" "PASS 0"
-    same "idiff $name.exr grey.exr" "$(verdict idiff "$name.exr" grey.exr)" "PASS 0"
+    same "idiff grey.exr $name.exr" "$(result idiff grey.exr "$name.exr")" "PASS 0"
+    same "idiff $name.exr grey.exr" "$(result idiff "$name.exr" grey.exr)" "PASS 0"
     same "idiff -fail 0 -failpercent 0 grey.exr $name.exr" \
-        "$(verdict idiff -fail 0 -failpercent 0 grey.exr "$name.exr")" "PASS 0"
-    same "oiiotool --diff grey.exr $name.exr" "$(verdict oiiotool --diff grey.exr "$name.exr")" "PASS 0"
+        "$(result idiff -fail 0 -failpercent 0 grey.exr "$name.exr")" "PASS 0"
+    same "oiiotool --diff grey.exr $name.exr" "$(result oiiotool --diff grey.exr "$name.exr")" "PASS 0"
 done
 for name in infinite other both; do
-    same "idiff grey.exr $name.exr" "$(verdict idiff grey.exr "$name.exr")" "FAILURE 2"
+    same "idiff grey.exr $name.exr" "$(result idiff grey.exr "$name.exr")" "FAILURE 2"
 done
 compare() { grep "^$1 " results | cut -d' ' -f2; }
 same "compare(), error/nfail/meanerror/maxerror, one NaN" "$(compare one)" False/0/nan/0

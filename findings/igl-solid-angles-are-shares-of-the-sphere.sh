@@ -7,8 +7,8 @@
 # same corners in the other order give -0.125.
 # Seen with libigl 2.6.3 on 2026-11-30. Needs Python 3.12 or 3.13, 300 MB and no root.
 folder=$(mktemp -d)
-# shellcheck source=findings/room.sh
-. "$(dirname "${BASH_SOURCE[0]}")/room.sh"
+# shellcheck source=findings/checks.sh
+. "$(dirname "${BASH_SOURCE[0]}")/checks.sh"
 make_venv venv libigl==2.6.3 numpy==2.4.6 scipy==1.17.1
 
 cat >angle.py <<'END'

@@ -6,8 +6,8 @@
 # max(1, NaN) is NaN, and min() does likewise. A shader that computes max() in both orders gets the value of the first
 # one twice, so one call more in a shader changes what another returns. With the execution mode
 # SignedZeroInfNanPreserve max(1, NaN) and min(1, NaN) are 1.
-# Seen with glslang-tools 15.1.0+1.4.309.0-1 and 25.0.7-2+deb13u1 and 26.1.6-1~bpo13+1 of mesa-vulkan-drivers on
-# 2026-11-30.
+# Seen with 25.0.7-2+deb13u1 and 26.1.6-1~bpo13+1 of mesa-vulkan-drivers on 2026-11-30, and with
+# glslang-tools=15.1.0+1.4.309.0-1.
 folder=$(mktemp -d)
 mesa_25=25.0.7-2+deb13u1
 mesa_26=26.1.6-1~bpo13+1

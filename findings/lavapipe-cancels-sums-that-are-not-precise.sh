@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# A good guess: Vulkan's table of precision calls sums and differences of floats correctly rounded, and `precise` turns
-# into NoContraction, which is about a product and a sum made one. An expression of sums alone needs no `precise`.
+# A good guess: Vulkan's table of precision calls sums and differences of floats correctly rounded, and `precise` becomes
+# NoContraction, which is about a product and a sum made one. An expression of sums alone needs no `precise`.
 # Seen: glslang writes every sum into the module, and lavapipe drops pairs of them as algebra would. (x + y) - y is x,
 # even for x = 0.7 and y = 2^24, whose rounded sum is 2^24; so (x + 12582912.0) - 12582912.0, which rounds to whole
 # numbers, rounds nothing, and the error of a sum, as two-sums and Kahan's sums compute it, is always 0. With
 # `precise` each step is rounded, but infinity times 0.0 is 0, not NaN, in both. Both releases do so.
-# Seen with glslang-tools 15.1.0+1.4.309.0-1 and 25.0.7-2+deb13u1 and 26.1.6-1~bpo13+1 of mesa-vulkan-drivers on
-# 2026-11-30.
+# Seen with 25.0.7-2+deb13u1 and 26.1.6-1~bpo13+1 of mesa-vulkan-drivers on 2026-11-30, and with
+# glslang-tools=15.1.0+1.4.309.0-1.
 folder=$(mktemp -d)
 mesa_25=25.0.7-2+deb13u1
 mesa_26=26.1.6-1~bpo13+1

@@ -7,8 +7,8 @@
 # depth integrator gives the same. The position AOV of the same render is right.
 # Seen with mitsuba 3.9.1 (scalar_rgb) on 2026-11-30. Needs Python 3.12 or 3.13, 500 MB and no root.
 folder=$(mktemp -d)
-# shellcheck source=findings/room.sh
-. "$(dirname "${BASH_SOURCE[0]}")/room.sh"
+# shellcheck source=findings/checks.sh
+. "$(dirname "${BASH_SOURCE[0]}")/checks.sh"
 make_venv venv --no-deps mitsuba==3.9.1 drjit==1.5.0 numpy==2.4.6
 
 cat >depth.py <<'END'

@@ -1,17 +1,17 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# A good guess: a turn about its own middle changes nothing of a sphere lamp. Its normals point outwards where a ray
+# A good guess: a rotation about its own centre changes nothing of a sphere lamp. Its normals point outwards where a ray
 # meets it and where it is sampled, and a particle tracer and a path tracer make one picture of it.
-# Seen: with a turn in to_world, sample_position() of a sphere turns the points and not the normals. After half a turn
-# about z, 71 % of the points have a normal that points into the sphere, and 67 % of the rays by sample_ray() of its
+# Seen: with a rotation in to_world, sample_position() of a sphere rotates its points and not its normals. After half a
+# turn about z, 71 % of the points have a normal that points into the sphere, and 67 % of the rays by sample_ray() of its
 # lamp start into it. Half a turn leaves a wall beside it black by "ptracer", a quarter of a turn leaves 0.4 of its
 # light. "path", which samples spheres in another way, is right. Spheres that are moved and scaled are right.
 # A cylinder scaled by -1 in x has its normals outwards for rays and inwards in samples: it shines at the camera with 1,
 # and lights the wall by 0.1 in "direct" with samples of lamps alone, and by 1.0 with samples of the BSDF alone.
 # Seen with Mitsuba 3.9.1 (scalar_rgb) on 2026-11-30. Needs Python 3.12 or 3.13 and no root.
 folder=$(mktemp -d)
-# shellcheck source=findings/room.sh
-. "$(dirname "${BASH_SOURCE[0]}")/room.sh"
+# shellcheck source=findings/checks.sh
+. "$(dirname "${BASH_SOURCE[0]}")/checks.sh"
 make_venv venv mitsuba==3.9.1 drjit==1.5.0 numpy==2.5.5
 
 cat >lamps.py <<'END'

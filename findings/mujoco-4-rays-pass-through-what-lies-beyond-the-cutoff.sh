@@ -9,8 +9,8 @@
 # away is hit at 11.9 with a cutoff of 1.
 # Seen with mujoco 4.0.0 and 3.17.0 on 2026-11-30. Needs Python 3.12 or 3.13, 500 MB and no root.
 folder=$(mktemp -d)
-# shellcheck source=findings/room.sh
-. "$(dirname "${BASH_SOURCE[0]}")/room.sh"
+# shellcheck source=findings/checks.sh
+. "$(dirname "${BASH_SOURCE[0]}")/checks.sh"
 for version in 4.0.0 3.17.0; do
     make_venv "$version" "mujoco==$version" numpy==2.4.6 glfw==2.11.0 PyOpenGL==3.1.10
 done

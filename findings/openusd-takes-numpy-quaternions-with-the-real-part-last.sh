@@ -8,8 +8,8 @@
 # Vectors keep their order. A row of numbers for a quaternion means one turn in Gf and in files, another in NumPy.
 # Seen with usd-core 26.11 and NumPy 2.5.5 on 2026-11-30. Needs Python 3.12 or 3.13 and no root.
 folder=$(mktemp -d)
-# shellcheck source=findings/room.sh
-. "$(dirname "${BASH_SOURCE[0]}")/room.sh"
+# shellcheck source=findings/checks.sh
+. "$(dirname "${BASH_SOURCE[0]}")/checks.sh"
 make_venv venv usd-core==26.11 numpy==2.5.5
 
 cat >quaternions.py <<'END'

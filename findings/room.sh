@@ -1,55 +1,12 @@
 # shellcheck shell=bash
 # SPDX-License-Identifier: MIT
-# The scripts of this folder source it. It makes a room (a minimal Debian in the script's temp $folder), puts packages
-# of pinned versions ($mesa_25 and $mesa_26 for lavapipes) into it, and runs C programs and compute kernels there; or it
-# makes a venv with pinned packages of pip.
+# Scripts on drivers and compilers source it. It makes a room (a minimal Debian in the script's temp $folder), puts
+# packages of pinned versions ($mesa_25 and $mesa_26 for lavapipes) into it, and runs C programs and kernels there.
 #   ROOMS=FOLDER     keeps rooms in FOLDER for the next script, one script at a time (remove FOLDER when done)
 #   MIRROR=ADDRESS   takes packages from there, not from the Debian archive that this machine uses; it may be an old one
-# A room needs root, debootstrap, an x86-64 machine with AVX2 and 2 GB on the disk. A venv needs no root.
-set -euo pipefail
-
-differs=0
-
-fail() {
-    echo "$(basename "$0"): $*" >&2
-    exit 1
-}
-
-# One line for each thing that is stated. `conclude` ends a script: 0 if all of them were seen.
-same() { # what, seen, stated
-    if [[ $2 == "$3" ]]; then echo "as stated: $1: $2"; else
-        echo "NOT as stated: $1: '$2', not '$3'"
-        differs=1
-    fi
-}
-holds() { # what, 1 or 0
-    if (($2)); then echo "as stated: $1"; else
-        echo "NOT as stated: $1"
-        differs=1
-    fi
-}
-conclude() { exit "$differs"; }
-
-# Makes a venv in $folder, which is the working folder from then on, with the first of $pythons that it finds: on the
-# PATH or among pyenv's.
-: "${pythons:=3.13 3.12}"
-python=''
-make_venv() { # name, what pip installs
-    if [[ -z $python ]]; then find_python; fi
-    "$python" -m venv "$1"
-    "$1/bin/pip" install --quiet --disable-pip-version-check "${@:2}"
-}
-find_python() {
-    trap 'rm -rf "$folder"' EXIT
-    cd "$folder"
-    local version
-    for version in $pythons; do
-        for python in "python$version" "${PYENV_ROOT-$HOME/.pyenv}/versions/$version".*[0-9]/bin/python; do
-            if "$python" -c "import ensurepip, venv" 2>/dev/null; then return; fi
-        done
-    done
-    fail "needs Python ${pythons// / or }, for which its packages have wheels"
-}
+# Needs root, debootstrap, an x86-64 machine with AVX2 and 2 GB on the disk.
+# shellcheck source=findings/checks.sh
+. "$(dirname "${BASH_SOURCE[0]}")/checks.sh"
 
 # shellcheck disable=SC2317,SC2329
 leave() {

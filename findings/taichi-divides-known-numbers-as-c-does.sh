@@ -9,8 +9,8 @@
 # Seen with taichi 1.7.4, and quadrants 1.3.3, a fork of it, on 2026-11-30. Needs Python 3.12 or 3.13,
 # 800 MB and no root.
 folder=$(mktemp -d)
-# shellcheck source=findings/room.sh
-. "$(dirname "${BASH_SOURCE[0]}")/room.sh"
+# shellcheck source=findings/checks.sh
+. "$(dirname "${BASH_SOURCE[0]}")/checks.sh"
 make_venv venv taichi==1.7.4 quadrants==1.3.3 numpy==2.5.5 \
     colorama==0.4.6 dill==0.4.1 rich==15.0.0 pydantic==2.14.4 cffi==2.1.1 setuptools==84.2.1
 

@@ -9,8 +9,8 @@
 # and a file of the ends alone loads without an index. OBJLoader makes all their triangles. Nothing is thrown or logged.
 # Seen with three 0.187.0 on Node 20 on 2026-11-30. Needs Node 20 or newer with npm, and no root.
 folder=$(mktemp -d)
-# shellcheck source=findings/room.sh
-. "$(dirname "${BASH_SOURCE[0]}")/room.sh"
+# shellcheck source=findings/checks.sh
+. "$(dirname "${BASH_SOURCE[0]}")/checks.sh"
 trap 'rm -rf "$folder"' EXIT
 if ! npm --version >/dev/null 2>&1 || [[ $(node -p 'parseInt(process.versions.node)') -lt 20 ]]; then
     fail "needs Node 20 or newer, and npm"

@@ -8,8 +8,8 @@
 # heights that are too high or too low counts. The mean of exact horizons is 0.7541 with 16 and 0.7500 with 256.
 # Seen with xarray-spatial 0.10.20 on 2026-11-30. Needs Python 3.12 or 3.13, 500 MB and no root.
 folder=$(mktemp -d)
-# shellcheck source=findings/room.sh
-. "$(dirname "${BASH_SOURCE[0]}")/room.sh"
+# shellcheck source=findings/checks.sh
+. "$(dirname "${BASH_SOURCE[0]}")/checks.sh"
 make_venv venv xarray-spatial==0.10.20 xarray==2026.9.0 numpy==2.5.5 numba==0.68.1 \
     pandas==3.1.1 scipy==1.18.1
 

@@ -8,8 +8,8 @@
 # The light by default is 315, so a picture with defaults looks right. Surface fits Horn and ZevenbergThorne agree.
 # Seen with xdem 0.2.3 on 2026-11-30. Needs Python 3.12 or 3.13, 2 GB and no root.
 folder=$(mktemp -d)
-# shellcheck source=findings/room.sh
-. "$(dirname "${BASH_SOURCE[0]}")/room.sh"
+# shellcheck source=findings/checks.sh
+. "$(dirname "${BASH_SOURCE[0]}")/checks.sh"
 make_venv venv xdem==0.2.3 geoutils==0.2.5 numpy==2.4.6 scipy==1.17.1 \
     numba==0.68.1 rasterio==1.5.2 geopandas==1.2.0 pandas==2.3.3 pyproj==3.8.0 shapely==2.2.0 xarray==2026.9.0 \
     rioxarray==0.23.0 affine==3.0.1 pyogrio==0.13.0

@@ -65,8 +65,8 @@ def mesh(name, part):
 
 
 def sky(image, finer=64):
-    """Mitsuba interpolates between pixels, the path tracer's light is constant in each. Columns begin a quarter of a turn
-    later."""
+    """Mitsuba interpolates between pixels, the path tracer's light is constant in each. Columns begin a quarter of a
+    circle later."""
     columns = image.shape[1] * finer
     fine = np.repeat(np.repeat(image, finer, axis=0), finer, axis=1)
     return {"type": "envmap", "bitmap": mi.Bitmap(np.roll(fine, -columns // 4, axis=1).astype(np.float32))}
