@@ -36,6 +36,7 @@ make_venv() { # name, what pip installs
     "$1/bin/pip" install --quiet --disable-pip-version-check "${@:2}"
 }
 find_python() {
+    # shellcheck disable=SC2154  # the script's
     trap 'rm -rf "$folder"' EXIT
     cd "$folder"
     local version

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# A good guess: Vulkan's table of precision calls sums and differences of floats correctly rounded, and `precise` becomes
-# NoContraction, which is about a product and a sum made one. An expression of sums alone needs no `precise`.
+# A good guess: Vulkan's table of precision calls sums and differences of floats correctly rounded, and `precise` is
+# NoContraction in SPIR-V, which is about a product and a sum made one. An expression of sums alone needs no `precise`.
 # Seen: glslang writes every sum into the module, and lavapipe drops pairs of them as algebra would. (x + y) - y is x,
 # even for x = 0.7 and y = 2^24, whose rounded sum is 2^24; so (x + 12582912.0) - 12582912.0, which rounds to whole
 # numbers, rounds nothing, and the error of a sum, as two-sums and Kahan's sums compute it, is always 0. With

@@ -3,8 +3,8 @@
 # A good guess: a rotation about its own centre changes nothing of a sphere lamp. Its normals point outwards where a ray
 # meets it and where it is sampled, and a particle tracer and a path tracer make one picture of it.
 # Seen: with a rotation in to_world, sample_position() of a sphere rotates its points and not its normals. After half a
-# turn about z, 71 % of the points have a normal that points into the sphere, and 67 % of the rays by sample_ray() of its
-# lamp start into it. Half a turn leaves a wall beside it black by "ptracer", a quarter of a turn leaves 0.4 of its
+# turn about z, 71 % of the points have a normal that points into the sphere, and 67 % of the rays by sample_ray() of
+# its lamp start into it. Half a turn leaves a wall beside it black by "ptracer", a quarter of a turn leaves 0.4 of its
 # light. "path", which samples spheres in another way, is right. Spheres that are moved and scaled are right.
 # A cylinder scaled by -1 in x has its normals outwards for rays and inwards in samples: it shines at the camera with 1,
 # and lights the wall by 0.1 in "direct" with samples of lamps alone, and by 1.0 with samples of the BSDF alone.

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # A good guess: taichi.math has one convention. rotation2d rotates counter-clockwise, translate moves column vectors, so
-# rot_by_axis((0, 0, 1), angle) @ v rotates counter-clockwise, too; and rotation3d's arguments ang_x, ang_y, ang_z are, as
-# its documentation says, angles around X, Y and Z.
+# rot_by_axis((0, 0, 1), angle) @ v rotates counter-clockwise, too; and rotation3d's arguments ang_x, ang_y, ang_z are,
+# as its documentation says, angles around X, Y and Z.
 # Seen: rotation2d takes (1, 0) to (0, 1) for 90 degrees, and rot_by_axis about +z takes (1, 0, 0) to (0, -1, 0): it is
 # the inverse. rotation3d exchanges two of its angles: ang_y rotates about z, and ang_z about y, both clockwise as well;
 # ang_x rotates about x, clockwise. So rotation3d(0, 0, angle) leaves y where it is and moves z.
